@@ -20,7 +20,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 
 def test_the_run_itself_is_as_it_was_left(runs: tuple[Path, Path]) -> None:
     found = verify(runs[0])
-    assert verify(runs[0], found.head).problems == () and found.coefficients == 3 and found.notes == ()
+    assert verify(runs[0], found.head).problems == () and found.coefficients == 3
 
 
 def test_there_are_fifteen_kinds() -> None:
@@ -47,7 +47,6 @@ def test_a_head_from_before_is_told_with_what_came_since(
 
     with RunReader(runs[0]) as reader:
         chain = reader.chain()
-    assert chain is not None
     assert invoke(["verify", str(runs[0]), "--head", chain.heads[-2].hex()]) == 1
     assert f"by 1 rows: {chain.names[-1]}" in capsys.readouterr().err
     assert invoke(["verify", str(runs[0]), "--head", chain.head.upper()]) == 0

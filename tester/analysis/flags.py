@@ -122,8 +122,6 @@ FLAGS: Final[Mapping[str, Flag]] = {
 DOUBTS: Final = tuple(flag.word for flag in FLAGS.values() if flag.doubt)
 """The words of the flags that are doubts."""
 
-_OLD_WORDS = frozenset({ROLLING, EXTENDED, TRUNCATED})
-
 
 def joined(flags: Iterable[str]) -> str:
     """Return flags as one text, sorted."""
@@ -131,9 +129,7 @@ def joined(flags: Iterable[str]) -> str:
 
 
 def flags_in(text: str) -> list[str]:
-    """Return the flags in a text that ``joined`` made; older records have single words with spaces between."""
-    if ";" not in text and _OLD_WORDS.issuperset(words := text.split()):
-        return words
+    """Return the flags in a text that ``joined`` made."""
     return [flag.strip() for flag in text.split(";") if flag.strip()]
 
 

@@ -29,8 +29,6 @@ class RepeatStatus(StrEnum):
     VALID = "valid"
     REFUSED = "refused"
     """It drifts, or differs from its siblings; it keeps its figures, and the reason."""
-    NOT_STABILISED = "not stabilised"
-    """Of records before schema 4, whose repeats were judged one by one."""
     TOO_FEW = "too few revolutions"
     CANNOT_HOLD = "temperature cannot be held"
     NOT_REACHED = "not reached"

@@ -46,11 +46,8 @@ def verify(run: str, head: str, as_json: bool) -> int:
         by_hand = f"; excluded by hand: {found.excluded}" if found.excluded else ""
         read = f"{found.samples} samples in {found.blocks} blocks read, {found.coefficients} coefficients recomputed"
         click.echo(f"{folder.name}: as it was left, {found.status}; {read}{by_hand}")
-    if not as_json:
-        for note in found.notes:
-            click.echo(f"{folder.name}: {note}")
-        if found.head:
-            click.echo(f"record head: {found.head}")
+    if found.head and not as_json:
+        click.echo(f"record head: {found.head}")
     for problem in found.problems:
         click.echo(f"{folder.name}: {problem}", err=True)
     return code
@@ -69,7 +66,6 @@ def _record(name: str, found: Verification, code: int) -> dict[str, object]:
         "excluded": found.excluded,
         "coefficients": found.coefficients,
         "record_head": found.head,
-        "notes": list(found.notes),
         "verified_with": __version__,
         "exit": code,
     }

@@ -24,7 +24,6 @@ from tester.results.run_results import RunResults, results_of
 from tester.results.settings_table import settings_table
 from tester.results.tables import appendix_rows, condition_rows, marked, sample_rows
 from tester.store.reader import RunReader
-from tester.store.schema import PIECE
 
 
 @dataclass(frozen=True)
@@ -89,6 +88,9 @@ def _always(results: RunResults) -> bool:
     return True
 
 
+_WHEEL = "wheel"
+"""The worn part whose table of pieces has a name of its own, which people's scripts read."""
+
 FORMATS: dict[str, Format] = {
     one.name: one
     for one in (
@@ -103,10 +105,10 @@ FORMATS: dict[str, Format] = {
                _csv(lambda record: directions_table(record.results).csv()), lambda results: results.both_directions),
         Format("repeats", "repeats.csv", "every repeat",
                _csv(lambda record: repeats_table(record.results).csv()), _always),
-        Format(PIECE, f"{PIECE}.csv", f"{PIECE}s and their wear",
-               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn == PIECE),
+        Format(_WHEEL, f"{_WHEEL}.csv", f"{_WHEEL}s and their wear",
+               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn == _WHEEL),
         Format("pieces", "pieces.csv", "what was mounted, and its wear",
-               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn != PIECE),
+               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn != _WHEEL),
         Format("wear", "wear.csv", "checks of diameters", _csv(lambda record: checks_table(record.results).csv()),
                lambda results: bool(results.checks)),
         Format("reference", "reference.csv", "reference conditions, with limits and drift",

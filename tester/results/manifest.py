@@ -24,14 +24,14 @@ def manifest_of(folder: Path) -> dict[str, dict[str, str | int]]:
 
 
 def manifest_text(folder: Path, record_head: str) -> str:
-    """Return the manifest of a folder as JSON; ``record_head``: of its record's chain, "" where it has none."""
-    head = {"record_head": record_head} if record_head else {}
-    return json.dumps({"version": 1, **head, "files": manifest_of(folder)}, indent=1, ensure_ascii=False) + "\n"
+    """Return the manifest of a folder as JSON; ``record_head``: of its record's chain."""
+    whole = {"version": 1, "record_head": record_head, "files": manifest_of(folder)}
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
 def manifest_head(folder: Path) -> str:
-    """Return the head of the record's chain in the folder's manifest, "" of an older one; raises as below."""
-    return str(json.loads((folder / MANIFEST).read_text("utf-8")).get("record_head", ""))
+    """Return the head of the record's chain in the folder's manifest; raises as below, also KeyError."""
+    return str(json.loads((folder / MANIFEST).read_text("utf-8"))["record_head"])
 
 
 def manifest_problems(folder: Path) -> list[str]:

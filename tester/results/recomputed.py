@@ -49,7 +49,7 @@ def _recomputed(reader: RunReader, one: StoredRepeat, info: ConditionInfo) -> Re
     rolling = ROLLING in flags_in(one.result.flags)
     trace = Trace(reader.quantities())
     blocks = blocks_from_samples(samples, reader.quantities(), trace)
-    swing = swing_of(trace) if _looked_at(one.result) and not rolling else None
+    swing = None if rolling else swing_of(trace)
     return reduce_repeat(blocks, info.window_revolutions, info.window_s, rolling=rolling, swing=swing)
 
 
@@ -63,7 +63,7 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
         found = by_samples[name]
         if not isclose(stored, found, rel_tol=TOLERANCE, abs_tol=TOLERANCE) and (isfinite(stored) or isfinite(found)):
             yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
-    for name in _LOOKED_AT if _looked_at(one.result) else ():
+    for name in _LOOKED_AT:
         stored, found = getattr(one.result, name), getattr(again, name)
         if not isclose(stored, found, rel_tol=LOOSER, abs_tol=LOOSER) and not (isnan(stored) and isnan(found)):
             yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
@@ -75,11 +75,6 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
 
 def _figures(result: RepeatResult) -> dict[str, float]:
     return {name: getattr(result, name) for name in _FIGURES} | dict(result.means)
-
-
-def _looked_at(result: RepeatResult) -> bool:
-    """Return whether the record says how friction changed and swung; older ones do not."""
-    return isfinite(result.change_percent) or isfinite(result.swing_percent)
 
 
 def table_problems(folder: Path, record: Record) -> Iterator[tuple[str, str]]:

@@ -31,7 +31,6 @@ from tester.base.quantities import Quantities
 from tester.base.words import coefficient
 from tester.results.settings import RepeatedSetting, SettingsOf, in_doubt
 from tester.results.surroundings import Reduced, SurroundingsOf
-from tester.store import older
 from tester.store.catalogue import under_way
 from tester.store.exclusions import standing
 from tester.store.reader import RunReader
@@ -163,12 +162,12 @@ class RunResults:
     settings: tuple[RepeatedSetting, ...] = ()
     """What was measured several times, references among it."""
     record_head: str = ""
-    """The last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
+    """The last head of the record's chain, hexadecimal."""
 
     @property
     def axes(self) -> Axes:
         """Return the axes of the run's conditions."""
-        return self.run.info.axes or older.AXES
+        return self.run.info.axes
 
     @property
     def worn(self) -> str:

@@ -44,9 +44,7 @@ class Verification:
     coefficients: int = 0
     """Recomputed from their samples."""
     head: str = ""
-    """The last head of the record's chain, hexadecimal; "" where there is none."""
-    notes: tuple[str, ...] = ()
-    """What could not be checked, and why."""
+    """The last head of the record's chain, hexadecimal; "" where the record cannot be read."""
 
 
 def verify(folder: Path, kept: str = "") -> Verification:
@@ -62,15 +60,12 @@ def verify(folder: Path, kept: str = "") -> Verification:
             run = results.run
             chain = reader.chain()
             problems += _chain(chain, kept)
-            notes = _notes(chain, reader.version)
-            coefficients = 0
-            if chain is not None:
-                problems += _finished(folder, results, chain)
-                if _made_by(reader) == __version__:  # another version may write other tables of the same record
-                    told = {problem.partition(":")[0] for problem in problems}
-                    problems += [line for name, line in table_problems(folder, record) if name not in told]
-                coefficients, differing = coefficient_problems(reader)
-                problems += differing
+            problems += _finished(folder, results, chain)
+            if _made_by(reader) == __version__:  # another version may write other tables of the same record
+                reported = {problem.partition(":")[0] for problem in problems}
+                problems += [line for name, line in table_problems(folder, record) if name not in reported]
+            coefficients, differing = coefficient_problems(reader)
+            problems += differing
             problems += [f"run.db: {problem}" for problem in reader.integrity_problems()]
             problems += _texts(folder, run)
             said = reader.exclusions()
@@ -82,15 +77,12 @@ def verify(folder: Path, kept: str = "") -> Verification:
                 samples += block.rows
     except StoreError as error:
         return Verification(None, RunStatus.UNREADABLE, (*problems, str(error)))
-    head = chain.head if chain is not None else ""
     out = len(standing(said))
-    return Verification(run, results.status, tuple(problems), blocks, samples, out, coefficients, head, notes)
+    return Verification(run, results.status, tuple(problems), blocks, samples, out, coefficients, chain.head)
 
 
-def _chain(chain: ChainFound | None, kept: str) -> list[str]:
+def _chain(chain: ChainFound, kept: str) -> list[str]:
     """Return what the chain does not bear out, and whether it ends in the head that a person has kept."""
-    if chain is None:
-        return [f"run.db: has no chain, and so not the head {kept}"] if kept else []
     problems = [f"run.db: {problem}" for problem in chain.problems]
     if not kept or kept.lower() == chain.head:
         return problems
@@ -99,14 +91,6 @@ def _chain(chain: ChainFound | None, kept: str) -> list[str]:
         return [*problems, f"run.db: another record than the one of the head {kept}: its own is {chain.head or 'none'}"]
     since = chain.names[heads.index(kept.lower()) + 1 :]
     return [*problems, f"run.db: has grown since the head {kept} by {len(since)} rows: {', '.join(since[-LISTED:])}"]
-
-
-def _notes(chain: ChainFound | None, version: int) -> tuple[str, ...]:
-    if chain is None:
-        return (f"older version (schema {version}): recorded without a chain, coefficients not recomputed",)
-    if chain.adopted:
-        return (f"begun by an older version (schema {chain.adopted}): chained as it was found by a later one",)
-    return ()
 
 
 def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]:
@@ -118,7 +102,7 @@ def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]
     try:
         if manifest_head(folder) != chain.head:
             return [f"{MANIFEST}: of a record with another head"]
-    except (OSError, ValueError, AttributeError):
+    except (OSError, ValueError, AttributeError, KeyError, TypeError):
         pass  # that it cannot be read is told already
     return []
 
@@ -156,7 +140,7 @@ def _texts(folder: Path, run: StoredRun) -> list[str]:
         ("rig", info.rig_text, run.rig_sha256),
     )
     problems = [f"run.db: the {name}'s text has another hash" for name, text, sha in stored if text_sha256(text) != sha]
-    if run.calibration_sha256 and calibration_sha256(info.calibration) != run.calibration_sha256:
+    if calibration_sha256(info.calibration) != run.calibration_sha256:
         problems.append("run.db: the calibration has another hash")
     for name, _, sha in stored:
         path = folder / f"{name}.yaml"

@@ -137,7 +137,7 @@ def beginning_of(part: Part, job: Job, work: Work) -> Begin:
             started_utc=clock.utc_now(),
             simulated=work.rig.simulated,
             kind=work.plan.kind,
-            axes=work.plan.axes,
+            axes=recipe_part(work.rig).axes,
             seed=job.seed,
         )
         writer.begin_run(info, specimens_of(part.plan), condition_records(part.plan))

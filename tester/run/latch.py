@@ -20,7 +20,7 @@ from tester.store.amend import acknowledge_trips
 from tester.store.catalogue import run_folders, under_way
 from tester.store.reader import RunReader
 from tester.store.records import StoredTrip
-from tester.store.schema import ACKNOWLEDGED, StoreError
+from tester.store.schema import StoreError
 
 MANUAL_RUNS = ".manual"
 """Folder beside the runs for the journals of manual mode."""
@@ -56,7 +56,7 @@ def made_on(rig: Rig, reader: RunReader) -> bool:
 def open_trips(runs: Path, rig: Rig, own: Path | None = None) -> list[OpenTrip]:
     """Return the trips on a hardware rig that nobody has acknowledged; a simulated one is new at every start.
 
-    Runs under way are left out, but for ``own``. Older versions did not record acknowledgements: theirs count as given.
+    Runs under way are left out, but for ``own``.
     """
     return [] if rig.simulated else [*_found(runs, rig, own)]
 
@@ -68,7 +68,7 @@ def _found(runs: Path, rig: Rig, own: Path | None) -> Iterator[OpenTrip]:
             continue
         with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
             trips = [one for one in reader.trips() if not one.acknowledged_utc]
-            if trips and reader.version >= ACKNOWLEDGED and made_on(rig, reader):
+            if trips and made_on(rig, reader):
                 yield from (OpenTrip(folder, one) for one in trips)
 
 

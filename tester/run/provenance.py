@@ -76,7 +76,7 @@ def run_info(
         simulated=rig.simulated,
         kind=plan.kind,
         worn=served_kind(rig).machine.specimen,
-        axes=plan.axes,
+        axes=recipe_part(rig).axes,
         seed=seed if rig.simulated else None,
         software_version=_version("friction-tester"),
         git_revision=git_revision(),

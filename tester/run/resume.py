@@ -161,7 +161,7 @@ def _found(folder: Path, run: StoredRun, session: int, reason: str) -> Found:
         for subject, before, after, text in (
             ("recipe", run.recipe_sha256, text_sha256(recipe_text), run.info.recipe_text),
             ("rig", run.rig_sha256, text_sha256(rig_text), run.info.rig_text),
-            ("calibration", run.calibration_sha256 or figures, figures, ""),
+            ("calibration", run.calibration_sha256, figures, ""),
         )
         if before != after
     ]

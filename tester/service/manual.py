@@ -9,6 +9,7 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.sensors import quantities_on
 from tester.machine.manual import NAME
 from tester.run.folder import make_folder
+from tester.run.kinds import recipe_part
 from tester.run.latch import MANUAL_RUNS
 from tester.run.part_run import Unsampled
 from tester.run.provenance import accepted_risks
@@ -26,7 +27,8 @@ def open_record(runs: Path, rig: Rig, operator: str, accept_risk: str = "") -> R
     folder = make_folder(runs / MANUAL_RUNS, NAME)
     writer = Unsampled(folder / DATABASE, quantities_on(rig), clock=clock.monotonic, utc=clock.utc_now)
     started_utc = clock.utc_now()
-    info = RunInfo(folder.name, NAME, "", rig.text, started_utc, rig.simulated, operator=operator,
+    part = recipe_part(rig)
+    info = RunInfo(folder.name, NAME, "", rig.text, started_utc, rig.simulated, part.kind, part.axes, operator=operator,
                    metadata=accepted_risks(rig, accept_risk))  # fmt: skip
     writer.begin_run(info, [], [])
     return writer

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import cast
 
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
-from tester.store import older
 from tester.store.statements import Statement, Value, insert
 
 _COLUMNS = {"column": "column_name", "default": "default_value"}
@@ -21,10 +20,8 @@ def axis_rows(axes: Axes) -> Iterator[Statement]:
         yield f"ALTER TABLE condition ADD COLUMN {one.field} {'TEXT' if one.choices else 'REAL'}", ()
 
 
-def axes_of(rows: Sequence[Mapping[str, object]]) -> Axes:
-    """Return the axes that a record's table has, by position; those of older schemas where it has none."""
-    if not rows:
-        return older.AXES
+def axes_of(rows: Iterable[Mapping[str, object]]) -> Axes:
+    """Return the axes that a record's table has, by position."""
     fields = {column: field for field, column in _COLUMNS.items()}
     found = [{fields.get(name, name): value for name, value in row.items()} for row in rows]
     return axes_from(row | {"choices": str(row["choices"]).splitlines()} for row in found)

@@ -22,8 +22,6 @@ from hashlib import sha256
 Cell = str | int | float | bytes | None
 
 TABLE = "chain"
-ADOPTED = "adopted"
-"""In place of a table's name: the rows that follow were recorded by an older schema (``key``), without a chain."""
 START = bytes(32)
 NAMED_AT_MOST = 5
 """Rows of a table that are named; of more, only the number is told."""
@@ -106,20 +104,6 @@ def add_entries(connection: sqlite3.Connection, rows: Iterator[tuple[str, int, b
         connection.execute(_INSERT, (seq, name, key, row, head))
 
 
-def adopt(connection: sqlite3.Connection, version: int) -> None:
-    """Chain what an older schema (``version``) has recorded, as it is found, inside a transaction."""
-    if connection.execute("SELECT 1 FROM run").fetchone() is None:
-        return  # nothing was recorded yet: what comes is chained as it comes
-    add_entries(connection, _found(connection, version))
-
-
-def _found(connection: sqlite3.Connection, version: int) -> Iterator[tuple[str, int, bytes]]:
-    yield ADOPTED, version, row_sha256(ADOPTED, version, (), None)
-    for table in tables_in(connection):
-        for key, row in hashes_of(connection, table):
-            yield table, key, row
-
-
 def hashes_of(connection: sqlite3.Connection, table: str) -> Iterator[tuple[int, bytes]]:
     """Yield key and hash of every row of a table."""
     columns = columns_of(connection, table)
@@ -135,8 +119,6 @@ class ChainFound:
     heads: tuple[bytes, ...]
     names: tuple[str, ...]
     """For each entry, the row in words, such as ``event 12``."""
-    adopted: int
-    """The older schema under which the record was begun; 0 where it was chained from its first row."""
 
     @property
     def head(self) -> str:
@@ -152,7 +134,7 @@ def inspect(connection: sqlite3.Connection) -> ChainFound:
         latest: dict[tuple[str, int], bytes] = {}
         heads: list[bytes] = []
         names: list[str] = []
-        adopted, head = 0, START
+        head = START
         entries = connection.execute("SELECT seq, name, key, row_sha256, head FROM chain ORDER BY seq")
         for n, (seq, name, key, row, said) in enumerate(entries, start=1):
             head = next_head(head, bytes(row))
@@ -162,15 +144,14 @@ def inspect(connection: sqlite3.Connection) -> ChainFound:
             heads.append(head)
             names.append(f"{name} {key}")
             latest[name, key] = row
-            adopted = key if name == ADOPTED else adopted
         for table in tables_in(connection):
             of_table = {key: row for (name, key), row in latest.items() if name == table}
             problems += _told(table, of_table, connection)
-        unknown = {name for name, _ in latest} - {ADOPTED, *tables_in(connection)}
+        unknown = {name for name, _ in latest}.difference(tables_in(connection))
         problems += [f"the table {name} is gone" for name in sorted(unknown)]
     finally:
         connection.execute("ROLLBACK")
-    return ChainFound(tuple(problems), tuple(heads), tuple(names), adopted)
+    return ChainFound(tuple(problems), tuple(heads), tuple(names))
 
 
 def _told(table: str, said: dict[int, bytes], connection: sqlite3.Connection) -> Iterator[str]:

@@ -1,7 +1,4 @@
-"""A record's own table of channels: what its samples and its measured means are, without the kind of rig at hand.
-
-Records before schema 8 did not say it; all of them had the same channels, and these are kept here as a file.
-"""
+"""A record's own table of channels: what its samples and its measured means are, without the kind of rig at hand."""
 
 from __future__ import annotations
 
@@ -9,19 +6,16 @@ import json
 import sqlite3
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
-from functools import lru_cache
-from importlib.resources import files
 from typing import Any
 
 from tester.base.quantities import Channel, Figure, Quantities, Roles, Screen
-from tester.store.statements import Statement, Value, insert
+from tester.store.statements import Value, insert
 
 COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "whole", "shown_name", "shown_unit",
            "scale", "role", "block", "screen")  # fmt: skip
 """Of the table ``channel``. ``role``: words of _ROLES, joined; ``block`` beside the role ``turn``; ``screen``: JSON."""
 
 _FIGURES = ("low", "high", "limit")
-_BEFORE_8 = "channels_before_schema_8.json"
 _ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING = _ROLES = (
     "along", "across", "normal", "turn", "temperature", "sliding",
 )  # fmt: skip
@@ -57,11 +51,6 @@ def channel_rows(quantities: Quantities) -> list[dict[str, Value]]:
         }
         for position, one in enumerate(quantities)
     ]
-
-
-def channel_statements(quantities: Quantities) -> list[Statement]:
-    """Return the INSERTs of a record's channels."""
-    return [insert("channel", row) for row in channel_rows(quantities)]
 
 
 def quantities_of(rows: Iterable[Mapping[str, object]]) -> Quantities:
@@ -100,40 +89,31 @@ def _screen(text: str) -> Screen | None:
     return Screen(**{**said, **figures})
 
 
-@lru_cache(maxsize=1)
-def channels_before_8() -> Quantities:
-    """Return the channels of every record of a schema before 8."""
-    return quantities_of(json.loads(files("tester.store").joinpath(_BEFORE_8).read_text("utf-8")))
-
-
 def recorded_channels(connection: sqlite3.Connection) -> Quantities | None:
     """Return the channels of the record that a connection is open on, None of one that is new; raises sqlite3.Error.
 
     Also ValueError where its table of channels is none.
     """
     found = connection.execute(f"SELECT {', '.join(COLUMNS)} FROM channel ORDER BY position").fetchall()
-    if found:
-        try:
-            return quantities_of([dict(zip(COLUMNS, tuple(row), strict=True)) for row in found])
-        except (KeyError, TypeError) as error:
-            raise ValueError(f"the table of channels cannot be read: {error}") from error
-    named = connection.execute("SELECT count(*) FROM sample_column").fetchone()[0]
-    return channels_before_8() if named else None
+    if not found:
+        return None
+    try:
+        return quantities_of([dict(zip(COLUMNS, tuple(row), strict=True)) for row in found])
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"the table of channels cannot be read: {error}") from error
 
 
-def make_columns(connection: sqlite3.Connection, quantities: Quantities) -> None:
-    """Give the repeats a column for the mean of each averaged channel that has none yet, tares one for each force.
+def add_channels(connection: sqlite3.Connection, quantities: Quantities) -> None:
+    """Give a new record its channels, inside a transaction: their rows, columns of repeats and tares for their values.
 
-    Raises ValueError for a channel that is called as another column of theirs.
+    A repeat gets a column for the mean of each averaged channel, a tare one for its zero. Raises ValueError for a
+    channel whose name is another column's.
     """
-    there = {row[1] for row in connection.execute("PRAGMA main.table_info(repeat)")}
-    means = {*channels_before_8().names, *(recorded_channels(connection) or channels_before_8()).names}
-    for one in quantities.averaged:
-        if one.name not in there:
-            connection.execute(f"ALTER TABLE repeat ADD COLUMN {one.name} REAL")
-        elif one.name not in means:
-            raise ValueError(f"channel {one.name}: a repeat has another column of this name, rename the channel")
-    there = {row[1] for row in connection.execute("PRAGMA main.table_info(tare)")}
-    for name in dict.fromkeys((*quantities.roles.friction, quantities.roles.normal)):
-        if name not in there:
-            connection.execute(f"ALTER TABLE tare ADD COLUMN {name} REAL")
+    for row in channel_rows(quantities):
+        connection.execute(*insert("channel", row))
+    for table in ("repeat", "tare"):
+        taken = {row[1] for row in connection.execute(f"PRAGMA main.table_info({table})")}
+        for one in quantities.averaged:
+            if one.name in taken:
+                raise ValueError(f"channel {one.name}: a {table} has another column of this name, rename the channel")
+            connection.execute(f"ALTER TABLE {table} ADD COLUMN {one.name} REAL")

@@ -28,7 +28,7 @@ def standing(said: Iterable[StoredExclusion]) -> dict[tuple[int, int, int], Stor
 def add_exclusion(folder: Path, said: StoredExclusion) -> None:
     """Add a person's word on a repeat to the record in ``folder``, on the disk when this returns; its id is given here.
 
-    An older record is brought to the present schema. Raises StoreError.
+    A record of an older schema is brought to the present one. Raises StoreError.
     """
     values = (*said.target, said.excluded, said.reason, said.operator, said.utc, said.software_version)
     with amended(folder) as database:

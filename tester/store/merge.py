@@ -20,10 +20,10 @@ import numpy as np
 from tester.analysis.results import Judgement
 from tester.base.quantities import KEY, TIME, Quantities
 from tester.store.chain import Chain
-from tester.store.channels import channels_before_8, make_columns, recorded_channels
+from tester.store.channels import recorded_channels
 from tester.store.reader import DATABASE, RunReader
 from tester.store.sample_blocks import unpack_array
-from tester.store.schema import PIECE, StoreError, migrate
+from tester.store.schema import NotBegunError, StoreError, migrate
 
 Cell = str | int | float | bytes | None
 
@@ -41,7 +41,7 @@ class Merged:
 
 
 TABLES: dict[str, Merged] = {
-    PIECE: Merged(times=("installed_s", "updated_s", "ground_s")),
+    "piece": Merged(times=("installed_s", "updated_s", "ground_s")),
     "repeat": Merged(times=("begun_s", "started_s", "ended_s"), key="id"),
     "burst": Merged(times=("started_s", "ended_s"), repeat="repeat_id"),
     "sample_block": Merged(times=("first_s", "last_s"), key="id", repeat="repeat_id"),
@@ -66,7 +66,6 @@ HEADER = frozenset(
         "version",
         "specimen",
         "condition",
-        "sample_column",
         "channel",
         "session",
         "change",
@@ -105,7 +104,6 @@ class Merge:
             self._connection.execute("PRAGMA synchronous = EXTRA")
             migrate(self._connection)
             self._channels = _channels(self._connection)
-            make_columns(self._connection, self._channels)
             self._chain = Chain(self._connection)
             with self._transaction():
                 for table in reversed(TABLES):
@@ -134,10 +132,8 @@ class Merge:
         with closing(sqlite3.connect(f"{(part / DATABASE).absolute().as_uri()}?mode=ro", uri=True)) as source:
             bases = {table: self._last(table) for table, kind in TABLES.items() if kind.key is not None}
             with self._transaction():
-                there = {name for (name,) in source.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
                 for table in TABLES:
-                    if table in there:  # a part that an older version has finished lacks the newest
-                        self._copy(source, table, bases)
+                    self._copy(source, table, bases)
                 self._update_conditions(source)
                 self._connection.execute("UPDATE run SET overruns = overruns + ?", (run.overruns,))
         self.rig_seconds = self._later(self.rig_seconds, run.rig_seconds)
@@ -210,9 +206,12 @@ class Merge:
 
 def _channels(connection: sqlite3.Connection) -> Quantities:
     try:
-        return recorded_channels(connection) or channels_before_8()
+        channels = recorded_channels(connection)
     except ValueError as error:
         raise StoreError(str(error)) from error
+    if channels is None:
+        raise NotBegunError("the run was not begun")
+    return channels
 
 
 class _MergeTransaction:

@@ -21,11 +21,11 @@ from tester.analysis.terms import Term
 from tester.analysis.wear_check import WearCheck
 from tester.base.axes import Axes
 from tester.base.quantities import Means, Quantities
-from tester.store import older
+from tester.store import schema
 from tester.store.axes import axes_of, setpoint_of
 from tester.store.budget import term_of
 from tester.store.chain import ChainFound, inspect
-from tester.store.channels import channels_before_8, recorded_channels
+from tester.store.channels import recorded_channels
 from tester.store.records import (
     NAN,
     Calibration,
@@ -48,7 +48,7 @@ from tester.store.records import (
     Travel,
 )
 from tester.store.sample_blocks import unpack, unpack_array
-from tester.store.schema import CHAINED, PIECE, NotBegunError, StoreError, migrate, reads_as_present, version_of
+from tester.store.schema import NotBegunError, StoreError
 
 if TYPE_CHECKING:
     from array import array
@@ -93,6 +93,15 @@ def _whole(row: Row, name: str) -> int:
     return int(value) if isinstance(value, int | float) else 0
 
 
+def _flag(row: Row, name: str) -> bool:
+    return bool(row[name])
+
+
+def _whole_or_none(row: Row, name: str) -> int | None:
+    value = row[name]
+    return value if isinstance(value, int) else None
+
+
 def _optional(row: Row, name: str) -> float | None:
     value = row[name]
     return float(value) if isinstance(value, int | float) else None
@@ -101,7 +110,8 @@ def _optional(row: Row, name: str) -> float | None:
 _OF_A_TARE = ("id", "t_s", "kind", "repeat_id")
 """Columns of the table ``tare`` that are no channel's zero."""
 _READERS = {
-    "str": _text, "float": _number, "int": _whole, "float | None": _optional, "str | None": _text_or_none
+    "str": _text, "float": _number, "int": _whole, "bool": _flag,
+    "str | None": _text_or_none, "float | None": _optional, "int | None": _whole_or_none,
 }  # fmt: skip
 
 
@@ -140,8 +150,6 @@ class RunReader:
         """Open the record for reading."""
         self.path = path / DATABASE if path.is_dir() else path
         self._copy: TemporaryDirectory[str] | None = None
-        self.version = 0
-        """The schema of the record as it lies in the folder."""
         self._quantities: Quantities | None = None
         if not self.path.is_file():
             raise StoreError(f"no run in {path}")
@@ -153,12 +161,11 @@ class RunReader:
     def _opened(self) -> sqlite3.Connection:
         connection = _read_only(self.path)
         try:
-            version = version_of(connection)
+            version = schema.version_of(connection)
         except StoreError as error:
             connection.close()
             raise StoreError(f"{self.path}: {error}") from error
-        self.version = version
-        if reads_as_present(connection, version):
+        if version == schema.VERSION:
             return connection
         if version == 0:
             connection.close()
@@ -167,7 +174,7 @@ class RunReader:
         self._copy = TemporaryDirectory(prefix="tester-", ignore_cleanup_errors=True)
         with closing(connection), closing(sqlite3.connect(Path(self._copy.name) / DATABASE)) as present:
             connection.backup(present)
-            migrate(present)
+            schema.migrate(present)
         return _read_only(Path(self._copy.name) / DATABASE)
 
     def __enter__(self) -> RunReader:
@@ -190,9 +197,11 @@ class RunReader:
         """Return the record's own channels; raises StoreError."""
         if self._quantities is None:
             try:
-                self._quantities = recorded_channels(self._connection) or channels_before_8()
+                self._quantities = recorded_channels(self._connection)
             except (sqlite3.Error, ValueError) as error:
                 raise StoreError(f"{self.path} cannot be read: {error}") from error
+            if self._quantities is None:
+                raise NotBegunError(f"{self.path}: the run was not begun")
         return self._quantities
 
     def _rows(self, sql: str, values: tuple[Cell, ...] = ()) -> Iterator[Row]:
@@ -205,17 +214,12 @@ class RunReader:
     def run(self) -> StoredRun:
         """Return the run; raises StoreError if nothing was recorded of it."""
         for row in self._rows("SELECT * FROM run"):
-            seed = row["seed"]
             info = _record(
                 RunInfo,
                 row,
-                simulated=bool(row["simulated"]),
-                seed=seed if isinstance(seed, int) else None,
                 calibration=tuple(self.calibration()),
                 axes=self.axes(),
-                kind=_text(row, "kind") or older.KIND,
-                worn=_text(row, "worn") or PIECE,
-                terms=self.terms(_text(row, "kind") or older.KIND),
+                terms=self.terms(),
                 known=tuple(_record(KnownSlope, one) for one in self._rows("SELECT * FROM known_slope")),
                 metadata=self._texts("metadata", "key", "value"),
                 versions=self._texts("version", "component", "version"),
@@ -235,15 +239,14 @@ class RunReader:
 
     def axes(self) -> Axes:
         """Return the axes of the run's conditions."""
-        return axes_of(list(self._rows("SELECT * FROM axis ORDER BY position")))
+        return axes_of(self._rows("SELECT * FROM axis ORDER BY position"))
 
-    def terms(self, kind: str) -> tuple[Term, ...]:
-        """Return what the machine's measuring chain may be off by; of a record that does not say, its kind's."""
+    def terms(self) -> tuple[Term, ...]:
+        """Return what the machine's measuring chain may be off by."""
         try:
-            found = tuple(map(term_of, self._rows("SELECT * FROM budget_term ORDER BY position")))
+            return tuple(map(term_of, self._rows("SELECT * FROM budget_term ORDER BY position")))
         except (TypeError, ValueError) as error:
             raise StoreError(f"{self.path}: the terms of its budget cannot be read: {error}") from error
-        return found or (older.TERMS if kind == older.KIND else ())
 
     def warming(self) -> dict[int, float]:
         """Return how fast the surface warmed in the contacts of each repeat, K/s, by the repeat's key."""
@@ -261,8 +264,8 @@ class RunReader:
     def slid(self) -> dict[int, list[float]]:
         """Return how far each piece had slid as its repeats began and as its state was stored last, m, in order."""
         found: dict[int, list[float]] = {}
-        for row in self._rows(f"SELECT {PIECE}, piece_m FROM travel WHERE piece_m IS NOT NULL ORDER BY piece_m"):
-            found.setdefault(_whole(row, PIECE), []).append(_number(row, "piece_m"))
+        for row in self._rows("SELECT piece, piece_m FROM travel WHERE piece_m IS NOT NULL ORDER BY piece_m"):
+            found.setdefault(_whole(row, "piece"), []).append(_number(row, "piece_m"))
         return found
 
     def counterface_m(self) -> float:
@@ -280,13 +283,11 @@ class RunReader:
 
     def pieces(self) -> list[PieceInfo]:
         """Return what was mounted to be measured, with its last known wear."""
-        rows = self._rows(f"SELECT * FROM {PIECE} ORDER BY {PIECE}")
-        return [_record(PieceInfo, row, piece=_whole(row, PIECE)) for row in rows]
+        return [_record(PieceInfo, row) for row in self._rows("SELECT * FROM piece ORDER BY piece")]
 
     def wear_checks(self) -> list[WearCheck]:
         """Return the checks of diameters in the order in which they were made."""
-        rows = self._rows("SELECT * FROM wear_check ORDER BY id")
-        return [_record(WearCheck, row, piece=_whole(row, PIECE)) for row in rows]
+        return [_record(WearCheck, row) for row in self._rows("SELECT * FROM wear_check ORDER BY id")]
 
     def soaks(self) -> dict[int, SoakCheck]:
         """Return what thermometer and heater's sensor showed at the end of the last soak of each condition."""
@@ -300,8 +301,7 @@ class RunReader:
         for row in self._rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
             status = ConditionStatus(_text(row, "status"))
             left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
-            both = bool(row.get("both_directions"))
-            info = _record(ConditionInfo, row, setpoint=setpoint_of(row, axes), both_directions=both)
+            info = _record(ConditionInfo, row, setpoint=setpoint_of(row, axes))
             judged = _record(Judgement, row)
             found.append(_record(StoredCondition, row, info=info, status=left, judged=judged))
         return found
@@ -320,7 +320,7 @@ class RunReader:
                 continue
             means = Means(channels, [_number(row, one.name) for one in channels.averaged])
             result = _record(RepeatResult, row, status=status, means=means)
-            stored = _record(StoredRepeat, row, key=_whole(row, "id"), piece=_whole(row, PIECE), result=result)
+            stored = _record(StoredRepeat, row, key=_whole(row, "id"), result=result)
             key = (stored.condition, stored.repeat, stored.attempt if attempts else 0)
             found[key] = stored
         return list(found.values())
@@ -396,16 +396,12 @@ class RunReader:
             yield _text(row, "counter"), _number(row, "value")
 
     def record_head(self) -> str:
-        """Return the last head of the record's chain, hexadecimal; "" where an older version recorded without one."""
-        if self.version < CHAINED:
-            return ""
+        """Return the last head of the record's chain, hexadecimal."""
         last = self._rows("SELECT lower(hex(head)) AS head FROM chain ORDER BY seq DESC LIMIT 1")
         return next((_text(row, "head") for row in last), "")
 
-    def chain(self) -> ChainFound | None:
-        """Hold every row against the record's chain; None where an older version recorded without one."""
-        if self.version < CHAINED:
-            return None
+    def chain(self) -> ChainFound:
+        """Compare every row with the record's chain."""
         factory, self._connection.row_factory = self._connection.row_factory, None
         try:
             return inspect(self._connection)

@@ -26,7 +26,6 @@ from tester.store.records import (
     StoredMaterial,
     Travel,
 )
-from tester.store.schema import PIECE
 from tester.store.statements import (
     Batch,
     Judged,
@@ -46,11 +45,10 @@ URGENT_SEVERITIES = frozenset({"alarm", "trip"})
 
 _RESULT_FIELDS = tuple(field.name for field in fields(RepeatResult) if field.name != "means")
 _BURST_FIELDS = tuple(field.name for field in fields(Burst))
-_CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo)
-                          if field.name not in ("setpoint", "both_directions"))  # fmt: skip
-_PIECE_FIELDS = tuple(field.name for field in fields(PieceInfo) if field.name != "piece")
+_CONDITION_FIELDS = tuple(field.name for field in fields(ConditionInfo) if field.name != "setpoint")
+_PIECE_FIELDS = tuple(field.name for field in fields(PieceInfo))
 _SOAK_FIELDS = tuple(field.name for field in fields(SoakCheck))
-_CHECK_FIELDS = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
+_CHECK_FIELDS = tuple(field.name for field in fields(WearCheck))
 _SESSION_FIELDS = tuple(field.name for field in fields(SessionInfo))
 _MATERIAL_FIELDS = tuple(field.name for field in fields(StoredMaterial))
 _CHANGE_FIELDS = tuple(field.name for field in fields(Change))
@@ -103,8 +101,8 @@ class Recorder:
         run: dict[str, Value] = {
             "id": 1,
             "name": info.name,
-            "kind": info.kind or None,
-            "worn": info.worn or None,
+            "kind": info.kind,
+            "worn": info.worn,
             "recipe_name": info.recipe_name,
             "recipe_text": info.recipe_text,
             "recipe_sha256": text_sha256(info.recipe_text),
@@ -127,7 +125,7 @@ class Recorder:
         for specimen in specimens:
             columns = columns_in(specimen, ("specimen", "compound", "note"))
             statements.append(insert("specimen", columns))
-        statements += axis_rows(info.axes) if info.axes is not None else ()
+        statements += axis_rows(info.axes)
         statements += [_to_come(condition) for condition in conditions]
         statements += calibration_rows(info.calibration, 1)
         statements += budget_rows(info.terms, info.known)
@@ -201,31 +199,31 @@ class Recorder:
     def piece_mounted(self, piece: PieceInfo) -> None:
         """Record that something was mounted to be measured."""
         times = {name: getattr(piece, name) + self.origin_s for name in ("installed_s", "updated_s", "ground_s")}
-        columns = {PIECE: piece.piece} | columns_in(piece, _PIECE_FIELDS) | times
-        self._write(insert(PIECE, columns, "INSERT OR REPLACE"), urgent=True)
+        columns = columns_in(piece, _PIECE_FIELDS) | times
+        self._write(insert("piece", columns, "INSERT OR REPLACE"), urgent=True)
 
     def piece_state(self, piece: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
         """Record its present diameter and the distance it has slid since it was new, for a resumed run."""
-        sql = f"UPDATE {PIECE} SET diameter_mm = ?, sliding_m = ?, updated_s = ? WHERE {PIECE} = ?"
+        sql = "UPDATE piece SET diameter_mm = ?, sliding_m = ?, updated_s = ? WHERE piece = ?"
         self._write((sql, (diameter_mm, sliding_m, t_s + self.origin_s, piece)))
 
     def piece_ground(self, piece: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
         """Record that it has been ground in: a resumed run does not do it again."""
         at_s = t_s + self.origin_s
-        sql = f"UPDATE {PIECE} SET diameter_mm = ?, sliding_m = ?, updated_s = ?, ground_s = ? WHERE {PIECE} = ?"
+        sql = "UPDATE piece SET diameter_mm = ?, sliding_m = ?, updated_s = ?, ground_s = ? WHERE piece = ?"
         self._write((sql, (diameter_mm, sliding_m, at_s, at_s, piece)), urgent=True)
 
     def travelled(self, piece: int, travel: Travel, repeat_key: int = 0) -> None:
         """Record how far counterface and piece have come: as a repeat begins, or (0) for a resumed run."""
-        first = {PIECE: piece, "repeat_id": repeat_key}
+        first: dict[str, Value] = {"piece": piece, "repeat_id": repeat_key}
         values = (travel.counterface_m, travel.piece_m, piece, repeat_key)
-        sql = f"UPDATE travel SET counterface_m = ?, piece_m = ? WHERE {PIECE} = ? AND repeat_id = ?"
+        sql = "UPDATE travel SET counterface_m = ?, piece_m = ? WHERE piece = ? AND repeat_id = ?"
         self._write(insert("travel", first, "INSERT OR IGNORE"), (sql, values))
 
     def wear_check(self, check: WearCheck) -> None:
         """Record a check of a diameter."""
         times = {name: getattr(check, name) + self.origin_s for name in ("t_s", "reference_s")}
-        self._write(insert("wear_check", {PIECE: check.piece} | columns_in(check, _CHECK_FIELDS) | times), urgent=True)
+        self._write(insert("wear_check", columns_in(check, _CHECK_FIELDS) | times), urgent=True)
 
     # Conditions and repeats
 
@@ -271,7 +269,7 @@ class Recorder:
             "condition": condition,
             "repeat": repeat,
             "attempt": attempt,
-            PIECE: piece,
+            "piece": piece,
             "begun_s": t_s + self.origin_s,
             "status": RepeatStatus.OPEN.value,
         }
@@ -371,8 +369,6 @@ class Recorder:
 def _to_come(condition: ConditionInfo) -> Statement:
     """Return the INSERT of a condition that nothing is measured of yet."""
     columns = columns_in(condition, _CONDITION_FIELDS) | setpoint_columns(condition.setpoint)
-    if condition.both_directions:
-        columns["both_directions"] = 1
     return insert("condition", columns | {"status": ConditionStatus.PENDING.value})
 
 

@@ -174,12 +174,12 @@ class RunInfo:
     rig_text: str
     started_utc: str
     simulated: bool
-    kind: str = ""
+    kind: str
     """Of the rig: the name under which its package is found."""
+    axes: Axes
+    """Of the conditions."""
     worn: str = ""
     """What people call the part of the machine that wears and is measured on."""
-    axes: Axes | None = None
-    """Of the conditions; None where a record has none."""
     seed: int | None = None
     software_version: str = ""
     git_revision: str = ""

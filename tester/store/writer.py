@@ -29,7 +29,7 @@ from tester.analysis.results import Burst, RepeatResult
 from tester.base.quantities import KEY, TIME, Quantities
 from tester.base.trouble import in_words
 from tester.store.chain import Chain
-from tester.store.channels import channel_statements, make_columns, recorded_channels
+from tester.store.channels import add_channels, recorded_channels
 from tester.store.files import sync_folder
 from tester.store.recorder import NullRecorder, Recorder, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
@@ -103,13 +103,11 @@ def _open(path: Path, quantities: Quantities) -> tuple[sqlite3.Connection, Chain
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
         migrate(connection)
-        make_columns(connection, quantities)
         chain = Chain(connection)
         recorded = recorded_channels(connection)
         if recorded is None:
             connection.execute("BEGIN IMMEDIATE")
-            for sql, values in channel_statements(quantities):
-                connection.execute(sql, values)
+            add_channels(connection, quantities)
             chain.seal()
             connection.execute("COMMIT")
         elif (recorded.names, _averaged(recorded)) != (quantities.names, _averaged(quantities)):

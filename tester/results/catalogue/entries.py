@@ -12,13 +12,12 @@ from typing import Protocol
 from tester.base.as_json import finite
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
 from tester.results.run_results import Measured, results_of
-from tester.store import older
 from tester.store.catalogue import run_folders, under_way
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 from tester.store.status import RunStatus
 
-_MADE_BY = "5"
+_MADE_BY = "1"
 """Raised when the same record gives other entries than before: then all are made anew."""
 
 
@@ -56,11 +55,11 @@ class RunEntry:
     kind: str = ""
     """Of the rig."""
     axes: str = ""
-    """Of the run's conditions, as JSON (``Axes.as_data``); "" of a run of which an older version wrote."""
+    """Of the run's conditions, as JSON (``Axes.as_data``); "" of a run that cannot be read."""
 
     def table(self) -> Axes:
-        """Return the axes of the run's conditions."""
-        return axes_from(json.loads(self.axes)) if self.axes else older.AXES
+        """Return the axes of the run's conditions; raises ValueError for a run that cannot be read."""
+        return axes_from(json.loads(self.axes))
 
 
 @dataclass(frozen=True, slots=True)

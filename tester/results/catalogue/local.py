@@ -13,7 +13,7 @@ from tester.results.catalogue.entries import CatalogueError, ConditionEntry, Run
 
 INDEX = ".catalogue.db"
 
-_VERSION = 3
+_VERSION = 1
 
 _RUN = tuple(field.name for field in fields(RunEntry))
 _CONDITION = tuple(field.name for field in fields(ConditionEntry))

@@ -6,14 +6,12 @@ those of others stay as they are.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from dataclasses import asdict, fields
 from typing import Any
 
 from tester.base.extras import needs
 from tester.results.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, WantedRuns
-from tester.store import older
 
 try:
     import sqlalchemy as sa
@@ -58,7 +56,7 @@ class SharedCatalogue:
         try:
             self._engine = sa.create_engine(_with_driver(url))
             with self._engine.begin() as connection:
-                _migrate(connection)
+                _make_tables(connection)
         except ImportError as error:  # the database's driver
             raise CatalogueError(f"{needs('this shared catalogue', 'a driver', 'catalogue')} ({error})") from error
         except SQLAlchemyError as error:
@@ -124,37 +122,18 @@ class SharedCatalogue:
             connection.execute(table.delete().where(table.c.origin == origin, table.c.name == name))
 
 
-_AT_ONCE = 10_000
-"""Rows of an older table that are held in memory at once."""
-
-
-def _migrate(connection: sa.Connection) -> None:
-    """Make the tables; those that an earlier version made are brought to the present form, with every row."""
-    there = sa.inspect(connection)
-    if not there.has_table(CONDITION.name):
-        _METADATA.create_all(connection)
-        return
-    found = {column["name"] for column in there.get_columns(CONDITION.name)}
-    if "held" in found:
-        return
-    if "flags" not in found:
-        connection.execute(sa.text(f"ALTER TABLE {CONDITION.name} ADD COLUMN flags TEXT NOT NULL DEFAULT ''"))
-    for name, default in (("kind", older.KIND), ("axes", "")):
-        connection.execute(sa.text(f"ALTER TABLE {RUN.name} ADD COLUMN {name} TEXT NOT NULL DEFAULT '{default}'"))
-    before = f"{CONDITION.name}_before"
-    connection.execute(sa.text(f"CREATE TABLE {before} AS SELECT * FROM {CONDITION.name}"))
-    connection.execute(sa.text(f"DROP TABLE {CONDITION.name}"))
-    CONDITION.create(connection)
-    rows = connection.execute(sa.text(f"SELECT * FROM {before}")).mappings()
-    while some := rows.fetchmany(_AT_ONCE):
-        connection.execute(CONDITION.insert(), [_as_now(dict(row)) for row in some])
-    connection.execute(sa.text(f"DROP TABLE {before}"))
-
-
-def _as_now(row: dict[str, Any]) -> dict[str, Any]:
-    """Return a row of an older table as it is now."""
-    held = {axis.column: row.pop(axis.column) for axis in older.AXES}
-    return row | {"held": json.dumps(held)}
+def _make_tables(connection: sa.Connection) -> None:
+    """Make the tables that are not there yet; raises CatalogueError for tables of another version."""
+    _METADATA.create_all(connection)
+    present = sa.inspect(connection)
+    for table in (RUN, CONDITION):
+        columns = {column["name"] for column in present.get_columns(table.name)}
+        if columns != set(table.c.keys()):
+            raise CatalogueError(
+                f"the shared catalogue was made by another version of friction-tester: its table {table.name} has "
+                f"other columns ({', '.join(sorted(columns ^ set(table.c.keys())))}). Drop the tables {RUN.name} and "
+                f"{CONDITION.name}: they are made again from the runs"
+            )
 
 
 def _with_driver(url: str) -> str:

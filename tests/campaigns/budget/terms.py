@@ -14,7 +14,7 @@ from tests.campaigns.budget.mutant import ROOT, SIGNED, SIZES, Mutant, scaled, t
 _WHEEL_TESTS = tests_of("analysis/terms", "analysis/kelvin")
 _TRACK_TESTS = tests_of("kinds/specimen_on_track/track_budget")
 KINDS: Final = (
-    ("wheel", "tester/store/older.py", WHEEL, _WHEEL_TESTS),
+    ("wheel", "tester/kinds/wheel_on_belt/budget.py", WHEEL, _WHEEL_TESTS),
     ("track", "tester/kinds/specimen_on_track/budget.py", TRACK, _TRACK_TESTS),
 )
 """Each kind's name, the file of its terms, the terms, and who is to notice."""

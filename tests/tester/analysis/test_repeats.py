@@ -61,12 +61,12 @@ def test_mean_scatter_and_interval_of_valid_repeats() -> None:
 
 
 def test_a_repeat_that_is_not_valid_is_left_out_with_its_reason() -> None:
-    result = combine(*FIVE[:4], repeat(0.9, status=RepeatStatus.NOT_STABILISED, reason="drift +4 %"))
+    result = combine(*FIVE[:4], repeat(0.9, status=RepeatStatus.REFUSED, reason="drift +4 %"))
     assert result.ok
     assert result.n_valid == 4
     assert result.mu_resultant == pytest.approx(0.705)
     (excluded,) = result.excluded
-    assert (excluded.position, excluded.reason) == (4, "not stabilised: drift +4 %")
+    assert (excluded.position, excluded.reason) == (4, "refused: drift +4 %")
 
 
 def test_no_valid_repeat_is_insufficient_and_names_each() -> None:

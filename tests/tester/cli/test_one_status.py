@@ -18,7 +18,7 @@ from tester.service.preflight import past_of
 from tester.tui.stored import read
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, record
 
-MISSING = RepeatStatus.NOT_STABILISED
+MISSING = RepeatStatus.TOO_FEW
 
 
 @pytest.fixture

@@ -105,7 +105,7 @@ def test_a_repeat_without_a_whole_turn_has_no_value(door: Door) -> None:
 def test_the_wheel_s_state_is_stored_with_every_repeat(door: Door) -> None:
     door.bench.ctx.wheel.loss_mm = 0.25
     door.repeat(1, Ending.COMPLETE)
-    (values,) = door.bench.notes.written("UPDATE wheel")
+    (values,) = door.bench.notes.written("UPDATE piece")
     assert values[0] == pytest.approx(89.75)
 
 

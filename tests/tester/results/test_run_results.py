@@ -72,10 +72,10 @@ def test_a_repeat_that_is_left_out_says_why(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, repeats=4)])
     record(writer, 1, [0.70, 0.71, 0.72])
-    writer.commit_repeat(writer.begin_repeat(1, 4, 1), result(0.9, RepeatStatus.NOT_STABILISED, "drift +4 %"))
+    writer.commit_repeat(writer.begin_repeat(1, 4, 1), result(0.9, RepeatStatus.REFUSED, "drift +4 %"))
     writer.close()
     (measured,) = results(tmp_path).conditions()
-    assert [measured.exclusion(repeat) for repeat in measured.repeats] == ["", "", "", "not stabilised: drift +4 %"]
+    assert [measured.exclusion(repeat) for repeat in measured.repeats] == ["", "", "", "refused: drift +4 %"]
 
 
 def test_a_setting_of_the_budget_that_is_no_number_is_refused(tmp_path: Path) -> None:

@@ -101,10 +101,10 @@ def test_a_repeat_that_is_left_out_shows_it(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(RUN, SPECIMENS, [CONDITION])
     record(writer, 1, [0.7, 0.7])
-    writer.commit_repeat(writer.begin_repeat(1, 3, 1), result(0.9, RepeatStatus.NOT_STABILISED, "drift +4 %"))
+    writer.commit_repeat(writer.begin_repeat(1, 3, 1), result(0.9, RepeatStatus.REFUSED, "drift +4 %"))
     writer.close()
     line = tables(tmp_path)[2][2]
-    assert (line["in_mean"], line["exclusion"]) == ("0", "not stabilised: drift +4 %")
+    assert (line["in_mean"], line["exclusion"]) == ("0", "refused: drift +4 %")
 
 
 def test_replicates_have_a_row_each_and_a_combined_one(tmp_path: Path) -> None:

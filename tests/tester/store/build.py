@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -192,30 +191,3 @@ def lacking_run(folder: Path) -> Path:
     writer.finish("done", rig_seconds=2700.5)
     writer.close()
     return folder
-
-
-def without_channels(database: sqlite3.Connection) -> None:
-    """Make a record one of version 7: its samples' columns have names, and it says no more of channels and axes."""
-    database.execute("INSERT INTO sample_column SELECT position, name FROM channel WHERE source <> ''")
-    database.execute("DROP TABLE channel")
-    database.execute("DROP TABLE axis")
-    database.execute("DROP TABLE budget_term")
-    database.execute("DROP TABLE known_slope")
-    database.execute("DROP TABLE truth")
-    database.execute("DROP TABLE travel")
-    database.execute("DROP TABLE material")
-    for column in ("kind", "worn"):
-        database.execute(f"ALTER TABLE run DROP COLUMN {column}")
-    database.execute("ALTER TABLE condition DROP COLUMN both_directions")
-    without_looks(database)
-    if database.execute("SELECT 1 FROM sqlite_master WHERE name = 'wear_check'").fetchone():  # not of version 4
-        database.execute("ALTER TABLE wear_check DROP COLUMN expected_mm")
-    database.execute("PRAGMA user_version = 7")
-
-
-def without_looks(database: sqlite3.Connection) -> None:
-    """Make a record one of version 13: it does not say how friction changed and swung within a repeat, nor what the
-    thermometer showed after a soak."""
-    database.execute("DROP TABLE soak")
-    for column in ("change_percent", "swing_percent", "swing_hz", "swing_skewness"):
-        database.execute(f"ALTER TABLE repeat DROP COLUMN {column}")

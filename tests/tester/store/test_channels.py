@@ -17,7 +17,7 @@ from tester.base import clock
 from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.recomputed import coefficient_problems
-from tester.store.channels import channel_rows, channels_before_8, quantities_of
+from tester.store.channels import channel_rows, quantities_of
 from tester.store.merge import Merge
 from tester.store.reader import RunReader
 from tester.store.resume import resume_point
@@ -98,7 +98,7 @@ def test_the_means_of_a_channel_are_verified_by_its_samples(tmp_path: Path) -> N
     with RunReader(tmp_path) as reader:
         assert coefficient_problems(reader) == (1, [])
         chain = reader.chain()
-    assert chain is not None and chain.problems == ()
+    assert chain.problems == ()
 
 
 def test_parts_with_a_channel_more_are_put_together(tmp_path: Path) -> None:
@@ -121,12 +121,6 @@ def test_a_table_comes_back_as_it_was() -> None:
     for one in (TRACK, QUANTITIES):
         found = quantities_of(channel_rows(one))
         assert (found.channels, found.roles) == (one.channels, one.roles)
-
-
-def test_what_older_records_had_is_kept() -> None:
-    found = channels_before_8()
-    assert (len(found.names), found.names[0], found.names[-1]) == (21, TIME, KEY)
-    assert [one.name for one in found.averaged][:3] == ["force_x_n", "force_y_n", "force_z_n"]
 
 
 def test_a_tare_is_kept_by_the_names_of_its_channels(tmp_path: Path) -> None:

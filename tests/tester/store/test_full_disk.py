@@ -68,7 +68,7 @@ def ended(folder: Path) -> tuple[str, str, int, int]:
     """Return status, reason, committed repeats and samples."""
     with RunReader(folder) as reader:
         run, rows = reader.run(), sum(block.rows for block in reader.sample_blocks())
-        assert reader.chain() is not None and reader.chain().problems == ()  # type: ignore[union-attr]
+        assert reader.chain().problems == ()
         return run.status, run.reason, len(reader.repeats()), rows
 
 

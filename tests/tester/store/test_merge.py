@@ -149,7 +149,7 @@ def test_the_journal_goes_on(merged: RunReader) -> None:
 
 def test_wheels_trips_prompts_tares_and_devices_of_all_parts_are_there(run: Path) -> None:
     merge(run)
-    assert rows(run, "SELECT wheel, installed_s, updated_s FROM wheel") == [
+    assert rows(run, "SELECT piece, installed_s, updated_s FROM piece") == [
         (1, 2.0, 20.0),
         (2, FIRST_S + 2.0, FIRST_S + 20.0),
     ]
@@ -174,7 +174,7 @@ def test_merging_again_changes_nothing_and_the_chain_tells_it(run: Path) -> None
     assert rows(run, "SELECT count(*) FROM chain")[0][0] > entries
     with RunReader(run) as reader:
         chain = reader.chain()
-    assert chain is not None and chain.problems == ()
+    assert chain.problems == ()
 
 
 def test_a_part_that_cannot_be_read_leaves_the_parts_before_it(run: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 import sys
-from dataclasses import fields, replace
+from dataclasses import replace
 from hashlib import sha256
 from math import isnan
 from pathlib import Path
@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tester.analysis.results import ConditionStatus, Judgement, RepeatStatus
+from tester.analysis.results import ConditionStatus, RepeatStatus
 from tester.base.extras import MissingExtraError
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.reader import RunReader
@@ -28,7 +28,6 @@ from tests.tester.store.build import (
     result,
     row,
     small_run,
-    without_channels,
 )
 
 
@@ -238,83 +237,6 @@ def test_reading_does_not_change_the_file(folder: Path) -> None:
 def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "a run? 100% #1")) as reader:
         assert reader.run().status == "done"
-
-
-def without_judgements(database: sqlite3.Connection) -> None:
-    """Take out of a record what version 4 has added, and what versions 7 and 8 have."""
-    without_channels(database)
-    for column in ("unit", "acknowledged_utc"):
-        database.execute(f"ALTER TABLE trip DROP COLUMN {column}")
-    for column in ("at_most", "until_percent", *(field.name for field in fields(Judgement))):
-        database.execute(f"ALTER TABLE condition DROP COLUMN {column}")
-
-
-def test_a_record_of_an_older_schema_is_read_and_left_as_it_is(tmp_path: Path) -> None:
-    folder = small_run(tmp_path / "run")
-    with sqlite3.connect(folder / "run.db") as database:
-        for table in ("session", "change", "calibration", "exclusion", "wear_check", "chain"):
-            database.execute(f"DROP TABLE {table}")
-        for table, column in (
-            ("wheel", "ground_s"),
-            ("run", "recipe_source"),
-            ("run", "rig_source"),
-            ("run", "calibration_sha256"),
-        ):
-            database.execute(f"ALTER TABLE {table} DROP COLUMN {column}")
-        without_judgements(database)
-        database.execute("PRAGMA user_version = 1")
-    database.close()
-    before = (folder / "run.db").read_bytes()
-    with RunReader(folder) as reader:
-        assert len(reader.repeats()) == 6 and reader.sessions() == [] and reader.run().status == "done"
-    assert (folder / "run.db").read_bytes() == before
-
-
-def test_a_record_without_exclusions_is_read_in_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = small_run(tmp_path / "run")
-    with sqlite3.connect(folder / "run.db") as database:
-        database.execute("DROP TABLE exclusion")
-        database.execute("DROP TABLE wear_check")
-        database.execute("DROP TABLE chain")
-        without_judgements(database)
-        database.execute("PRAGMA user_version = 2")
-    database.close()
-    before = (folder / "run.db").read_bytes()
-    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
-    with RunReader(folder) as reader:
-        assert reader.exclusions() == [] and len(reader.repeats()) == 6
-    assert (folder / "run.db").read_bytes() == before
-
-
-def test_a_record_without_judgements_is_read_in_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = small_run(tmp_path / "run")
-    with sqlite3.connect(folder / "run.db") as database:
-        without_judgements(database)
-        database.execute("PRAGMA user_version = 3")
-    database.close()
-    before = (folder / "run.db").read_bytes()
-    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
-    with RunReader(folder) as reader:
-        (first, _) = reader.conditions()
-    assert (first.info.at_most, first.info.until_percent) == (2 * first.info.repeats, None)
-    assert isnan(first.judged.drift_percent) and first.judged.flags == ""
-    assert (folder / "run.db").read_bytes() == before
-
-
-def test_a_record_without_channels_has_those_that_all_had_then(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = small_run(tmp_path / "run")
-    with RunReader(folder) as reader:
-        measured, samples = reader.repeats()[0].result.means, reader.samples(1, 2)
-    with sqlite3.connect(folder / "run.db") as database:
-        without_channels(database)
-    database.close()
-    before = (folder / "run.db").read_bytes()
-    monkeypatch.delattr("tester.store.reader.TemporaryDirectory")  # no copy of it is made
-    with RunReader(folder) as reader:
-        assert reader.quantities().names == tuple(samples)
-        assert reader.repeats()[0].result.means == measured
-        assert all((reader.samples(1, 2)[name] == column).all() for name, column in samples.items())
-    assert (folder / "run.db").read_bytes() == before
 
 
 def test_a_record_says_its_own_channels(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from tester.store.reader import RunReader
 from tester.store.recorder import NullRecorder, Recorder
 from tester.store.records import PieceInfo, SessionInfo
 from tester.store.sample_blocks import BLOCK_ROWS
-from tester.store.schema import VERSION, StoreError
+from tester.store.schema import StoreError
 from tester.store.writer import LOSSLESS_LIMIT, RunWriter
 from tests.tester.store.build import (
     BURSTS,
@@ -31,7 +31,6 @@ from tests.tester.store.build import (
     result,
     row,
     small_run,
-    without_channels,
 )
 
 
@@ -325,16 +324,6 @@ def test_a_record_of_other_columns_cannot_be_continued(tmp_path: Path) -> None:
     connection.close()
     with pytest.raises(StoreError, match=r"other channels.*other, slip_m_s"):
         open_writer(tmp_path)
-
-
-def test_a_record_begun_before_channels_were_recorded_goes_on(tmp_path: Path) -> None:
-    small_run(tmp_path)
-    with sqlite3.connect(tmp_path / "run.db") as database:
-        without_channels(database)
-    database.close()
-    open_writer(tmp_path).close()
-    with RunReader(tmp_path) as reader:
-        assert (reader.version, reader.quantities().names) == (VERSION, QUANTITIES.names)
 
 
 def test_a_copy_of_a_writer_records_nothing_and_counts_on(tmp_path: Path) -> None:

@@ -9,15 +9,12 @@ import sqlite3
 import subprocess
 from collections.abc import Iterator
 from contextlib import closing
-from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
-from tester.base.axes import condition_words
 from tester.results.catalogue import open_catalogue
-from tester.results.catalogue.entries import Catalogue, CatalogueError, RunEntry, WantedRuns, origin_of, refresh
-from tester.store import older
+from tester.results.catalogue.entries import Catalogue, CatalogueError, WantedRuns, origin_of, refresh
 from tests.tester.store.build import small_run
 
 sqlalchemy = pytest.importorskip("sqlalchemy", reason="the extra `catalogue` is not installed")
@@ -115,36 +112,11 @@ def test_two_laboratories_share_one_postgresql(tmp_path: Path, postgres: str) ->
     catalogue.close()
 
 
-def older_catalogue(path: Path, *, flags: bool) -> None:
-    """Make the tables as version 0.1 did, with a condition of a run in another folder."""
-    newer = {"kind", "axes"}
-    run = [field.name for field in fields(RunEntry) if field.name not in newer]
-    held = {axis.column: value for axis, value in zip(older.AXES, (300.0, 200.0, 10.0, 5.0, 40.0, 0.8), strict=True)}
-    condition = {"origin": "there", "name": "run", "condition": 1, "replicate": 1, "compound": "1#", **held,
-                 "status": "ok", "mu": 0.7, "s": None, "u_standard": None, "u_expanded": None, "n_valid": 3, "n": 3}
-    if flags:
-        condition["flags"] = "drift not shown"
-    with closing(sqlite3.connect(path)) as database, database:
-        columns = ", ".join(f"{name} TEXT NOT NULL DEFAULT ''" for name in run)
-        database.execute(f"CREATE TABLE friction_run ({columns}, PRIMARY KEY (origin, name))")
-        database.execute("INSERT INTO friction_run (origin, name, started_utc) VALUES ('there', 'run', '2024-01-01')")
-        columns = ", ".join(f"{name} NOT NULL" if name in held else name for name in condition)
-        database.execute(f"CREATE TABLE friction_condition ({columns}, PRIMARY KEY (origin, name, condition))")
-        marks = ", ".join("?" * len(condition))
-        database.execute(f"INSERT INTO friction_condition VALUES ({marks})", tuple(condition.values()))
-
-
-@pytest.mark.parametrize("flags", [False, True])
-def test_rows_of_an_older_shared_catalogue_are_kept(tmp_path: Path, flags: bool) -> None:
-    older_catalogue(tmp_path / "shared.db", flags=flags)
-    for _ in range(2):  # the second time there is nothing to bring up to date
-        catalogue = open_catalogue(tmp_path / "runs", f"sqlite:///{tmp_path / 'shared.db'}")
-        (run,) = catalogue.runs(WantedRuns())
-        (one,) = catalogue.conditions(run)
-        held = one.setpoint(run.table())
-        assert (run.kind, one.mu, one.flags) == ("wheel_on_belt", 0.7, "drift not shown" if flags else "")
-        assert condition_words(held) == "1#, 300 mm/s, 200 N, sideslip 10 deg, camber 5 deg, 40 degC"
-        catalogue.close()
+def test_tables_of_another_version_are_refused_with_the_way_out(tmp_path: Path) -> None:
+    with closing(sqlite3.connect(tmp_path / "shared.db")) as database, database:
+        database.execute("CREATE TABLE friction_run (origin TEXT, name TEXT, weight TEXT)")
+    with pytest.raises(CatalogueError, match=r"another version.*friction_run.*weight.*Drop the tables"):
+        open_catalogue(tmp_path / "runs", f"sqlite:///{tmp_path / 'shared.db'}")
 
 
 def test_a_catalogue_that_is_not_there_says_so(tmp_path: Path) -> None:

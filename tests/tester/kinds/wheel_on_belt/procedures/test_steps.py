@@ -145,7 +145,7 @@ def test_an_unforeseen_wheel_has_a_number_of_its_own() -> None:
     text = LOADS.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n')
     plan = replace(plan_of(text), replace_after_mm=1.2)
     _, bench = walk(plan, Wearing(), worn_mm=0.5)
-    wheels = [values[0] for values in bench.notes.written("INSERT OR REPLACE INTO wheel")]
+    wheels = [values[0] for values in bench.notes.written("INSERT OR REPLACE INTO piece")]
     assert wheels == [1, 3, 2, 4]
 
 

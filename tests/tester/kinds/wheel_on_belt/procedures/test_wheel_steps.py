@@ -80,7 +80,7 @@ def test_a_new_wheel_is_whole_and_its_contact_unknown(bench: Bench) -> None:
 
 def test_an_installed_wheel_is_recorded(bench: Bench) -> None:
     bench.run(InstallWheel(INSTALL, []))
-    (values,) = bench.notes.written("INSERT OR REPLACE INTO wheel")
+    (values,) = bench.notes.written("INSERT OR REPLACE INTO piece")
     assert (values[0], values[1], values[3]) == (3, 2, "2#")
 
 
