@@ -16,7 +16,8 @@ from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from tester.analysis.blocks import resultant
-from tester.cli.main import COMMANDS, invoke
+from tester.cli.command_table import COMMANDS
+from tester.cli.main import invoke
 
 DOCS = Path(__file__).parents[1] / "docs"
 TUTORIAL = DOCS / "tutorial" / "your-first-recipe.md"

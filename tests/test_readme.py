@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tester.cli.main import COMMANDS, invoke
+from tester.cli.command_table import COMMANDS
+from tester.cli.main import invoke
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 

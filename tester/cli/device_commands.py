@@ -1,4 +1,4 @@
-"""`tester sdo` and `tester params`: single objects of a node, and everything that devices are set to."""
+"""`tester bus sdo` and `tester bus params`: single objects of a node, and everything that devices are set to."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def rig_alone(rig: Rig, what: str, seed: int = 0) -> Generator[Wires]:
             wires.close()
 
 
-@click.command("sdo", short_help="Read an object of a CANopen node, or write one.")
+@click.command("sdo")
 @click.argument("node")
 @click.argument("name", metavar="INDEX[:SUB]")
 @rig_option
@@ -72,7 +72,7 @@ def sdo(node: str, name: str, rig_name: str, overrides: tuple[str, ...], value: 
 
     rig = load_rig(rig_name, overrides, "one object, not a run")
     number, key = _node(rig, node), _object(name)
-    with rig_alone(rig, "tester sdo") as wires:
+    with rig_alone(rig, "tester bus sdo") as wires:
         try:
             return _accessed(rig, wires, number, key, value, kind)
         except BusLost as lost:
@@ -214,7 +214,7 @@ def _dump(rig_name: str) -> ParameterDump:
     from tester.kinds import load_rig
 
     rig = load_rig(rig_name, (), "what devices are set to, not a run")
-    with rig_alone(rig, "tester params") as wires:
+    with rig_alone(rig, "tester bus params") as wires:
         found = dumped(Examination(rig, ThisComputer(), wires, everybody=False))
     if not found.devices:
         raise RigBusyError(f"no device of {rig.name} answers: `tester doctor --rig {rig_name}` says why")

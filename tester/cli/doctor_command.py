@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tester.doctor.table import TableEntry
 
 
-@click.command("doctor", short_help="Look at a rig: what is connected, what is wrong, what to do.")
+@click.command("doctor")
 @rig_option
 @set_option
 @seed_option

@@ -1,4 +1,4 @@
-"""`tester eds`: what a drive with this data sheet would be refused for, and what would be done without."""
+"""`tester bus eds`: what a drive with this data sheet would be refused for, and what would be done without."""
 
 from __future__ import annotations
 

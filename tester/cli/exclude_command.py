@@ -1,4 +1,4 @@
-"""``tester exclude`` and ``tester include``: a person's word on a repeat, with a reason, on record."""
+"""``tester results exclude`` and ``tester results include``: a person's word on a repeat, with a reason, on record."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ def _of_a_repeat(command: Decorated) -> Decorated:
     return click.argument("run")(command)
 
 
-@click.command(short_help="Leave a repeat out of a run's means, with a reason.")
+@click.command()
 @_of_a_repeat
 def exclude(run: str, repeat: str, reason: str, operator: str | None) -> None:
     """Leave a repeat of RUN out of its condition's mean, and make the run's tables anew.
 
-    CONDITION/REPEAT as repeats.csv counts them, e.g. 3/2. Nothing is deleted: `tester include` takes it in again.
+    CONDITION/REPEAT as repeats.csv counts them, e.g. 3/2. Nothing is deleted: `tester results include` takes it back.
     """
     _say(run, repeat, reason, operator, excluded=True)
 
 
-@click.command(short_help="Take an excluded repeat into the means again.")
+@click.command()
 @_of_a_repeat
 def include(run: str, repeat: str, reason: str, operator: str | None) -> None:
     """Take a repeat of RUN that was excluded into its condition's mean again, and make the run's tables anew."""

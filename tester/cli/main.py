@@ -1,7 +1,7 @@
 """The `tester` command.
 
-The root group knows each command's module, attribute and one line of help as text, and imports the module only when
-that command is called: `tester --help` loads nothing but click (docs/decisions/0009).
+The root group reads the table of commands (tester.cli.command_table) and imports a command's module only when that
+command is called: `tester --help` loads nothing but click (docs/decisions/0009).
 """
 
 from __future__ import annotations
@@ -9,70 +9,15 @@ from __future__ import annotations
 import io
 import os
 import sys
+from collections.abc import Mapping
 from importlib import import_module
-from typing import NamedTuple
+from typing import Any
 
 import click
 
 from tester import __version__
 from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INTERRUPTED, EXIT_INVALID, EXIT_READER_GONE
-
-
-class CommandEntry(NamedTuple):
-    """Where a command lives and what the root help says of it."""
-
-    module: str
-    attribute: str
-    help: str
-
-
-COMMANDS: dict[str, CommandEntry] = {
-    "check": CommandEntry("tester.cli.recipe_commands", "check", "Validate a recipe; every problem at once."),
-    "plan": CommandEntry("tester.cli.recipe_commands", "plan", "List the steps of a recipe, with their durations."),
-    "run": CommandEntry("tester.cli.run_command", "run", "Run a recipe on a rig, simulated unless told."),
-    "sweep": CommandEntry("tester.cli.sweep_command", "sweep", "Run a recipe for many seeds and rig parameters."),
-    "resume": CommandEntry("tester.cli.resume_command", "resume", "Go on with an interrupted run."),
-    "tui": CommandEntry("tester.cli.tui_command", "tui", "The operator's screen."),
-    "replay": CommandEntry("tester.cli.replay_command", "replay", "The screens over a stored run."),
-    "serve": CommandEntry("tester.cli.service_commands", "serve", "Own the rig and serve its screens and commands."),
-    "status": CommandEntry("tester.cli.service_commands", "status", "Say what the rig is doing."),
-    "hold": CommandEntry("tester.cli.service_commands", "hold", "HOLD: lift and wait, keep the temperature."),
-    "release": CommandEntry("tester.cli.service_commands", "release", "End a HOLD."),
-    "ack": CommandEntry("tester.cli.service_commands", "ack", "Acknowledge alarms; nothing moves by it."),
-    "stop": CommandEntry("tester.cli.service_commands", "stop", "STOP the rig."),
-    "runs": CommandEntry("tester.cli.runs_command", "runs", "List the runs that are stored."),
-    "show": CommandEntry("tester.cli.result_commands", "show", "Show what a run holds."),
-    "exclude": CommandEntry("tester.cli.exclude_command", "exclude", "Leave a repeat out of the means, with a reason."),
-    "include": CommandEntry("tester.cli.exclude_command", "include", "Take an excluded repeat into the means again."),
-    "compare": CommandEntry("tester.cli.compare_command", "compare", "Hold two runs' conditions against each other."),
-    "verify": CommandEntry("tester.cli.verify_command", "verify", "Check that a run is as it was left."),
-    "export": CommandEntry("tester.cli.result_commands", "export", "Write a run's results as a table."),
-    "fit": CommandEntry("tester.cli.fit_command", "fit", "Fit a law of friction to measured conditions."),
-    "paper": CommandEntry("tester.cli.paper_command", "paper", "Hold the papers against their data and the laws."),
-    "components": CommandEntry(
-        "tester.cli.components_command", "components", "Adhesion and hysteresis: dry less wet."
-    ),
-    "master": CommandEntry("tester.cli.master_command", "master", "Put friction on one curve over aT v, if it is one."),
-    "figure": CommandEntry("tester.cli.figure_command", "figure", "Draw a run's results."),
-    "report": CommandEntry("tester.cli.report_command", "report", "Write a run's results as a page to send and print."),
-    "slip-ring": CommandEntry("tester.cli.slip_ring_command", "slip_ring", "Errors of the slip ring, and their trend."),
-    "predict": CommandEntry("tester.cli.predict_command", "predict", "The friction model's value for one condition."),
-    "sim": CommandEntry("tester.cli.sim_command", "sim", "A simulated rig in real time, on CAN and Modbus."),
-    "rig": CommandEntry("tester.cli.rig_commands", "rig", "Write or show a rig file."),
-    "doctor": CommandEntry("tester.cli.doctor_command", "doctor", "Look at a rig: what is wrong, and what to do."),
-    "commission": CommandEntry(
-        "tester.cli.commission_command", "commission", "Guide a new rig to its first trusted coefficient."
-    ),
-    "eds": CommandEntry("tester.cli.eds_command", "eds", "Hold a drive's data sheet against what an axis needs."),
-    "sdo": CommandEntry("tester.cli.device_commands", "sdo", "Read an object of a CANopen node, or write one."),
-    "params": CommandEntry("tester.cli.device_commands", "params", "What devices are set to: dump it, or compare it."),
-    "record": CommandEntry("tester.cli.record_command", "record", "Write down the frames of live wires."),
-    "materials": CommandEntry("tester.cli.materials_commands", "materials", "Compounds and surfaces as files."),
-    "schema": CommandEntry(
-        "tester.cli.recipe_commands", "schema", "Print the JSON Schema of recipes, compounds or surfaces."
-    ),
-}
-"""The commands in the order of the help page. A test holds every entry against the module it names."""
+from tester.cli.command_table import SECTIONS, CommandGroup, Listed
 
 
 class ReaderGoneError(Exception):
@@ -82,16 +27,30 @@ class ReaderGoneError(Exception):
 class LazyGroup(click.Group):
     """A click group whose commands are imported when they are called."""
 
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        sections: Mapping[str, Mapping[str, Listed]] = SECTIONS,
+        **settings: Any,
+    ) -> None:
+        """``sections``: its commands by the headings of its help page; ``settings`` are those of click.Group."""
+        super().__init__(name, **settings)
+        self.sections = sections
+        self.entries = {name: entry for listed in sections.values() for name, entry in listed.items()}
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the command names in the order of the help page."""
-        return list(COMMANDS)
+        return list(self.entries)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import and return one command, None where there is no such name."""
-        entry = COMMANDS.get(cmd_name)
+        """Import and return a command; None if there is no such name."""
+        entry = self.entries.get(cmd_name)
         if entry is None:
             return None
-        command: object = getattr(import_module(entry.module), entry.attribute)
+        if isinstance(entry, CommandGroup):
+            return LazyGroup(cmd_name, sections={"Commands": entry.commands}, help=entry.help)
+        command: object = getattr(import_module(f"tester.cli.{entry.module}"), entry.attribute)
         if not isinstance(command, click.Command):
             raise TypeError(f"{entry.module}.{entry.attribute} is not a click command")
         return command
@@ -99,14 +58,12 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command that is meant; a name that is none is a usage error that names the nearest."""
+        """Return the named command; an unknown name is a usage error that suggests the nearest."""
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as error:
-            from difflib import get_close_matches
-
-            near = get_close_matches(args[0], COMMANDS, 1)
-            meant = f" Did you mean {near[0]}?" if near else ""
+            near = nearest(args[0], self.entries)
+            meant = f" Did you mean {near}?" if near else ""
             raise click.UsageError(f"{error.message}{meant}", ctx) from error
 
     def invoke(self, ctx: click.Context) -> object:
@@ -118,8 +75,24 @@ class LazyGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands' help lines without importing the commands."""
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, entry.help) for name, entry in COMMANDS.items()])
+        widest = max(map(len, self.entries))
+        for title, listed in self.sections.items():
+            with formatter.section(title):
+                formatter.write_dl([(name.ljust(widest), entry.help) for name, entry in listed.items()])
+
+
+def nearest(typed: str, entries: Mapping[str, Listed]) -> str:
+    """Return the command that a mistyped word probably means, also one inside a group; "" if none is near."""
+    from difflib import get_close_matches
+
+    inside = {
+        name: f"{group} {name}"
+        for group, entry in entries.items()
+        if isinstance(entry, CommandGroup)
+        for name in entry.commands
+    }
+    near = get_close_matches(typed, [*entries, *inside], 1)
+    return inside.get(near[0], near[0]) if near else ""
 
 
 @click.group(

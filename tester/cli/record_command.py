@@ -1,4 +1,4 @@
-"""`tester record`: the frames of live wires, as a record that tests replay."""
+"""`tester bus record`: the frames of live wires, as a record that tests replay."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from tester.run.recording import LineTapped
 
 
-@click.command("record", short_help="Write down the frames of live wires.")
+@click.command("record")
 @click.argument("folder", type=click.Path(file_okay=False, path_type=Path))
 @click.option("--can", default="", metavar="INTERFACE:CHANNEL", help="CAN bus to listen to, e.g. socketcan:can0.")
 @click.option("--bitrate", default=500_000, show_default=True, metavar="N", help="Of the CAN bus, bit/s.")

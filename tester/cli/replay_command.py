@@ -8,7 +8,7 @@ from tester.cli.run_lookup import run_folder
 from tester.cli.tui_command import need_terminal
 
 
-@click.command(short_help="The screens over a stored run, with a time slider.")
+@click.command()
 @click.argument("run")
 @click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours.")
 @click.option("--ascii", "plain", is_flag=True, help="Draw with ASCII characters only.")

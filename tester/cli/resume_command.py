@@ -7,7 +7,7 @@ import click
 from tester.cli.options import json_option, risk_option
 
 
-@click.command("resume", short_help="Go on with an interrupted run.")
+@click.command("resume")
 @click.argument("run")
 @click.option("--yes", is_flag=True, help="Answer prompts with yes, but those that ask a person to a real rig.")
 @click.option(

@@ -17,7 +17,7 @@ NOT_DETACHED = {
 """What the service has no command for, or chooses itself."""
 
 
-@click.command("run", short_help="Run a recipe on a rig, simulated unless told.")
+@click.command("run")
 @click.argument("recipe")
 @rig_option
 @set_option

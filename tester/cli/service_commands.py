@@ -33,7 +33,7 @@ def take_option(command: Decorated) -> Decorated:
     return click.option("--take", is_flag=True, help="Take control from the client that has it.")(command)
 
 
-@click.command(short_help="Own the rig and serve its screens and commands.")
+@click.command()
 @rig_option
 @set_option
 @risk_option
@@ -67,7 +67,7 @@ def serve(
     return host(ServiceOptions(rig_name, overrides, Path(out), accept_risk, allowed), address, port, notify)
 
 
-@click.command(short_help="Say what the rig is doing.")
+@click.command()
 @connect_option
 @json_option
 def status(address: str, as_json: bool) -> int:
@@ -89,7 +89,7 @@ def status(address: str, as_json: bool) -> int:
     return 0
 
 
-@click.command(short_help="HOLD: lift and wait, keep the temperature.")
+@click.command()
 @connect_option
 @take_option
 def hold(address: str, take: bool) -> int:
@@ -99,7 +99,7 @@ def hold(address: str, take: bool) -> int:
     return _command(address, Hold(), take)
 
 
-@click.command(short_help="End a HOLD.")
+@click.command()
 @connect_option
 @take_option
 def release(address: str, take: bool) -> int:
@@ -109,7 +109,7 @@ def release(address: str, take: bool) -> int:
     return _command(address, Release(), take)
 
 
-@click.command(short_help="Acknowledge alarms; nothing moves by it.")
+@click.command()
 @connect_option
 @take_option
 def ack(address: str, take: bool) -> int:
@@ -119,7 +119,7 @@ def ack(address: str, take: bool) -> int:
     return _command(address, Acknowledge(), take)
 
 
-@click.command(short_help="STOP the rig.")
+@click.command()
 @connect_option
 @click.option("--fast", is_flag=True, help="Quick stop of both drives instead of a controlled stop.")
 def stop(address: str, fast: bool) -> int:

@@ -7,7 +7,7 @@ import click
 from tester.cli.options import rig_option, risk_option, seed_option, set_option
 
 
-@click.command("sim", short_help="A simulated rig in real time, on CAN and Modbus.")
+@click.command("sim")
 @rig_option
 @set_option
 @risk_option

@@ -1,4 +1,4 @@
-"""`tester slip-ring`: errors of the line through the slip ring against angle, speed and age of the ring."""
+"""`tester results slip-ring`: errors of the line through the slip ring against angle, speed and age of the ring."""
 
 from __future__ import annotations
 

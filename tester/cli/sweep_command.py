@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tester.run.sweep.sweep import SweepOptions
 
 
-@click.command("sweep", short_help="Monte Carlo of a recipe: seeds, rig parameters.")
+@click.command("sweep")
 @click.argument("recipe")
 @rig_option
 @click.option(

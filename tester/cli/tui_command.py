@@ -35,7 +35,7 @@ class SpeedType(click.ParamType[float | None]):
         return speed
 
 
-@click.command(short_help="The operator's screen.")
+@click.command()
 @connect_option
 @rig_option
 @click.option("--speed", type=SpeedType(), default="1", show_default=True, metavar="X",

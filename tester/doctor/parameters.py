@@ -96,7 +96,7 @@ def read_dump(path: Path) -> ParameterDump:
     except DumpError:
         raise
     except (ValueError, LookupError, TypeError, AttributeError) as error:
-        expected = "expected what `tester params dump` writes"
+        expected = "expected what `tester bus params dump` writes"
         raise DumpError(f"{path} is no dump of parameters ({expected}): {error}") from error
 
 

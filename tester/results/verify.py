@@ -119,7 +119,7 @@ def _cut_off(folder: Path, said: list[StoredExclusion]) -> list[str]:
     if not path.is_file() or not is_unfinished(said, path.read_text("utf-8", errors="replace")):
         return []
     last = said[-1]
-    command = f"tester {'exclude' if last.excluded else 'include'} {folder.name} {last.condition}/{last.repeat}"
+    command = f"tester results {'exclude' if last.excluded else 'include'} {folder.name} {last.condition}/{last.repeat}"
     return [f"`{command}` was cut off before the tables were made: the same command again makes them"]
 
 

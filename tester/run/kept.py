@@ -1,6 +1,6 @@
 """What a drive was set up with and this program does not write: read at a run's good end, and kept with the run.
 
-It is what a later look compares with (``tester params compare``). Read once everything stands and the drives are
+It is what a later look compares with (``tester bus params compare``). Read once everything stands and the drives are
 released: it takes no time from the scan, and nothing that was measured depends on it.
 """
 

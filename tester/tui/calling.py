@@ -1,4 +1,4 @@
-"""Commands that the screen has done in a process of their own: `tester export`, `tester exclude`."""
+"""Commands that the screen has done in a process of their own: `tester export`, `tester results exclude`."""
 
 from __future__ import annotations
 

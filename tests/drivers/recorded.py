@@ -1,6 +1,6 @@
 """Records of live wires, replayed to the drivers: ports on which the other side answers as it did then.
 
-A record is a folder as `tester record` and `tester run --bus-log` write it: ``can.log`` (candump) and
+A record is a folder as `tester bus record` and `tester run --bus-log` write it: ``can.log`` (candump) and
 ``modbus-NAME.log``. Requests (SDO, Modbus) are answered when they are made again, after the time that the answer took
 then; a request that the record does not have is noted in ``unknown`` and stays without an answer. Everything else comes
 at the times of the record.

@@ -57,7 +57,7 @@ class ExcludeDialog(Dialog):
 
     async def _record(self, host: HostApp, target: str, reason: str, who: str) -> None:
         arguments = (f"--reason={reason}", f"--operator={who}", "--", str(self.stored.folder), target)
-        done, words = await call(self.verb, *arguments)
+        done, words = await call("results", self.verb, *arguments)
         host.say(words if done else f"not done: {words}", problem=not done, lasting=True)
         if done:
             self.done()

@@ -249,7 +249,7 @@ def _track(lab: Laboratory) -> Made:
 def _leave_out(lab: Laboratory, made: Made) -> Made:
     """Leave a repeat of the first condition out by hand."""
     target = f"1/{lab.random.randint(1, 3)}"
-    done = lab.tester("exclude", str(made.folder), target, "--reason", "agreement; a, b", "--operator", "campaign")
+    done = lab.tester("results", "exclude", str(made.folder), target, "--reason", "a; b, c", "--operator", "campaign")
     if done.returncode:
         raise RunError(f"exclude {target}: {done.stderr}")
     return replace(made, printed="")

@@ -1,4 +1,4 @@
-"""``tester exclude`` and ``tester include``: what is said, and what comes of it."""
+"""``tester results exclude`` and ``tester results include``: what is said, and what comes of it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def said(*arguments: str) -> int:
-    return invoke([*arguments, "--operator", "ada [b]"])
+    return invoke(["results", *arguments, "--operator", "ada [b]"])
 
 
 def test_it_says_what_the_condition_has_become(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -62,5 +62,5 @@ def test_show_as_json_has_the_words_and_the_repeats_exclusion(home: Path, capsys
 def test_what_is_wrong_is_said(
     arguments: tuple[str, ...], code: int, message: str, home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert invoke(list(arguments)) == code
+    assert invoke(["results", *arguments]) == code
     assert message in capsys.readouterr().err

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import io
+import re
 import sys
 
 import click
 import pytest
 
 from tester.cli import main as cli
-from tester.cli.main import COMMANDS, invoke, root
+from tester.cli.command_table import COMMANDS, SECTIONS, CommandGroup, every_command
+from tester.cli.main import invoke
 
 
 def run(*arguments: str) -> int:
@@ -21,23 +23,41 @@ def stop_here(monkeypatch: pytest.MonkeyPatch, command: click.Command) -> None:
     monkeypatch.setattr(cli.LazyGroup, "get_command", lambda *_: command)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_every_listed_command_is_there(name: str) -> None:
-    with click.Context(root) as ctx:
-        command = root.get_command(ctx, name)
-    assert (isinstance(command, click.Command) and command.callback) or isinstance(command, click.Group)
+EVERY = [words for words, _ in every_command()]
 
 
-def test_help_lists_every_command_with_its_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_lists_every_section_with_its_commands(capsys: pytest.CaptureFixture[str]) -> None:
     assert run("--help") == 0
+    sections = dict(re.findall(r"^(\w[\w' ]*):\n((?:  .*\n)+)", capsys.readouterr().out, re.MULTILINE))
+    assert list(sections) == ["Options", *SECTIONS]
+    for title, listed in SECTIONS.items():
+        lines = [line.split(maxsplit=1) for line in sections[title].splitlines()]
+        assert lines == [[name, entry.help] for name, entry in listed.items()]
+
+
+@pytest.mark.parametrize("group", [name for name, entry in COMMANDS.items() if isinstance(entry, CommandGroup)])
+def test_a_group_names_its_commands_in_its_line_and_on_its_page(group: str, capsys: pytest.CaptureFixture[str]) -> None:
+    entry = COMMANDS[group]
+    assert isinstance(entry, CommandGroup) and run(group, "--help") == 0
     out = capsys.readouterr().out
-    assert all(f"  {name} " in out and entry.help in out for name, entry in COMMANDS.items())
+    assert entry.help.endswith(f": {', '.join(entry.commands)}.")
+    assert all(f"  {name} " in out and found.help in out for name, found in entry.commands.items())
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_help_of_every_command_is_reached_through_the_root(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(name, "--help") == 0
-    assert capsys.readouterr().out.startswith(f"Usage: tester {name} ")
+@pytest.mark.parametrize("words", EVERY, ids=" ".join)
+def test_help_of_every_command_is_reached_through_the_root(
+    words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(*words, "--help") == 0
+    assert capsys.readouterr().out.startswith(f"Usage: tester {' '.join(words)} ")
+
+
+@pytest.mark.parametrize("name", ["sdo", "params", "eds", "record", "exclude", "include", "slip-ring"])
+def test_a_grouped_command_without_its_group_is_a_usage_error_that_names_both(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(name) == 2
+    assert re.search(rf"Did you mean (bus|results) {name}\?", capsys.readouterr().err)
 
 
 def test_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""`tester record`: live wires written down as a run's bus log."""
+"""`tester bus record`: live wires written down as a run's bus log."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_a_bus_is_written_down_with_who_sent_what(tmp_path: Path, capsys: pytest
                 bus.send(can.Message(arbitration_id=can_id, data=bytes.fromhex(data), is_extended_id=False))
 
         with again_and_again(talk):
-            assert invoke(["record", str(tmp_path / "r"), "--can", "virtual:record", "--seconds", "0.3"]) == 0
+            assert invoke(["bus", "record", str(tmp_path / "r"), "--can", "virtual:record", "--seconds", "0.3"]) == 0
     assert "frames" in capsys.readouterr().err
     lines = (tmp_path / "r" / "can.log").read_text(encoding="utf-8").splitlines()
     assert {tuple(line.split()[2:]) for line in lines} == {
@@ -62,7 +62,7 @@ def test_a_line_is_written_down(tmp_path: Path) -> None:
 
     place = f"cell={os.ttyname(near)}@115200"
     with again_and_again(lambda: os.write(far, READ + ANSWER)):
-        assert invoke(["record", str(tmp_path / "r"), "--line", place, "--seconds", "0.3"]) == 0
+        assert invoke(["bus", "record", str(tmp_path / "r"), "--line", place, "--seconds", "0.3"]) == 0
     os.close(far)
     os.close(near)
     line = RecordedLine(tmp_path / "r" / "modbus-cell.log")
@@ -71,15 +71,15 @@ def test_a_line_is_written_down(tmp_path: Path) -> None:
 
 
 def test_silence_is_no_record(tmp_path: Path) -> None:
-    assert invoke(["record", str(tmp_path / "r"), "--can", "virtual:nobody", "--seconds", "0.1"]) == 1
+    assert invoke(["bus", "record", str(tmp_path / "r"), "--can", "virtual:nobody", "--seconds", "0.1"]) == 1
 
 
 @pytest.mark.parametrize(
     "arguments", [[], ["--can", "can0"], ["--line", "heat"], ["--line", "heat=/dev/ttyUSB0"], ["--line", "a/b=c@9600"]]
 )
 def test_what_cannot_be_listened_to_is_a_usage_error(arguments: list[str], tmp_path: Path) -> None:
-    assert invoke(["record", str(tmp_path / "r"), *arguments]) == 2
+    assert invoke(["bus", "record", str(tmp_path / "r"), *arguments]) == 2
 
 
 def test_an_interface_that_is_not_there_is_unreachable(tmp_path: Path) -> None:
-    assert invoke(["record", str(tmp_path / "r"), "--can", "nosuch:can0"]) == 4
+    assert invoke(["bus", "record", str(tmp_path / "r"), "--can", "nosuch:can0"]) == 4

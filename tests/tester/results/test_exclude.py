@@ -152,7 +152,7 @@ def test_cut_off_before_the_tables_it_is_found_and_the_same_again_finishes_it(
     with monkeypatch.context() as patch, pytest.raises(OSError, match="killed here"):
         patch.setattr(exclude, "write_all", killed)
         record_word(run, OUT)
-    assert any("`tester exclude run 2/1` was cut off" in problem for problem in verify(run).problems)
+    assert any("`tester results exclude run 2/1` was cut off" in problem for problem in verify(run).problems)
     record_word(run, OUT)
     assert verify(run).problems == ()
     with RunReader(run) as reader:

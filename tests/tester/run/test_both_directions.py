@@ -138,7 +138,7 @@ def test_show_tells_the_angle_and_the_pairs(whole: Path, capsys: pytest.CaptureF
 def test_a_repeat_that_is_excluded_takes_its_pair_out_of_the_mean(whole: Path, tmp_path: Path) -> None:
     folder = tmp_path / whole.name
     shutil.copytree(whole, folder)
-    assert invoke(["exclude", str(folder), "1/2", "--reason", "rubber torn"]) == 0
+    assert invoke(["results", "exclude", str(folder), "1/2", "--reason", "rubber torn"]) == 0
     rows = table(folder, "repeats.csv")
     assert [row["in_mean"] for row in rows] == ["0", "0", "1", "1", "1", "1"]
     assert rows[0]["exclusion"] == "the other repeat of its pair does not count"
