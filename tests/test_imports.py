@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -53,8 +54,12 @@ def test_simulator_does_not_load_the_application() -> None:
     assert "tester" not in loaded_by(EVERY_MODULE.format(names=["sim"]))
 
 
-def test_help_loads_nothing_heavy() -> None:
-    loaded = loaded_by(HELP)
+@pytest.mark.parametrize("arguments", ['["--help"]', "[]"], ids=["help", "next steps"])
+def test_help_and_next_steps_load_nothing_heavy(
+    arguments: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    loaded = loaded_by(HELP.replace('["--help"]', arguments))
     assert not loaded & {"pydantic", "numpy", "yaml", "rich", "can", "pymodbus", "pyarrow", "sqlite3", "drivers", "sim"}
 
 

@@ -48,8 +48,8 @@ def commission(
     3 a step was refused (with what to change), 1 it failed, 5 stopped, 6 left before the end.
     """
     from tester.machine.commission.engine import Ended
-    from tester.machine.commission.record import RecordError
-    from tester.run.commissioning import CommissionOptions, commission, part_of, record_path
+    from tester.machine.commission.record import RecordError, record_path
+    from tester.run.commissioning import CommissionOptions, commission, part_of
     from tester.run.endings import CannotStartError
     from tester.run.rigs import load_rig
 
@@ -66,7 +66,7 @@ def commission(
     options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator, compound, speed)
     try:
         if only_list:
-            _list(record_path(out, found), part.steps, found)
+            _list(record_path(out, found.name), part.steps, found)
             return EXIT_DONE
         if tui:
             outcome = _on_screen(lambda: load_rig(rig, overrides, accept_risk), options, theme or "", plain=plain)
@@ -81,7 +81,7 @@ def commission(
         click.echo(f"  {name:16} {seconds:6.1f} s of rig time", err=True)
     click.echo(f"{outcome.ended.value}{f' at: {outcome.step}' if outcome.step else ''}"
                f"; {outcome.rig_s / 60:.1f} min of rig time", err=True)  # fmt: skip
-    click.echo(str(record_path(out, found)))
+    click.echo(str(record_path(out, found.name)))
     codes = {
         Ended.DONE: EXIT_DONE, Ended.REFUSED: EXIT_INVALID, Ended.FAILED: EXIT_FAILED, Ended.STOPPED: EXIT_TRIPPED,
         Ended.LEFT: EXIT_INCOMPLETE,

@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Mapping
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import click
@@ -97,14 +98,23 @@ def nearest(typed: str, entries: Mapping[str, Listed]) -> str:
 
 @click.group(
     cls=LazyGroup,
+    invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="stdout is data, stderr is messages. Exit codes: 0 done, 1 run failed, 2 usage, 3 invalid recipe or rig "
     "file, 4 rig unreachable, 5 tripped or stopped, 6 incomplete, 130 interrupted, "
     "141 nobody reads the output any more.",
 )
 @click.version_option(__version__, message="%(prog)s %(version)s")
-def root() -> None:
-    """Run friction tests of rubber wheels from recipes, on a rig or on its digital twin."""
+@click.pass_context
+def root(ctx: click.Context) -> None:
+    """Run friction tests of rubber from recipes, on a rig or on its digital twin.
+
+    Without a command: what you can do next in this folder.
+    """
+    if ctx.invoked_subcommand is None:
+        from tester.cli.next_steps import lines
+
+        click.echo("\n".join(lines(Path())))
 
 
 def _invalid_source() -> type[Exception]:

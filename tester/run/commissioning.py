@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +19,7 @@ from tester.machine.commission.engine import Commissioning, CommissionOutcome
 from tester.machine.commission.onlooker import Onlooker
 from tester.machine.commission.part import AtTheTwin, CommissionPart
 from tester.machine.commission.person import Person
-from tester.machine.commission.record import CommissionRecord
+from tester.machine.commission.record import FOLDER, CommissionRecord, record_path
 from tester.machine.ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.run.commission_run import run_recipe
@@ -29,8 +28,6 @@ from tester.run.part_run import connect_ports
 from tester.run.preconditions import hold_rig
 from tester.run.session import SessionOptions
 
-FOLDER = "commissioning"
-"""Below the folder of the runs: a record for each rig."""
 
 @dataclass(frozen=True, slots=True)
 class CommissionOptions:
@@ -55,12 +52,6 @@ def part_of(rig: Rig) -> CommissionPart:
     return part()
 
 
-def record_path(runs: Path, rig: Rig) -> Path:
-    """Return where the record of a rig's commissioning is, by the rig's name."""
-    slug = re.sub(r"[^a-z0-9]+", "-", rig.name.lower()).strip("-") or "rig"
-    return runs / FOLDER / f"{slug}.jsonl"
-
-
 def commission(
     rig: Rig,
     options: CommissionOptions,
@@ -72,7 +63,7 @@ def commission(
 
     Raises CannotStartError, InvalidSource, RecordError, OSError.
     """
-    path = record_path(options.out, rig)
+    path = record_path(options.out, rig.name)
     path.parent.mkdir(parents=True, exist_ok=True)
     with ExclusiveUse() as use:
         try:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,14 @@ from typing import Any, Final
 BEGUN, READING, DONE, REFUSED = "begun", "reading", "done", "refused"
 """What an entry is of a step: its begin, something read in it, that it passed, that it did not."""
 FIRST: Final = "0" * 64
+FOLDER: Final = "commissioning"
+"""Below the folder of the runs: a record for each rig."""
+
+
+def record_path(runs: Path, rig: str) -> Path:
+    """Return the file of a rig's record, by the rig's name, below the folder of the runs."""
+    slug = re.sub(r"[^a-z0-9]+", "-", rig.lower()).strip("-") or "rig"
+    return runs / FOLDER / f"{slug}.jsonl"
 
 
 class RecordError(Exception):

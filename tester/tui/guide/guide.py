@@ -14,10 +14,10 @@ from tester.inputs.rig import Rig
 from tester.machine.commission.engine import CommissionOutcome, Ended
 from tester.machine.commission.part import AtTheTwin
 from tester.machine.commission.person import Question
-from tester.machine.commission.record import CommissionRecord, RecordError
+from tester.machine.commission.record import CommissionRecord, RecordError, record_path
 from tester.machine.commission.standing import StepStanding, standing_of
 from tester.machine.commission.step import CommissionStep
-from tester.run.commissioning import CommissionOptions, commission, part_of, record_path
+from tester.run.commissioning import CommissionOptions, commission, part_of
 from tester.run.endings import CannotStartError
 from tester.store.schema import StoreError
 from tester.tui.guide.person import Live, ScreenPerson
@@ -58,7 +58,7 @@ class Guide:
         self.options = options
         self.rig = load()
         self.steps: tuple[CommissionStep, ...] = part_of(self.rig).steps
-        self.path = record_path(options.out, self.rig)
+        self.path = record_path(options.out, self.rig.name)
         self.person = ScreenPerson(time_stands=self.rig.can.interface == "sim")
         self.outcome: CommissionOutcome | None = None
         self.trouble = ""
@@ -94,7 +94,7 @@ class Guide:
         try:
             self.rig = self._load()
             self.steps = part_of(self.rig).steps
-            self.path = record_path(self.options.out, self.rig)
+            self.path = record_path(self.options.out, self.rig.name)
             self._read()
         except REFUSALS as error:
             self.trouble = in_words(error)

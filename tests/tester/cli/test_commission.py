@@ -14,8 +14,8 @@ from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.machine.commission.engine import Ended
 from tester.machine.commission.person import Question
-from tester.machine.commission.record import CommissionRecord
-from tester.run.commissioning import CommissionOptions, commission, record_path
+from tester.machine.commission.record import CommissionRecord, record_path
+from tester.run.commissioning import CommissionOptions, commission
 from tester.run.rigs import load_rig
 from tester.store.reader import RunReader
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, named
@@ -144,7 +144,7 @@ def test_the_whole_way_takes_less_than_half_an_hour_of_rig_time(
     steps = [float(text.split(" s of rig time")[0].split()[-1]) for text in said.splitlines() if "s of rig" in text]
     assert len(steps) == len(STEPS)
     assert sum(steps) / 60 == pytest.approx(minutes, abs=0.1)
-    record = CommissionRecord(record_path(tmp_path, load_rig("sim", ())), str, "")
+    record = CommissionRecord(record_path(tmp_path, load_rig("sim", ()).name), str, "")
     soak, last = record.last("thermometer"), record.last("first")
     assert soak is not None and soak.values["hub_c"] <= 45.0
     assert last is not None and last.values["conditions"][0]["n"] >= 3

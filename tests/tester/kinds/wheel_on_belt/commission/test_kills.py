@@ -25,8 +25,8 @@ from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.machine.commission.engine import CommissionOutcome, Ended
 from tester.machine.commission.person import Question
-from tester.machine.commission.record import BEGUN, DONE, CommissionRecord
-from tester.run.commissioning import CommissionOptions, commission, record_path
+from tester.machine.commission.record import BEGUN, DONE, CommissionRecord, record_path
+from tester.run.commissioning import CommissionOptions, commission
 from tester.run.rigs import load_rig
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a process that is forked is POSIX")
@@ -81,7 +81,7 @@ def done(out: Path, person: Mortal) -> CommissionOutcome:
 
 def record_of(out: Path) -> CommissionRecord:
     """Read the record, which raises where it does not hold together."""
-    return CommissionRecord(record_path(out, load_rig("sim", ())), str, "")
+    return CommissionRecord(record_path(out, load_rig("sim", ()).name), str, "")
 
 
 def killed(out: Path, kill: Kill) -> bool:
@@ -113,7 +113,7 @@ class Whole:
 
     def before(self, step: str, out: Path) -> None:
         """Leave the record as it was when a step began."""
-        path = record_path(out, load_rig("sim", ()))
+        path = record_path(out, load_rig("sim", ()).name)
         path.parent.mkdir(parents=True)
         entries = [json.loads(line) for line in self.lines]
         begun = next(place for place, one in enumerate(entries) if one["step"] == step and one["what"] == BEGUN)
@@ -136,7 +136,7 @@ def whole(out: Path, until: str) -> Whole:
     person = Mortal(until)
     outcome = done(out, person)
     assert outcome.ended in (Ended.DONE, Ended.LEFT), outcome
-    lines = record_path(out, load_rig("sim", ())).read_bytes().splitlines()
+    lines = record_path(out, load_rig("sim", ()).name).read_bytes().splitlines()
     return Whole(lines, person.questions)
 
 
