@@ -10,6 +10,8 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 
 ROLL_CHECK_N: Final = 50.0
 """Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
+ROLL_CHECK_TURNS: Final = 6.0
+"""Whole turns averaged by the check: runout drops out, and the load loop's ripple."""
 
 
 def roll_check_u_mm(rig: RigConfig, off_mm: float = 0.0) -> float:

@@ -23,11 +23,9 @@ from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, WheelLife, rubber_c
 from tester.kinds.wheel_on_belt.recipe.steps import WearCheck as Method
-from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_N, roll_check_u_mm
+from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_N, ROLL_CHECK_TURNS, roll_check_u_mm
 from tester.machine.motions import Power, Sequence, Settle
 
-ROLL_CHECK_TURNS: Final = 6.0
-"""Whole turns averaged by the check: runout drops out, and the load loop's ripple."""
 TARE_WAIT_S: Final = 0.4
 """From lifted to the first reading of the tare, s [A]: the cell's filter."""
 TARE_S: Final = 1.0

@@ -84,6 +84,8 @@ class EstimateConstants:
     sunk_s_w: float = 40.0
     sunk_most_s: float = 700.0
     """After one with more heat than this the hub is too cold, and has to come up again: seconds per W."""
+    roll_check_s: float = 5.1
+    """Lift, turn, settle and tare 2, touch and load to within 2 % for 1 s; without the turns that are averaged."""
     next_condition_s: float = 3.0
     """Rolling into the soak of the next condition."""
     waits_least: float = 0.45

@@ -32,7 +32,7 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelPlan,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
-from tester.kinds.wheel_on_belt.roll_check import roll_check_u_mm
+from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_TURNS, roll_check_u_mm
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -102,7 +102,7 @@ class WheelEstimator:
                     one = self._until(before, step, one)
                 one = self.order.after(before, step.setpoint, one)
                 last = step
-                result.append(one)
+                result.append(one._replace(seconds=one.seconds + self._checks_s(plan, place, step)))
                 continue
             prompted = isinstance(step, PromptStep)
             if last is not None:
@@ -119,8 +119,28 @@ class WheelEstimator:
                 if isinstance(step, Heat):
                     before.heat(self.body.surface_c(body_c))
                 one, body_c = self._preparation(step, compound, body_c)
-            result.append(one)
+            result.append(one._replace(seconds=one.seconds + self._checks_s(plan, place, step)))
         return result
+
+    def _checks_s(self, plan: Plan, place: int, step: Step) -> float:
+        """Return what the roll checks of a step take, s.
+
+        A new wheel is checked as it is mounted, each condition at its beginning, and the wheel once more after its
+        last condition (``WheelProcedures``).
+        """
+        behind = (plan.steps[at] for at in range(place + 1, len(plan.steps)))
+        follower = next((one for one in behind if isinstance(one, WheelCondition | Install)), None)
+        checked_next = isinstance(follower, WheelCondition) and follower.wear_check == "each_condition"
+        if isinstance(step, Install) and step.worn is None and isinstance(follower, WheelCondition):
+            return checked_next * self._roll_check_s(follower)
+        if isinstance(step, WheelCondition) and step.wear_check == "each_condition":
+            return (1 if checked_next else 2) * self._roll_check_s(step)
+        return 0.0
+
+    def _roll_check_s(self, step: WheelCondition) -> float:
+        """Return what a check of the diameter by rolling takes: its moves, and whole turns at the wheel's speed, s."""
+        turn_s = self.costs.turn_m / step.setpoint.number("wheel_speed")
+        return self.constants.roll_check_s + ROLL_CHECK_TURNS * turn_s
 
     def _begins_part(self, plan: Plan, place: int, part: tuple[int, int]) -> bool:
         """Tell whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.

@@ -191,3 +191,17 @@ def test_a_prompt_costs_what_a_wear_check_does() -> None:
     text = PREPARED.replace("[40 degC, 25 degC]", "85 degC")
     prompts = planned(text + "steps:\n  - {prompt: look, every: condition}\n")[1]
     assert prompts.rig_seconds == pytest.approx(hot("  wear_check: prompt\n").rig_seconds)
+
+
+@pytest.mark.parametrize(("speed_m_s", "each_s"), [(0.8, 7.1), (0.4, 9.4)])  # as simulated runs take
+def test_a_roll_check_costs_its_moves_and_six_turns(speed_m_s: float, each_s: float) -> None:
+    measure = f"measure:\n  wheel_speed: {speed_m_s} m/s\n"
+    text = with_line("measure:\n  wheel_speed: 0.8 m/s\n", measure, PREPARED)
+    plan, without = planned(text)
+    checked = planned(with_line(measure, f"{measure}  wear_check: each_condition\n", text))[1]
+    extra = [with_s.seconds - one.seconds for with_s, one in zip(checked.steps, without.steps, strict=True)]
+    conditions = [place for place, step in enumerate(plan.steps) if isinstance(step, WheelCondition)]
+    assert plan.steps[0].kind == "install"
+    expected = [each_s if place in (0, *conditions) else 0.0 for place in range(len(extra))]
+    expected[conditions[-1]] += each_s  # and after the wheel's last
+    assert extra == pytest.approx(expected, abs=0.3)
