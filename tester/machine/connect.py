@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from enum import Enum
 from math import inf
-from typing import Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
 from tester.inputs.rig import Rig
 from tester.machine import line_speed
-from tester.machine.devices import DeviceList
+from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, DeviceList
+from tester.machine.wires import CAN_SILENT, STALE_INPUTS_S
 
 CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
@@ -92,32 +93,48 @@ class Proving(Showing, Protocol):
         ...
 
 
-class Arming(Protocol):
-    """What a kind asks of its machine and shows before a run may begin."""
+DevicesT = TypeVar("DevicesT", bound=DeviceList)
+RigT = TypeVar("RigT", bound=Rig)
+
+
+class Arming(Generic[DevicesT, RigT]):
+    """What a machine is asked and shows before a run may begin. A kind says how it lifts, and how its drives follow."""
+
+    def __init__(self, devices: DevicesT, rig: RigT) -> None:
+        """Nothing is sent."""
+        self.devices = devices
+        self.rig = rig
+        self._stale_s = rig.values()[STALE_INPUTS_S]
 
     def heard(self) -> bool:
-        """Tell whether every device and the safety inputs have been heard."""
-        ...
+        """Return whether every device and the safety inputs have been heard."""
+        return self.devices.answering() and self.devices.io.inputs_stamp_s > -inf
 
     def renew(self) -> None:
         """Renew the leases of devices that a program before us left behind; they stay off."""
-        ...
 
     def unfit(self, now: float, configured_s: float) -> str:
         """Return why no axis may move, "" while all may. The drives send by themselves since ``configured_s``."""
-        ...
+        io = self.devices.io
+        if not io.inputs & INPUT_SAFETY_CHAIN:
+            return "safety chain"
+        if not io.inputs & INPUT_GUARD:
+            return "guard open"
+        if not now - max(io.inputs_stamp_s, configured_s) <= self._stale_s:
+            return f"inputs stale: the {io.config.name} drive sends none"
+        return ""
 
     def silent(self) -> str:
         """Return what it means that no drive is heard."""
-        ...
+        return f"{CAN_SILENT.name}: {CAN_SILENT.cause}"
 
     def lift(self) -> Lifting:
         """Begin to show that nothing is loaded."""
-        ...
+        raise NotImplementedError
 
     def prove(self) -> Proving:
         """Begin to show that drives follow and stop."""
-        ...
+        raise NotImplementedError
 
 
 class Connector:
@@ -126,7 +143,7 @@ class Connector:
     timeout_s: float = TIMEOUT_S
     """Everything must be up by then; inf where a person takes the time."""
 
-    def __init__(self, devices: DeviceList, rig: Rig, arming: Arming, listen_s: float) -> None:
+    def __init__(self, devices: DeviceList, rig: Rig, arming: Arming[Any, Any], listen_s: float) -> None:
         """Nothing is sent before the first ``tick``, and on the CAN bus not before the listening is over."""
         self.devices = devices
         self.rig = rig

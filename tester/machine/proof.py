@@ -41,6 +41,8 @@ class WatchdogProof:
 
     emergency: int = HEARTBEAT_LOST
     """Code of the EMCY by which a drive says that it has noticed."""
+    unloaded: tuple[str, ...] = ()
+    """What has been shown before the proof began."""
 
     def __init__(self, devices: DeviceList, *, follow: bool, watchdog: bool, withhold_s: float) -> None:
         """Nothing moves before the first ``step``.
@@ -108,6 +110,13 @@ class WatchdogProof:
         if self.stage is ProofStage.RESTORE:
             return self.watchdog
         return self.stage in (ProofStage.WITHHOLD, ProofStage.STILL)
+
+    def proven(self) -> str:
+        """Return a line for the journal: what was shown, and what was not because the rig file says so."""
+        shown, left_out = list(self.unloaded), list[str]()
+        self.watchdogs(shown, left_out)
+        text = f"shown: {', '.join(shown) or 'nothing'}"
+        return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
 
     def watchdogs(self, shown: list[str], left_out: list[str]) -> None:
         """Sort the drives' watchdogs into those that were shown, and those that were not."""

@@ -73,10 +73,6 @@ class KindRun(Protocol):
         """
         ...
 
-    def nobody(self) -> Any:
-        """Return the attendant of a real rig: people answer prompts, software does nothing."""
-        ...
-
     def mount(self, attendant: Any, compound: str) -> None:
         """Put a new specimen on a rig that nobody runs a recipe on: the twin in a process of its own.
 

@@ -13,6 +13,7 @@ from tester.base.pace import Pace
 from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
 from tester.inputs.rig.sensors import quantities_on
+from tester.machine.attendant import NoAttendant
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Outcome, Run
@@ -272,4 +273,4 @@ def connect_ports(
         return simulated_ports(rig, seed, log, recipe=recipe, surface=surface)
     from tester.run.hardware import hardware_ports
 
-    return hardware_ports(rig, log), None, run_parts(rig).nobody()
+    return hardware_ports(rig, log), None, NoAttendant()

@@ -18,7 +18,7 @@ from tester.base.config_reader import FURTHER_KEYS, LEFT_OUT, Range, as_text, as
 from tester.base.quantities import Quantities
 from tester.base.source import Location
 from tester.inputs.rig.ceilings import Ceiling
-from tester.inputs.rig.parameter import Parameter, Values
+from tester.inputs.rig.parameter import SECTION, Parameter, Values
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -222,8 +222,8 @@ class Rig:
         raise NotImplementedError
 
     def certificates(self) -> CalibrationConfig:
-        """Return the days on which the certificates of the sensors end."""
-        return CalibrationConfig()
+        """Return the section ``calibration``: the days on which the certificates of the sensors end."""
+        return getattr(self, "calibration", CalibrationConfig())
 
     def stale_limits(self) -> Mapping[str, tuple[str, float]]:
         """Return the key and the value, s, of how old a device's reading may be, by its name in ``devices``."""
@@ -235,13 +235,18 @@ class Rig:
 
     @property
     def plant(self) -> Any:
-        """Parameters of the simulated machine, as the kind's twin takes them (sim.machines); nothing on a real rig."""
-        raise NotImplementedError
+        """The section ``sim``: parameters of the simulated machine, as the kind's twin takes them (sim.machines)."""
+        return getattr(self, "sim", None)
 
     @property
     def faults(self) -> tuple[str, ...]:
         """Lines of a fault script (sim.faults.language) that the file states for a simulated rig."""
-        return ()
+        return getattr(self.plant, "faults", ())
+
+    def values(self) -> Values:
+        """Return the values of the section ``interlocks``, by parameter."""
+        section: DataclassInstance = getattr(self, SECTION)
+        return values_of(section, self.parameters)
 
     def settled(self: OneRig) -> OneRig:
         """Return the rig with what follows from its file."""

@@ -8,17 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, TypeVar
+from typing import Annotated, ClassVar, Final, TypeVar
 
 from drivers.axis import AxisConfig
 from tester.base.config_reader import Range
 from tester.base.source import Location
 from tester.inputs.rig.ceilings import AXES, TRUE, Ceiling
-from tester.inputs.rig.config import Rig, values_of
-from tester.inputs.rig.parameter import SECTION, Direction, Values
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
+from tester.inputs.rig.config import Rig
+from tester.inputs.rig.parameter import SECTION, Direction
 
 OneRig = TypeVar("OneRig", bound="PlainRig")
 _LOWER, _HIGHER = Direction.LOWER, Direction.HIGHER
@@ -91,16 +88,6 @@ class PlainRig(Rig):
         """Return the axes by name: each has a drive."""
         return self.axes
 
-    @property
-    def plant(self) -> Any:
-        """The section ``sim``."""
-        return self.sim
-
-    @property
-    def faults(self) -> tuple[str, ...]:
-        """What fails by itself on the simulated rig."""
-        return self.sim.faults
-
     def problems(self) -> Iterator[tuple[Location, str]]:
         """Yield what a plain machine cannot have; a kind with more to say yields from this first."""
         for name, axis in self.axes.items():
@@ -110,8 +97,3 @@ class PlainRig(Rig):
             yield ("axes",), "one drive carries the safety chain's inputs (expected digital_io: true at one axis)"
         if not any(name in self.devices for name in self.own):
             yield ("devices",), f"no sensor of the machine's own (expected {', '.join(self.own)})"
-
-    def values(self) -> Values:
-        """Return what the section ``interlocks`` says, by parameter."""
-        section: DataclassInstance = getattr(self, SECTION)
-        return values_of(section, self.parameters)

@@ -55,28 +55,6 @@ class TrackAttendant(Protocol):
         ...
 
 
-class TrackNobody:
-    """The attendant of a real rig: people answer prompts, software does nothing."""
-
-    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
-        """Do nothing: the prompt has been answered."""
-
-    def put_on(self, weights_n: float) -> None:
-        """Do nothing."""
-
-    def prepare(self, interface: str) -> None:
-        """Do nothing."""
-
-    def raise_arm(self) -> None:
-        """Do nothing."""
-
-    def lower_arm(self) -> None:
-        """Do nothing."""
-
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Do nothing."""
-
-
 @dataclass(slots=True)
 class MountedSpecimen:
     """The specimen on the arm, what presses it, and what is between it and the track."""

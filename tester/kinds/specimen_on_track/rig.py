@@ -174,10 +174,6 @@ class TrackConfig(Rig):
         """Return a rig whose file states this temperature of the air around a real one, degC."""
         return replace(self, ambient=ambient_c)
 
-    def certificates(self) -> TrackCertificatesConfig:
-        """Return the days on which the certificates end."""
-        return self.calibration
-
     def stale_limits(self) -> Mapping[str, tuple[str, float]]:
         """Return the keys and values, s, of how old readings may be."""
         limits = self.interlocks
@@ -191,16 +187,6 @@ class TrackConfig(Rig):
         """Return the axes that have a drive, by name."""
         lift = self.axes.lift
         return {"track": self.axes.track} | ({"lift": lift} if lift is not None else {})
-
-    @property
-    def plant(self) -> TrackParameters:
-        """The section ``sim``."""
-        return self.sim
-
-    @property
-    def faults(self) -> tuple[str, ...]:
-        """What fails by itself on the simulated rig."""
-        return self.sim.faults
 
     @property
     def linear(self) -> bool:

@@ -12,7 +12,7 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import NAME
 from tester.kinds.specimen_on_track.build import build_run
-from tester.kinds.specimen_on_track.context import TrackAttendant, TrackNobody
+from tester.kinds.specimen_on_track.context import TrackAttendant
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
@@ -55,10 +55,6 @@ class TrackRuns:
     ) -> Run:
         """Return a run that is ready to be ticked."""
         return build_run(TrackConfig.of(rig), plan, ports, attendant, recorder, prompts, point)
-
-    def nobody(self) -> TrackNobody:
-        """Return the attendant of a real rig."""
-        return TrackNobody()
 
     def mount(self, attendant: TrackAttendant, compound: str) -> None:
         """Put a new specimen on; "" is SBR."""

@@ -50,25 +50,6 @@ class Attendant(Protocol):
         ...
 
 
-class Nobody:
-    """The attendant of a real rig: people answer prompts, software does nothing."""
-
-    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
-        """Do nothing: the prompt has been answered."""
-
-    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Do nothing: the wheel is still on."""
-
-    def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Do nothing: the prompt has been answered."""
-
-    def belt_travelled(self, travel_m: float) -> None:
-        """Do nothing: the belt is still on."""
-
-    def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
-        """Do nothing."""
-
-
 class CellZero(Protocol):
     """The load cell's zero."""
 

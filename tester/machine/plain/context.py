@@ -32,16 +32,6 @@ class PlainAttendant(Protocol):
         ...
 
 
-class PlainNobody:
-    """The attendant of a real rig: people answer prompts, software does nothing."""
-
-    def install(self, specimen: int, compound: str) -> None:
-        """Do nothing: the prompt has been answered."""
-
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Do nothing."""
-
-
 class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
     """What a step may see and do."""
 

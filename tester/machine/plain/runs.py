@@ -19,7 +19,7 @@ from tester.machine.engine import Engine
 from tester.machine.executor import Executor
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.arming import PlainArming
-from tester.machine.plain.context import PlainAttendant, PlainContext, PlainNobody
+from tester.machine.plain.context import PlainAttendant, PlainContext
 from tester.machine.plain.control import PlainControl
 from tester.machine.plain.devices import PlainDevices
 from tester.machine.plain.image import PlainReadings
@@ -92,10 +92,6 @@ class PlainRuns:
         executor = Executor(plan, PlainProcedures(self.part, results, self.speeds))
         engine = Engine(devices, control, executor, ctx, Sampler(recorder, quantities))
         return Run(Connector(devices, own, PlainArming(devices, own), own.arming.listen_s), engine)
-
-    def nobody(self) -> PlainNobody:
-        """Return the attendant of a real rig."""
-        return PlainNobody()
 
     def mount(self, attendant: PlainAttendant, compound: str) -> None:
         """Put a new specimen on."""

@@ -22,10 +22,10 @@ from sim.nodes.ir_slave import IrSlave
 from sim.nodes.jacket_slave import JacketSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from tester.kinds import hardware_text, load_rig
-from tester.kinds.wheel_on_belt.context import Nobody
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_run
 from tester.kinds.wheel_on_belt.served.served import SERVED
+from tester.machine.attendant import NoAttendant
 from tester.machine.prompts import Prompts
 from tester.run.bus_log import BusLog
 from tester.run.folder import part_time
@@ -91,7 +91,7 @@ def watched(rig: RigConfig, lines: dict[str, FarEnd], log: BusLog | None = None)
     """Return the frames that the service shows of a run's first transactions on both lines."""
     ports = hardware_ports(rig, log)
     plan = plan_of(config=rig)
-    run = build_run(rig, plan, ports, Nobody(), NullRecorder(), Prompts(automatic=True))
+    run = build_run(rig, plan, ports, NoAttendant(), NullRecorder(), Prompts(automatic=True))
     watch = RunWatch(run, PlanTrack(plan.name, [part_time(rig, plan)], SERVED), SERVED)
     watch.frames.watch(True)
     try:

@@ -6,13 +6,12 @@ force, and it is watched while the track creeps: an arm that a person has left d
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import nan
 
 from tester.kinds.specimen_on_track.devices import TrackDevices
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
+from tester.machine.connect import Arming
 from tester.machine.proof import WatchdogProof
-from tester.machine.wires import CAN_SILENT
 
 BUMP_S = 0.6
 """Ramp and lag are over by then [A]."""
@@ -65,12 +64,12 @@ class TrackUnloaded:
 class TrackProof(WatchdogProof):
     """The track creeps, its speed is looked at, and every drive stops without our heartbeat."""
 
+    unloaded = ("no force on the load cell",)
+
     def __init__(self, devices: TrackDevices, rig: TrackConfig) -> None:
         """Nothing moves before the first ``step``."""
         arming = rig.arming
-        super().__init__(
-            devices, follow=arming.bump_test, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s
-        )
+        super().__init__(devices, follow=arming.bump_test, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)
         self.track, self.places = devices.track, rig.linear
         self.creep = arming.creep_m_s / rig.metres
         self.seen: tuple[float, float] = (nan, nan)
@@ -86,13 +85,6 @@ class TrackProof(WatchdogProof):
             self.speed = (track.actual - self.seen[1]) / (track.stamp_s - self.seen[0])
             self.seen = track.stamp_s, track.actual
         super().step(now)
-
-    def proven(self) -> str:
-        """Return a line for the journal: what was shown, and what was not because the rig file says so."""
-        shown, left_out = ["no force on the load cell"], list[str]()
-        self.watchdogs(shown, left_out)
-        text = "shown: " + ", ".join(shown)
-        return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
 
     def stand(self) -> None:
         """Command zero to the track."""
@@ -116,35 +108,13 @@ class TrackProof(WatchdogProof):
         return True
 
 
-class TrackArming:
-    """Listens, watches the cell, homes the arm upwards, lets the track creep."""
+class TrackArming(Arming[TrackDevices, TrackConfig]):
+    """Watches the cell, homes the arm upwards, lets the track creep. The chamber stays in standby."""
 
     def __init__(self, devices: TrackDevices, rig: TrackConfig) -> None:
         """Nothing is sent."""
-        self.devices, self.rig = devices, rig
+        super().__init__(devices, rig)
         self._lifting: TrackUnloaded | None = None
-
-    def heard(self) -> bool:
-        """Tell whether every Modbus device and the safety inputs have been heard."""
-        return self.devices.answering() and self.devices.track.inputs_stamp_s > -inf
-
-    def renew(self) -> None:
-        """Leave the chamber in standby: its set-up began with that."""
-
-    def unfit(self, now: float, configured_s: float) -> str:
-        """Return what the safety inputs say, or that they say nothing."""
-        track = self.devices.track
-        if not track.inputs & INPUT_SAFETY_CHAIN:
-            return "safety chain"
-        if not track.inputs & INPUT_GUARD:
-            return "guard open"
-        if not now - max(track.inputs_stamp_s, configured_s) <= self.rig.interlocks.stale_inputs_s:
-            return f"inputs stale: the {track.config.name} drive sends none"
-        return ""
-
-    def silent(self) -> str:
-        """Return the row that says so."""
-        return f"{CAN_SILENT.name}: {CAN_SILENT.cause}"
 
     def lift(self) -> TrackUnloaded:
         """Ask the load cell."""

@@ -33,6 +33,8 @@ class Bump(Enum):
 class Proof(WatchdogProof):
     """Wheel, belt and press follow, each alone; wheel and belt creep while our heartbeat is withheld."""
 
+    unloaded = ("lifted and unloaded", "decelerations equal")
+
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
         """Nothing moves before the first ``step``."""
         arming = rig.arming
@@ -46,18 +48,14 @@ class Proof(WatchdogProof):
         self.radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
         self.failure = unequal_decelerations(devices, self.radius_m)
 
-    def proven(self) -> str:
-        """Return a line for the journal: what was shown, and what was not because the rig file says so."""
-        shown = ["lifted and unloaded", "decelerations equal"]
-        left_out: list[str] = []
-        self.watchdogs(shown, left_out)
+    def watchdogs(self, shown: list[str], left_out: list[str]) -> None:
+        """Sort the watchdogs of drives and jacket into those that were shown, and those that were not."""
+        super().watchdogs(shown, left_out)
         if self.lease or self.heat_off != "fallback":
             (shown if self.lease else left_out).append("jacket's lease set and read back")
         else:
             shown.append("the setpoint that the jacket falls back to set and read back")
             left_out.append("that it falls back")
-        text = "shown: " + ", ".join(shown)
-        return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
 
     def stand(self) -> None:
         """Command zero to the drives with a speed."""

@@ -102,10 +102,6 @@ class RigConfig(Rig):
         """Return a rig whose file states this temperature of the air around a real one, degC."""
         return replace(self, observer=replace(self.observer, ambient_c=ambient_c))
 
-    def certificates(self) -> CertificatesConfig:
-        """Return the days on which the certificates of the sensors end."""
-        return self.calibration
-
     def stale_limits(self) -> Mapping[str, tuple[str, float]]:
         """Return the keys and values, s, of how old readings may be."""
         limits = self.interlocks
@@ -118,16 +114,6 @@ class RigConfig(Rig):
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive, by name."""
         return self.axes.driven()
-
-    @property
-    def plant(self) -> SimParameters:
-        """The section ``sim``."""
-        return self.sim
-
-    @property
-    def faults(self) -> tuple[str, ...]:
-        """What fails by itself on the simulated rig."""
-        return self.sim.faults
 
     def settled(self) -> RigConfig:
         """Return the rig with the limit of the press's torque."""

@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
-from tester.kinds.wheel_on_belt.context import Attendant, Nobody
+from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
 from tester.kinds.wheel_on_belt.procedures.results import record_state
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
@@ -52,10 +52,6 @@ class WheelRuns:
         """Return a run that is ready to be ticked."""
         heat = history.ratio if isinstance(history, HeatHistory) else NO_HISTORY
         return build_run(RigConfig.of(rig), plan, ports, attendant, recorder, prompts, point, heat, self.procedures)
-
-    def nobody(self) -> Nobody:
-        """Return the attendant of a real rig."""
-        return Nobody()
 
     def mount(self, attendant: Attendant, compound: str) -> None:
         """Put a new wheel on; "" is compound 1#."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
-from tester.kinds.wheel_on_belt.context import Context, Nobody
+from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
 from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
@@ -23,6 +23,7 @@ from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_run
 from tester.machine.activity import Activity
+from tester.machine.attendant import NoAttendant
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.sampler import Sampler
@@ -218,7 +219,7 @@ def make_bench(config: RigConfig | None = None, *, automatic: bool = True, ambie
         gates=Gates(used.gates),
         prompts=Prompts(automatic=automatic),
         journal=notes,
-        attendant=Nobody(),
+        attendant=NoAttendant(),
         cell=cell,
         wheel=WheelLife(installed_mm=diameter),
         contact=LoadLoop(),
