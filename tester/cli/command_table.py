@@ -42,6 +42,7 @@ RESULTS = CommandGroup(
 )
 SECTIONS: Mapping[str, Mapping[str, Listed]] = {
     "Try without a rig": {
+        "new": CommandEntry("new_command", "new", "Write a recipe by answering five questions."),
         "check": CommandEntry("recipe_commands", "check", "Validate a recipe; every problem at once."),
         "plan": CommandEntry("recipe_commands", "plan", "List the steps of a recipe and how long they take."),
         "predict": CommandEntry("predict_command", "predict", "Compute a friction law for one condition."),

@@ -39,6 +39,7 @@ def next_steps(here: Path) -> Iterator[NextStep]:
     if runs:
         yield NextStep("tester show latest", f"prints the results of {runs[0].name}")
         yield NextStep("tester report latest", "writes them as one page to send")
+    yield NextStep("tester new", "writes a recipe by five questions")
     if not rigs:
         yield NextStep("tester rig init my-rig.yaml", "writes a commented file for a rig of your own")
     yield NextStep("tester tui", "opens the operator's screen")

@@ -64,6 +64,9 @@ class RecipePart(ABC):
     """The section ``measure`` of ``recipe``."""
     grid: ClassVar[type[GridModel]] = GridModel
     """A grid without its axes."""
+    begins: ClassVar[str] = "measure: {repeats: REPEATS}"
+    """Lines of YAML between the specimens and the grids of a new recipe (`tester new`), with REPEATS for their
+    number: ``measure``, and what a first recipe needs beside it."""
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other)

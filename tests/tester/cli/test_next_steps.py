@@ -22,7 +22,7 @@ def commands(here: Path) -> list[str]:
 
 
 def test_an_empty_folder_begins_with_the_quickstart(tmp_path: Path) -> None:
-    assert commands(tmp_path) == ["run quickstart", "rig init my-rig.yaml", "tui", "--help"]
+    assert commands(tmp_path) == ["run quickstart", "new", "rig init my-rig.yaml", "tui", "--help"]
 
 
 def test_a_finished_run_is_shown_and_not_resumed(tmp_path: Path) -> None:

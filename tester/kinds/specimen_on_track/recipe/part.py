@@ -43,6 +43,7 @@ class TrackPart(RecipePart):
     recipe: ClassVar[type[Recipe]] = TrackRecipe
     measure: ClassVar[type[MeasureModel]] = TrackMeasure
     grid: ClassVar[type[GridModel]] = TrackGrid
+    begins: ClassVar[str] = "measure: {repeats: REPEATS, distance: 0.5 mm, at_least: 5 s}"
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> Settings:
         """Return how the conditions of a grid are measured."""

@@ -42,6 +42,12 @@ class WheelPart(RecipePart):
     recipe: ClassVar[type[Recipe]] = WheelRecipe
     measure: ClassVar[type[MeasureModel]] = WheelMeasure
     grid: ClassVar[type[GridModel]] = WheelGrid
+    begins: ClassVar[str] = (
+        "pre_grind: {wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 4 min}\n"
+        "rest: {at_least: 20 min, until: 25 degC, within: 2 degC}\n"
+        "measure: {wheel_speed: 0.8 m/s, repeats: REPEATS, window: 30 rev, temperature_band: 2 degC}"
+    )
+    """As in the recipes of the paper's tables."""
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> WheelSettings:
         """Return how the conditions of a grid are measured."""
