@@ -31,14 +31,17 @@ class RecordedStep:
 
 
 def recorded_steps(events: Iterable[Event], length_s: float) -> tuple[RecordedStep, ...]:
-    """Return the steps of a journal in order; ``length_s``: rig seconds of the run."""
+    """Return the steps of a journal in order; ``length_s``: rig seconds of the run.
+
+    A run whose parts ran side by side has no journal, so no steps.
+    """
     begun: list[tuple[str, str, float]] = []
     for event in events:
         if event.kind == "step":
             begun.append(("step", event.text, event.t_s))
         elif event.kind == "mode" and _STOPS.match(event.text) and begun and begun[-1][0] != STANDSTILL:
             begun.append((STANDSTILL, "to standstill", event.t_s))
-    ends = [began_s for _, _, began_s in begun[1:]] + [length_s]
+    ends = [*(began_s for _, _, began_s in begun), length_s][1:]  # none where no step began
     return tuple(
         RecordedStep(kind, title, began_s, max(ended_s, began_s))
         for (kind, title, began_s), ended_s in zip(begun, ends, strict=True)
