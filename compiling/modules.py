@@ -102,6 +102,7 @@ HOT = (
     "tester/machine/run.py",
     "tester/machine/sampler.py",
     "tester/machine/silence.py",
+    "tester/machine/standstill.py",
     "tester/machine/state.py",
     "tester/machine/tickers.py",
     "tester/machine/wires.py",

@@ -13,10 +13,12 @@ from typing import Any, Final
 from tester.inputs.rig import Rig
 from tester.inputs.rig.parameter import Values
 from tester.inputs.rig.sensors import further_channels
+from tester.machine.image import BaseDemand, BaseReadings
 from tester.machine.state import ControlState, Mode, StopProgress
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _HOLD: Final = Mode.HOLD
+_RUN: Final = Mode.RUN
 _IDLE: Final = Mode.IDLE
 _ARMED: Final = Mode.ARMED
 _LATCHED: Final = Mode.LATCHED
@@ -79,3 +81,13 @@ class ScanInputs:
         if mode is _HOLD:
             self.lifting_s = now_s - state.mode_since_s
         self.resting = mode is _IDLE or mode is _LATCHED or mode is _ARMED
+
+    def note_drives(self, mode: Mode, demand: BaseDemand, readings: BaseReadings) -> bool:
+        """Bring ``confirmed`` and ``unpowered`` up to date; return whether all drives have just come into operation."""
+        working, before = mode is _RUN or mode is _HOLD, self.confirmed
+        self.confirmed = working and demand.enabled and (before or readings.drives_enabled)
+        if self.confirmed or not working:
+            self.unpowered = False
+        elif not demand.enabled and readings.drives_disabled:
+            self.unpowered = True
+        return self.confirmed and not before

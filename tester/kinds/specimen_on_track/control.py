@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from math import inf, isfinite
 
-from tester.inputs.rig.config import values_of
 from tester.kinds.specimen_on_track.interlocks.chamber import CHAMBER_OFF_S
 from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_DELAY_S, STALE_CELL_S
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs, TrackLimits, WayMonitor
@@ -17,9 +16,10 @@ from tester.kinds.specimen_on_track.interlocks.operation import HOLD_AT_MOST_S
 from tester.kinds.specimen_on_track.interlocks.stops import STOP_TIMEOUT_S
 from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.control import Control, bounded, may_move
+from tester.machine.control import bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S
-from tester.machine.state import ControlState, Mode
+from tester.machine.standstill import StandstillControl
+from tester.machine.state import ControlState
 
 ARRIVED_K = 2.0
 """Air within this of the chamber's setpoint has been there, K [A]."""
@@ -29,17 +29,16 @@ LATE_S = 0.1
 """A row has tripped this long after its time, s: two slow scans."""
 
 
-class TrackState(ControlState[TrackSetpoints]):
-    """What control carries from one scan to the next."""
+TrackState = ControlState[TrackSetpoints]
 
 
-class TrackControl(Control[TrackState, TrackReadings, TrackDemand, TrackInputs]):
+class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, TrackInputs]):
     """The control of a specimen on a track."""
 
     def __init__(self, rig: TrackConfig, most_m_s: float = inf) -> None:
         """``most_m_s``: the most that the recipe asks for; commands stay within it and the rig's own bound."""
         state, view = TrackState(TrackSetpoints(lift_mm=rig.arm.raised_mm)), TrackInputs()
-        p = view.parameters = values_of(rig.interlocks, rig.table.parameters)
+        p = view.parameters = rig.values()
         view.note_further(rig)
         view.stop, view.setpoints = state.stop, state.setpoints
         view.limits = _limits(rig)
@@ -67,19 +66,10 @@ class TrackControl(Control[TrackState, TrackReadings, TrackDemand, TrackInputs])
         view.note_times(state, r.now_s, scan_s)
         view.attended = demand.attended
         view.loaded = demand.lowered or not r.raised
-        mode = state.mode
-        commanded = mode is Mode.RUN or mode is Mode.HOLD
-        if not demand.enabled or not commanded:
-            view.confirmed = False
-        elif not view.confirmed and r.drives_enabled:
-            view.confirmed = True
+        if view.note_drives(state.mode, demand, r):
             view.track.begin(0.0)
         if view.confirmed:
             view.track.follow(r.now_s, r.way_m, state.setpoints.track_m_s, dt)
-        if view.confirmed or not commanded:
-            view.unpowered = False
-        elif not demand.enabled and r.drives_disabled:
-            view.unpowered = True
         self._look_at_arm(view, r)
         self._look_at_chamber(view, r)
 
@@ -145,29 +135,10 @@ class TrackControl(Control[TrackState, TrackReadings, TrackDemand, TrackInputs])
 
     # -- stops ----------------------------------------------------------------------------------------------
 
-    def _stand(self, *, fast: bool) -> None:
-        """Command zero to the track and standby to the chamber."""
+    def stand(self) -> None:
+        """Command zero to the track and standby to the chamber; the arm stays where it is."""
         out = self.state.setpoints
-        out.track_m_s, out.quick_stop, out.chamber = 0.0, fast, False
-
-    def stop_outputs(self) -> None:
-        """Command a controlled or a fast stop."""
-        self._stand(fast=self.state.mode is not Mode.STOPPING)
-
-    def safe_outputs(self) -> None:
-        """Command quick stop and standby."""
-        out = self.state.setpoints
-        out.track_m_s, out.quick_stop, out.chamber = 0.0, True, False
-
-    def emergency_outputs(self) -> None:
-        """Mirror the hardware's emergency stop: nothing starts when it gives the power back."""
-        self._stand(fast=True)
-        self.state.setpoints.enable = False
-
-    def rest_outputs(self) -> None:
-        """Command nothing."""
-        self._stand(fast=False)
-        self.state.setpoints.enable = False
+        out.track_m_s, out.chamber = 0.0, False
 
     def withdraw_escalation(self) -> None:
         """Let drives and chamber hear from us again."""
@@ -203,10 +174,6 @@ class TrackControl(Control[TrackState, TrackReadings, TrackDemand, TrackInputs])
         off = not view.limits.chamber or view.readings.chamber_percent == 0.0
         late = view.readings.now_s - self.state.mode_since_s > view.parameters[CHAMBER_OFF_S] + LATE_S
         return standing(view) and (off or late)
-
-    def cool_outputs(self) -> str:
-        """Say that there is nothing to cool: this machine never waits for that."""
-        return "nothing to cool"
 
 
 def _limits(rig: TrackConfig) -> TrackLimits:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from tester.inputs.rig.plain import PlainRig
-from tester.machine.control import Control, bounded, may_move
+from tester.machine.control import bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.image import PlainDemand, PlainReadings, PlainSetpoints
 from tester.machine.plain.rows import HOLD_AT_MOST_S, STOP_TIMEOUT_S, PlainInputs
-from tester.machine.state import ControlState, Mode
+from tester.machine.standstill import StandstillControl
+from tester.machine.state import ControlState
 
 State = ControlState[PlainSetpoints]
 
 
-class PlainControl(Control[State, PlainReadings, PlainDemand, PlainInputs[PlainReadings]]):
+class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInputs[PlainReadings]]):
     """The control of drives that are given speeds."""
 
     def __init__(self, rig: PlainRig, table: InterlockTable, readings: PlainReadings) -> None:
@@ -25,7 +26,7 @@ class PlainControl(Control[State, PlainReadings, PlainDemand, PlainInputs[PlainR
             state, view, table, PlainDemand(), PlainDemand(), hold_at_most_s=p[HOLD_AT_MOST_S], ack_wait_s=p[ACK_WAIT_S]
         )
         self.axes = rig.axes
-        self._stand()
+        self.stand()
 
     def look(self, demand: PlainDemand, readings: PlainReadings, scan_s: float, dt: float) -> None:
         """Bring the inputs of the rows up to date."""
@@ -39,7 +40,7 @@ class PlainControl(Control[State, PlainReadings, PlainDemand, PlainInputs[PlainR
         """Command what is wanted; nothing moves before every drive is in operation."""
         out = self.state.setpoints
         out.enable, out.quick_stop = demand.enabled and may_move(readings), False
-        self._stand()
+        self.stand()
         if readings.drives_enabled:
             for name, wanted in demand.speeds.items():
                 out.speeds[name] = bounded(wanted, self.axes[name].max_speed)
@@ -48,29 +49,10 @@ class PlainControl(Control[State, PlainReadings, PlainDemand, PlainInputs[PlainR
         """Stand."""
         held.speeds.clear()
 
-    def _stand(self) -> None:
+    def stand(self) -> None:
+        """Command zero to every drive."""
         for name in self.axes:
             self.state.setpoints.speeds[name] = 0.0
-
-    def stop_outputs(self) -> None:
-        """Bring every drive to standstill: by its ramp, or by its quick stop."""
-        self._stand()
-        self.state.setpoints.quick_stop = self.state.mode is not Mode.STOPPING
-
-    def safe_outputs(self) -> None:
-        """Command standstill and a quick stop."""
-        self._stand()
-        self.state.setpoints.quick_stop = True
-
-    def emergency_outputs(self) -> None:
-        """Command the same, and want no power."""
-        self.safe_outputs()
-        self.state.setpoints.enable = False
-
-    def rest_outputs(self) -> None:
-        """Command nothing, want no power."""
-        self._stand()
-        self.state.setpoints.enable = self.state.setpoints.quick_stop = False
 
     def stop_ended(self) -> bool:
         """Tell whether every drive stands, or the time for it is over."""
@@ -80,7 +62,3 @@ class PlainControl(Control[State, PlainReadings, PlainDemand, PlainInputs[PlainR
 
     _fresh_s = 0.5
     """A stop does not end on data older than this, s [A]: five scans at rest."""
-
-    def cool_outputs(self) -> str:
-        """End a cool-down at once: nothing of a plain machine is hot."""
-        return "nothing is hot"

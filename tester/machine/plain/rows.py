@@ -19,12 +19,11 @@ from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.image import PlainDemand, PlainReadings
 from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Compared, Interlock
-from tester.machine.state import ControlState, Mode
+from tester.machine.state import ControlState
 from tester.machine.wires import DEVICE_REFUSED, INPUTS_STALE, LINE_NOISY, WARNINGS
 from tester.machine.wires import ROWS as WIRE_ROWS
 
 ReadingsT = TypeVar("ReadingsT", bound=PlainReadings)
-_WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,15 +62,7 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
         self.readings, self.demand = readings, demand
         self.note_times(state, readings.now_s, scan_s)
         self.attended = demand.attended
-        working = state.mode in _WORKING
-        if not (demand.enabled and working):
-            self.confirmed = False
-        elif readings.drives_enabled:
-            self.confirmed = True
-        if self.confirmed or not working:
-            self.unpowered = False
-        elif not demand.enabled and readings.drives_disabled:
-            self.unpowered = True
+        self.note_drives(state.mode, demand, readings)
 
 
 AnyInputs = PlainInputs[PlainReadings]
