@@ -223,3 +223,8 @@ def test_the_page_on_the_paper_quotes_what_is_predicted(
 def test_the_glossary_has_every_flag_as_the_one_list_has_it() -> None:
     text = (DOCS / "glossary.md").read_text(encoding="utf-8")
     assert runpy.run_path(str(DOCS / "flags.py"))["page_text"](text) == text
+
+
+def test_the_page_of_commands_is_made_from_the_commands_as_they_are() -> None:
+    text = (DOCS / "commands.md").read_text(encoding="utf-8")
+    assert runpy.run_path(str(DOCS / "commands.py"))["page_text"]() == text

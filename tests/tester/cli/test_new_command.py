@@ -32,7 +32,7 @@ def test_five_questions_make_a_recipe_that_passes_its_check() -> None:
     answers = ["sim", "1#, 2#", "300 mm/s", "100 N, 200 N", "", "", "40 degC", "4", "two loads"]
     result = new(answers="\n".join(answers) + "\n")
     assert result.stdout == "two-loads.yaml\n", result.stderr
-    assert [line[:2] for line in result.stderr.splitlines() if line[:1].isdigit()] == ["1.", "2.", "4.", "5."]
+    assert [line[:2] for line in result.stderr.splitlines() if line[:1].isdigit()] == ["1.", "2.", "3.", "4.", "5."]
     text = Path("two-loads.yaml").read_text(encoding="utf-8")
     assert "load: [100 N, 200 N]" in text and "repeats: 4," in text and "sideslip" not in text
     assert invoke(["check", "two-loads.yaml"]) == 0
