@@ -3,9 +3,9 @@
 Recipes and rig files come from editors and USB sticks (safety.md, "Bad input"), so this accepts a small,
 plain part of YAML: mappings, lists and scalars by the YAML 1.2 core schema (``NO`` is a text, ``1e3`` a
 number, ``1:30`` a text). Refused, with line and column: anchors, aliases, tags, merges, directives, several
-documents, duplicate keys, control and bidirectional characters, more than 256 kB or 20 levels. PyYAML's
-pure-Python scanner is used, because the C one crashes on some 30,000 open brackets; nothing is ever
-constructed from a tag.
+documents, duplicate keys, control and bidirectional characters, more than 256 kB or 20 levels. PyYAML
+supplies the events, from libyaml where its installation has that, else from its own parser; nothing is
+ever constructed from a tag.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, cast
 
+import yaml
 import yaml.events as ev
 from yaml.error import Mark, MarkedYAMLError
 from yaml.scanner import ScannerError
@@ -23,8 +24,7 @@ from yaml.scanner import ScannerError
 from tester.base.plain import FORBIDDEN, harmless
 from tester.base.trouble import in_words
 from tester.base.units import shown
-from tester.base.yaml_events import Events
-from tester.base.yaml_trouble import plainer
+from tester.base.yaml_trouble import OUT_OF_RANGE, plainer, too_deep
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
@@ -33,6 +33,9 @@ MAX_BYTES = 256 * 1024
 MAX_DEPTH = 20
 MAX_PROBLEMS = 100
 """Problems listed of one file; more than this helps nobody."""
+
+_LOADER = cast("type[yaml.SafeLoader]", getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+"""Only its events are used. libyaml is missing where PyYAML was built without it."""
 
 Value: TypeAlias = "bool | int | float | str | list[Value] | dict[str, Value] | None"
 Location: TypeAlias = tuple[str | int, ...]
@@ -180,13 +183,20 @@ def _refuse_characters(text: str, called: str) -> None:
         raise InvalidSource(problems)
 
 
+def _place(event: ev.Event) -> tuple[int, int]:
+    """Return the line and column at which an event begins, from 1."""
+    mark = cast("Mark", event.start_mark)
+    return mark.line + 1, mark.column + 1
+
+
 class _Builder:
     """Events to a Tree. Collects every problem that leaves the structure readable."""
 
     def __init__(self, tree: Tree) -> None:
         self.tree = tree
-        self.events = Events(tree.text, MAX_DEPTH)
         self.problems: list[Problem] = []
+        self._loader = _LOADER(tree.text)
+        self._reached = (1, 1)
 
     def build(self) -> None:
         """Fill the tree and the list of problems; raises InvalidSource where reading cannot go on."""
@@ -195,33 +205,38 @@ class _Builder:
         except MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
-            message = f"not YAML: {plainer(error, self.tree.text, line)}"
+            message = f"not YAML: {plainer(error, self.tree.text, line, column, MAX_DEPTH)}"
             raise InvalidSource([*self.problems, Problem(self.tree.name, line, column, message)]) from error
         except (ValueError, OverflowError) as error:
-            # chr() and int() inside the scanner, of an escape or a directive beyond their range.
-            line, column = self.events.line + 1, self.events.column + 1
-            message = "not YAML: a number in an escape or directive is out of range"
-            raise InvalidSource([*self.problems, Problem(self.tree.name, line, column, message)]) from error
+            # PyYAML's own parser calls chr() and int() for an escape or a directive, whatever its number.
+            out_of_range = Problem(self.tree.name, *self._reached, f"not YAML: {OUT_OF_RANGE}")
+            raise InvalidSource([*self.problems, out_of_range]) from error
+
+    def _following(self) -> ev.Event:
+        """Return the next event; raises MarkedYAMLError, and ValueError for an escape out of range."""
+        event = cast("ev.Event", self._loader.get_event())  # pyright: ignore[reportUnknownMemberType]
+        self._reached = _place(event)
+        return event
 
     def _document(self) -> None:
-        self.events.following()  # start of the stream
-        start = self.events.following()
+        self._following()  # start of the stream
+        start = self._following()
         if not isinstance(start, ev.DocumentStartEvent):
             self._refuse(start, "the file is empty")
             return
         if start.version is not None or start.tags:
             self._refuse(start, "directives (%YAML, %TAG) are not accepted")
-        self.tree.data = self._node(self.events.following(), (), 1)
-        self.events.following()  # end of the document
-        after = self.events.following()
+        self.tree.data = self._node(self._following(), (), 1)
+        self._following()  # end of the document
+        after = self._following()
         if isinstance(after, ev.DocumentStartEvent):
             self._refuse(after, "a second document (---) is not accepted: one file is one document")
 
     def _node(self, event: ev.Event, at: Location, depth: int) -> Value:
-        self.tree.positions[at] = self.events.place(event)
+        self.tree.positions[at] = _place(event)
         if depth > MAX_DEPTH and not isinstance(event, ev.ScalarEvent):
             mark = cast("Mark", event.start_mark)
-            raise ScannerError(None, None, f"nested deeper than {MAX_DEPTH} levels", mark)
+            raise ScannerError(None, None, too_deep(MAX_DEPTH), mark)
         if isinstance(event, ev.AliasEvent):
             self._refuse(event, "aliases (*name) are not accepted: write the value out")
             return None
@@ -241,21 +256,21 @@ class _Builder:
 
     def _sequence(self, at: Location, depth: int) -> list[Value]:
         items: list[Value] = []
-        while not isinstance(event := self.events.following(), ev.SequenceEndEvent):
+        while not isinstance(event := self._following(), ev.SequenceEndEvent):
             items.append(self._node(event, (*at, len(items)), depth + 1))
         return items
 
     def _mapping(self, at: Location, depth: int) -> dict[str, Value]:
         items: dict[str, Value] = {}
-        while not isinstance(event := self.events.following(), ev.MappingEndEvent):
+        while not isinstance(event := self._following(), ev.MappingEndEvent):
             key = self._key(event, at, depth)
             here = (*at, key)
             first = self.tree.keys.get(here) if key in items else None
             if first is not None:
                 self._refuse(event, f"duplicate key {shown(key)}: it is in line {first[0]} already")
                 here = (*here, -1)  # read past the value without touching what the first one left
-            self.tree.keys[here] = self.events.place(event)
-            value = self._node(self.events.following(), here, depth + 1)
+            self.tree.keys[here] = _place(event)
+            value = self._node(self._following(), here, depth + 1)
             items.setdefault(key, value)
         return items
 
@@ -266,7 +281,7 @@ class _Builder:
                 self._node(event, (*at, -1), depth + 1)
             return ""
         self._refuse_decoration(event)
-        if event.value == "<<" and event.style is None:
+        if event.value == "<<" and not event.style:
             self._refuse(event, "merges (<<) are not accepted: write the values out")
         elif not event.value:
             self._refuse(event, "the key is empty")
@@ -275,7 +290,7 @@ class _Builder:
 
     def _scalar(self, event: ev.ScalarEvent) -> Value:
         text = event.value
-        if event.style is not None:
+        if event.style:  # None or "" of a plain scalar
             self._refuse_escaped(event)
             return text
         if text in _NULL:
@@ -301,4 +316,4 @@ class _Builder:
             self._refuse(event, f"the character U+{ord(found.group()):04X} is not accepted, even as an escape")
 
     def _refuse(self, event: ev.Event, message: str) -> None:
-        self.problems.append(Problem(self.tree.name, *self.events.place(event), message))
+        self.problems.append(Problem(self.tree.name, *_place(event), message))

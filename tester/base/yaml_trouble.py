@@ -8,27 +8,45 @@ from tester.base.plain import harmless
 
 LEVELS = 3
 """Indentations that a message names at most, the deepest first."""
+_OUT_OF_PLACE = ("<block end>", "<document start>", "did not find expected key", "did not find expected '-'")
+"""In messages of either parser about a line that does not belong where it is: usually its indentation is wrong."""
 
 
-def plainer(error: MarkedYAMLError, text: str, line: int) -> str:
-    """Return PyYAML's message in one line, in plain words where its own are hard to understand.
+OUT_OF_RANGE = "a number in an escape or directive is out of range"
 
-    ``line``: of the text, from 1, where the problem is.
+
+def too_deep(levels: int) -> str:
+    """Return what is wrong with a text of more levels than these."""
+    return f"nested deeper than {levels} levels"
+
+
+def plainer(error: MarkedYAMLError, text: str, line: int, column: int, max_depth: int) -> str:
+    """Return PyYAML's or libyaml's message in one line, in plain words where their own are hard to understand.
+
+    ``line``, ``column``: of the text, from 1, where the problem is; ``max_depth``: levels that a file may have.
     """
     message = " ".join(f"{error.problem or ''}".split())
-    if "'\\t'" in message:
+    here = [*text.split("\n"), ""][line - 1]  # an unfinished text has its problem behind its last line
+    content, character = here.lstrip(" "), here[column - 1 : column]
+    if "nesting depth" in message:
+        return too_deep(max_depth)
+    if "Unicode character escape" in message or "long version number" in message:
+        return OUT_OF_RANGE
+    if "tab character" in message or (character == "\t" and "cannot start" in message):
         return "a tab where spaces are due (indent with spaces)"
+    if character and "cannot start" in message:
+        return f"{harmless(character)} cannot begin a text (a text that begins with it needs quotes)"
     not_allowed = "mapping values are not allowed" in message
-    if not_allowed or "<block end>" in message:
+    if not_allowed or any(one in message for one in _OUT_OF_PLACE):
         levels = _levels(text, line)
-        blanks = _indent(text.split("\n")[line - 1])
+        blanks = _indent(here)
         if blanks not in levels:
             listed = [f"{wanted} as in line {at}" for wanted, at in sorted(levels.items(), reverse=True)[:LEVELS]]
             return f"the line is indented by {blanks} (expected {' or '.join(listed)})"
+        if content.startswith("- ") and not not_allowed:
+            return "an item of a list (- ...) among keys"
     if not_allowed:
         return "a colon is not expected here (a text that holds ': ' needs quotes)"
-    if "found '-'" in message:
-        return "an item of a list (- ...) among keys"
     bracket = next((one for one in "]}" if f"',' or '{one}'" in message), "")
     if bracket:
         since = f" opened in line {error.context_mark.line + 1}" if error.context_mark else ""

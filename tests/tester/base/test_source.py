@@ -7,10 +7,13 @@ from pathlib import Path
 from typing import Annotated
 
 import pytest
+import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+import recipes
+from tester.base import source
 from tester.base.source import (
     MAX_BYTES,
     MAX_DEPTH,
@@ -21,6 +24,13 @@ from tester.base.source import (
     problems_from_validation,
 )
 from tester.base.units import Quantity
+
+
+@pytest.fixture(params=["CSafeLoader", "SafeLoader"])
+def parser(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """libyaml, and PyYAML's own parser, which takes its place where it is missing."""
+    monkeypatch.setattr(source, "_LOADER", getattr(yaml, request.param))
+    return request.param
 
 
 def refused(text: str) -> list[str]:
@@ -115,23 +125,38 @@ def test_a_file_is_called_what_the_caller_calls_it(tmp_path: Path) -> None:
         ("a: .nan\n", 'f.yaml:1:4: ".nan" is not a finite number'),
         ("a: 1e999\n", 'f.yaml:1:4: "1e999" is too large for a number'),
         ('a: "\\u202e"\n', "f.yaml:1:4: the character U+202E is not accepted, even as an escape"),
-        ('a: "\\UFFFFFFFF"\n', "f.yaml:1:7: not YAML: a number in an escape or directive is out of range"),
         ("a:\n\t- b\n", "f.yaml:2:1: not YAML: a tab where spaces are due (indent with spaces)"),
         ("a: b: c\n", "f.yaml:1:5: not YAML: a colon is not expected here (a text that holds ': ' needs quotes)"),
-        ("a:\n  - b: 1\n   c: 2\n",
-         "f.yaml:3:4: not YAML: the line is indented by 3 "
-         "(expected 4 as in line 2 or 2 as in line 2 or 0 as in line 1)"),
-        ("a:\n  b: 1\n   c: 2\n",
-         "f.yaml:3:5: not YAML: the line is indented by 3 (expected 2 as in line 2 or 0 as in line 1)"),
+        (
+            "a:\n  - b: 1\n   c: 2\n",
+            "f.yaml:3:4: not YAML: the line is indented by 3 "
+            "(expected 4 as in line 2 or 2 as in line 2 or 0 as in line 1)",
+        ),
+        (
+            "a:\n  b: 1\n   c: 2\n",
+            "f.yaml:3:5: not YAML: the line is indented by 3 (expected 2 as in line 2 or 0 as in line 1)",
+        ),
         ("a: 1\n# all\n b: 2\n", "f.yaml:3:2: not YAML: the line is indented by 1 (expected 0 as in line 1)"),
+        ("a: 1\n\tb: 2\n", "f.yaml:2:1: not YAML: a tab where spaces are due (indent with spaces)"),
+        ("  a: 1\nb: 2\n", "f.yaml:2:1: not YAML: the line is indented by 0 (expected 2 as in line 1)"),
+        ("a: @b\n", "f.yaml:1:4: not YAML: @ cannot begin a text (a text that begins with it needs quotes)"),
+        ("a: {b: 1\nc: 2\n", "f.yaml:2:2: not YAML: a comma or } is missing (for the bracket opened in line 1)"),
         ("a: 1\n- b\n", "f.yaml:2:1: not YAML: an item of a list (- ...) among keys"),
         ("a: [1,\n  2\nb: 3\n", "f.yaml:3:2: not YAML: a comma or ] is missing (for the bracket opened in line 1)"),
         ("", "f.yaml:1:1: the file is empty"),
         ("# only a comment\n", "f.yaml:2:1: the file is empty"),
     ],
 )
+@pytest.mark.usefixtures("parser")
 def test_yaml_beyond_our_rules_is_refused_where_it_stands(text: str, problem: str) -> None:
     assert refused(text) == [problem]
+
+
+def test_an_escape_out_of_range_is_refused_where_its_value_begins_or_is(parser: str) -> None:
+    column = {"CSafeLoader": 7, "SafeLoader": 1}[parser]
+    assert refused('a: "\\UFFFFFFFF"\n') == [
+        f"f.yaml:1:{column}: not YAML: a number in an escape or directive is out of range"
+    ]
 
 
 def test_an_alias_is_refused_beside_its_anchor() -> None:
@@ -150,6 +175,7 @@ def test_all_problems_come_at_once_sorted_by_position() -> None:
     assert [line.split(":")[1] for line in lines] == ["1", "2", "3", "4"]
 
 
+@pytest.mark.usefixtures("parser")
 @pytest.mark.parametrize("opening", ["[", "{a: ", "[\n", "- ", "? ", "[{a: "])
 def test_sixty_kilobytes_of_open_brackets_are_refused_at_the_depth_limit(opening: str) -> None:
     lines = refused(opening * (60_000 // len(opening)))
@@ -157,6 +183,7 @@ def test_sixty_kilobytes_of_open_brackets_are_refused_at_the_depth_limit(opening
     assert f"nested deeper than {MAX_DEPTH} levels" in lines[-1]
 
 
+@pytest.mark.usefixtures("parser")
 def test_nesting_up_to_the_limit_is_read() -> None:
     assert load_tree("[" * MAX_DEPTH + "1" + "]" * MAX_DEPTH).data
 
@@ -292,3 +319,38 @@ def test_a_value_of_another_type_is_named_in_plain_words(value: str, said: str) 
 def test_problems_sort_by_position_and_read_like_a_compilers() -> None:
     late, early = Problem("f", 10, 1, "b"), Problem("f", 9, 20, "a")
     assert str(InvalidSource([late, early])) == "f:9:20: a\nf:10:1: b"
+
+
+# -- two parsers ---------------------------------------------------------------------------------------------------
+
+PIECES = [
+    "\n", "\n  ", "\n    ", " ", "- ", "\n- ", ": ", ", ", ",", "[", "]", "{", "}", " # said", "a", "load", "key: ",
+    "\nkey: ", "100 N", "-3 mm/s", "1#", "0.5", "---", "'q'", '"d"', "&a ", "*a", "!t ", "25 °C", "a:b", "[1 N, 2 N]",
+]  # fmt: skip
+
+
+def read_by(loader: str, text: str) -> tuple[object, ...] | None:
+    """Return the tree with its places and problems, None of a text that is no YAML."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(source, "_LOADER", getattr(yaml, loader))
+        try:
+            tree, problems = source.read_tree(text)
+        except InvalidSource:
+            return None
+    return tree.data, tree.positions, tree.keys, [one.message for one in problems]
+
+
+@given(st.lists(st.sampled_from(PIECES), max_size=25).map("".join))
+@settings(max_examples=300, deadline=None)
+def test_both_parsers_read_the_same_in_what_both_read(text: str) -> None:
+    by_libyaml, by_pyyaml = read_by("CSafeLoader", text), read_by("SafeLoader", text)
+    if by_libyaml is not None and by_pyyaml is not None:
+        (data, _, *others), (same, _, *same_others) = by_libyaml, by_pyyaml
+        assert (data, others) == (same, same_others)  # a value that is left out has a place of its own in each
+
+
+@pytest.mark.parametrize("name", ["quickstart", "table2", "pre-grind"])
+def test_both_parsers_read_a_recipe_alike(name: str) -> None:
+    text = recipes.find(name).read_text(encoding="utf-8")
+    by_libyaml = read_by("CSafeLoader", text)
+    assert by_libyaml is not None and by_libyaml == read_by("SafeLoader", text)
