@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -31,9 +32,21 @@ def files() -> list[Path]:
 
 
 def is_there(cited: str) -> bool:
-    """Tell whether a path below the root exists; a decision may be cited by its number alone."""
+    """Return whether a path below the root exists, or is the number of a decision: the heading of a section."""
     numbered = DECISION.search(cited)
-    return (ROOT / cited).exists() or (numbered is not None and any((ROOT / "docs/decisions").glob(f"{numbered[1]}-*")))
+    return (ROOT / cited).exists() or (numbered is not None and int(numbered[1]) in decisions())
+
+
+@cache
+def decisions() -> list[int]:
+    """Return the numbers of all decisions, by the headings of their pages."""
+    pages = [path.read_text(encoding="utf-8") for path in (ROOT / "docs/decisions").glob("*.md")]
+    return sorted(int(number) for text in pages for number in re.findall(r"^## (\d+)\. ", text, re.MULTILINE))
+
+
+def test_every_decision_has_one_section_and_is_in_the_list_of_all() -> None:
+    listed = re.findall(r"^(\d+)\. \[", (ROOT / "docs/decisions/README.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert decisions() == list(map(int, listed)) == list(range(1, len(listed) + 1))
 
 
 def cited_wrongly(text: str) -> list[str]:
