@@ -12,7 +12,7 @@ from typing import Any, Final, Generic, TypeVar
 from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
-from tester.machine.row import NOTHING_COMPARED, Interlock, Reaction
+from tester.machine.row import Interlock, Reaction
 from tester.machine.state import ACKNOWLEDGED, ControlEvent, ControlState, Mode, Trip
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
@@ -247,7 +247,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         said = "; ".join(readings.faults())
         text = row.cause + (f" [{said}]" if said else "") + f" ({self.detail(readings)})"
         if state.trip is None:
-            compared = row.compared(self.view) if row.compared is not None else NOTHING_COMPARED
+            compared = row.watch.compared(self.view)
             state.trip = Trip(now, row.name, text, row.reaction, compared)
             state.events.append(ControlEvent(now, "trip", f"{row.name}: {text}"))
         else:
@@ -261,7 +261,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             if state.mode is not _LATCHED:
                 state.enter(_LATCHED, now, row.name)
 
-    def _acts_at_rest(self, row: Interlock) -> bool:
+    def _acts_at_rest(self, row: Interlock[Any]) -> bool:
         """Tell whether a row trips at rest: something is on that is to be off."""
         return row.at_rest is not None and row.at_rest(self.view)
 

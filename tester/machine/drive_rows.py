@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from tester.inputs.rig.parameter import Parameter
-from tester.machine.row import ACK, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, at_most, condition
 from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
 
 Tells = Callable[[Any], bool]
@@ -22,39 +22,39 @@ ACK_WAIT_S: Final = Parameter(
 )  # fmt: skip
 
 
-def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock:
+def _stops(v: Any) -> bool:
+    return v.stopped_s >= 0.0 and not v.stop.creeps
+
+
+def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[Any]:
     """Return the row of data that are too old while drives are on; ``heard_s``: when each came, of the readings."""
 
     def data_old(v: Any) -> bool:
-        r = v.readings
-        if not (v.demand.enabled and r.drives_enabled):
-            return False
-        since = r.now_s - drive_data_allowed_s(v)
-        return not all(at_s >= since for at_s in heard_s(r))
+        since = v.readings.now_s - drive_data_allowed_s(v)
+        return not all(at_s >= since for at_s in heard_s(v.readings))
 
     return Interlock(
         name="drive data stale",
         cause="no fresh drive data",
-        level="age > stale_can_scans periods, or > stale_can",
-        condition=data_old,
-        compared=lambda v: Compared(v.readings.now_s - min(heard_s(v.readings)), drive_data_allowed_s(v), "s"),
+        watch=condition(
+            "age > stale_can_scans periods, or > stale_can",
+            data_old,
+            lambda v: Compared(v.readings.now_s - min(heard_s(v.readings)), drive_data_allowed_s(v), "s"),
+        ),
+        applies=lambda v: v.demand.enabled and v.readings.drives_enabled,
         parameters=(STALE_CAN_SCANS, STALE_CAN_S),
         reaction=FAST,
         reset=ACK,
     )
 
 
-def drive_dropped_out(delay: Parameter) -> Interlock:
+def drive_dropped_out(delay: Parameter) -> Interlock[Any]:
     """Return the row of a drive that was in operation, is wanted there, and is not."""
-
-    def dropped_out(v: Any) -> bool:
-        return v.confirmed and v.demand.enabled and not v.readings.drives_enabled
-
     return Interlock(
         name="drive dropped out",
         cause="a drive left operation by itself (local control, torque off)",
-        level="not OPERATION_ENABLED although wanted",
-        condition=dropped_out,
+        watch=condition("not OPERATION_ENABLED although wanted", lambda v: not v.readings.drives_enabled),
+        applies=lambda v: v.confirmed and v.demand.enabled,
         delay=delay,
         reaction=FAST,
         reset=ACK,
@@ -63,20 +63,13 @@ def drive_dropped_out(delay: Parameter) -> Interlock:
 
 def not_stopping(
     due_s: Seconds, standing: Tells, cause: str, level: str, parameters: tuple[Parameter, ...]
-) -> Interlock:
+) -> Interlock[Any]:
     """Return the row of a controlled stop that does not bring the drives to a stand ``due_s`` after it began."""
-
-    def ramp_over(v: Any) -> bool:
-        if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
-            return False
-        return not (v.stopped_s <= due_s(v))
-
     return Interlock(
         name="not stopping",
         cause=cause,
-        level=level,
-        condition=ramp_over,
-        compared=lambda v: Compared(v.stopped_s, due_s(v), "s"),
+        watch=at_most(level, lambda v: v.stopped_s, due_s, "s"),
+        applies=lambda v: _stops(v) and not standing(v),
         parameters=parameters,
         when=ENDING,
         reaction=FAST,
@@ -84,20 +77,13 @@ def not_stopping(
     )
 
 
-def quick_stop_failed(due_s: Seconds, standing: Tells, cause: str, level: str, margin: Parameter) -> Interlock:
+def quick_stop_failed(due_s: Seconds, standing: Tells, cause: str, level: str, margin: Parameter) -> Interlock[Any]:
     """Return the row of a quick stop that does not bring the drives to a stand ``due_s`` after it began."""
-
-    def quick_stop_over(v: Any) -> bool:
-        if v.stop.creeps or not v.stopped_s >= 0.0 or standing(v):
-            return False
-        return not (v.readings.now_s - v.stop.fast_s <= due_s(v))
-
     return Interlock(
         name="quick stop failed",
         cause=cause,
-        level=level,
-        condition=quick_stop_over,
-        compared=lambda v: Compared(v.readings.now_s - v.stop.fast_s, due_s(v), "s"),
+        watch=at_most(level, lambda v: v.readings.now_s - v.stop.fast_s, due_s, "s"),
+        applies=lambda v: _stops(v) and not standing(v),
         parameters=(margin,),
         when=ENDING,
         reaction=POWER_OFF,
@@ -105,21 +91,14 @@ def quick_stop_failed(due_s: Seconds, standing: Tells, cause: str, level: str, m
     )
 
 
-def stop_not_ended(cause: str, level: str, timeout: Parameter, *others: Parameter) -> Interlock:
+def stop_not_ended(cause: str, level: str, timeout: Parameter, *others: Parameter) -> Interlock[Any]:
     """Return the row of a stop that has not come to its end; ``others``: bounds by which the end is known."""
-
-    def endless(v: Any) -> bool:
-        if v.stop.creeps or not v.stopped_s >= 0.0:
-            return False
-        return not (v.readings.now_s - v.mode_since_s <= v.parameters[timeout])
-
     return Interlock(
         name="stop not ended",
         cause=cause,
-        level=level,
-        condition=endless,
-        compared=lambda v: Compared(v.readings.now_s - v.mode_since_s, v.parameters[timeout], "s"),
-        parameters=(timeout, *others),
+        watch=at_most(level, lambda v: v.readings.now_s - v.mode_since_s, timeout),
+        parameters=others,
+        applies=_stops,
         when=ENDING,
         reaction=POWER_OFF,
         reset=REPAIR,

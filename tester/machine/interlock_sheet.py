@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from tester.inputs.rig.parameter import SECTION, Parameter, key_line
 from tester.machine.row import Interlock
@@ -21,7 +22,7 @@ HEADER = (
 class InterlockSheet:
     """What a kind's interlocks are, to be written down."""
 
-    rows: Sequence[Interlock]
+    rows: Sequence[Interlock[Any]]
     """The table, in its order."""
     others: Sequence[Parameter] = ()
     """Parameters of the section that no row has."""
@@ -33,7 +34,8 @@ class InterlockSheet:
         lines = ["| interlock | cause | level | after | reaction | reset |", "|---|---|---|---|---|---|"]
         for row in self.rows:
             after = row.delay.default if row.delay is not None and row.delay.value > 0.0 else "at once"
-            lines.append(f"| {row.name} | {row.cause} | {row.level} | {after} | {row.reaction.value} | {row.reset} |")
+            cells = (row.name, row.cause, row.watch.level, after, row.reaction.value, row.reset)
+            lines.append(f"| {' | '.join(cells)} |")
         return "\n".join(lines) + "\n"
 
     def section(self) -> str:

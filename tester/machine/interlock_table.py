@@ -5,61 +5,78 @@ The order is that of importance: of rows that trip in one scan the first becomes
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from math import inf
+from typing import Any, TypeAlias
 
 from tester.inputs.rig.parameter import Parameter, Values
 from tester.machine.inputs import ScanInputs
-from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Condition, Interlock, When
+from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Interlock, When, always
+
+Asked: TypeAlias = Callable[[Any], bool]
 
 
-def parameters_of(rows: Iterable[Interlock]) -> tuple[Parameter, ...]:
+def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
     """Return the parameters that rows declare, each once, with the first row that has it."""
     return tuple(dict.fromkeys(parameter for row in rows for parameter in row.declared()))
 
 
 class Group:
-    """Conditions that are evaluated together, with their bits."""
+    """Rows that are evaluated together, with their bits: one call a row."""
 
-    __slots__ = ("bits", "conditions")
+    __slots__ = ("members", "numbers", "others")
 
-    def __init__(self, members: Iterable[tuple[int, Condition]]) -> None:
-        """Take (bit, condition) pairs."""
-        found = tuple(members)
-        self.bits: tuple[int, ...] = tuple(one for one, _ in found)
-        self.conditions: tuple[Condition, ...] = tuple(condition for _, condition in found)
+    def __init__(self, members: Iterable[tuple[int, Interlock[Any]]]) -> None:
+        """Take (bit, row) pairs."""
+        self.members: tuple[tuple[int, Interlock[Any]], ...] = tuple(members)
+        rows = [row for _, row in self.members]
+        self.numbers: tuple[tuple[Callable[[Any], float], Parameter, Asked], ...] = tuple(
+            (row.watch.number, row.watch.parameters[0], row.applies or always)
+            for row in rows
+            if row.watch.number is not None
+        )
+        """Number, the parameter that it may not exceed, whether the row applies."""
+        self.others: tuple[tuple[Asked, Asked], ...] = tuple(
+            (row.watch.holds, row.applies or always) for row in rows if row.watch.number is None
+        )
 
     def held(self, v: ScanInputs) -> int:
-        """Return the bits of the conditions that hold. Nearly always none does: only then is it asked which."""
-        for condition in self.conditions:
-            if condition(v):
+        """Return the bits of the rows that hold. Nearly always none does: only then the search for which begins."""
+        parameters = v.parameters
+        for number, limit, applies in self.numbers:
+            if not (number(v) <= parameters[limit]) and applies(v):
+                return self._which(v)
+        for holds, applies in self.others:
+            if holds(v) and applies(v):
                 return self._which(v)
         return 0
 
     def _which(self, v: ScanInputs) -> int:
         held = 0
-        for i, condition in enumerate(self.conditions):
-            if condition(v):
-                held |= self.bits[i]
+        for bit, row in self.members:
+            if row.holds(v):
+                held |= bit
         return held
 
 
 class InterlockTable:
     """Rows, the bounds that belong to no row, and what both are asked in a scan. It never changes."""
 
-    def __init__(self, rows: Iterable[Interlock], operation: Iterable[Parameter] = ()) -> None:
+    def __init__(self, rows: Iterable[Interlock[Any]], operation: Iterable[Parameter] = ()) -> None:
         """Take the rows in their order; ``operation``: parameters of the section ``interlocks`` that no row has."""
-        self.rows: tuple[Interlock, ...] = tuple(rows)
+        self.rows: tuple[Interlock[Any], ...] = tuple(rows)
         self.operation: tuple[Parameter, ...] = tuple(operation)
         self.parameters: tuple[Parameter, ...] = (*parameters_of(self.rows), *self.operation)
+        """Every key of the rig file's section ``interlocks``, in its order."""
         self.channels: tuple[str, ...] = tuple(dict.fromkeys(name for row in self.rows for name in row.channels))
         """Channels of further sensors that rows look at."""
-        """Every key of the rig file's section ``interlocks``, in its order."""
         self._bits = {row.name: 1 << i for i, row in enumerate(self.rows)}
         self.always = self._group(ALWAYS)
         self.while_loaded = self._group(LOADED)
         self.while_ending = self._group(ENDING)
-        self._unseen = Group((self.bit(row.name), row.unseen) for row in self.rows if row.unseen is not None)
+        self._unseen = tuple(
+            (self.bit(row.name), there) for row in self.rows if (there := row.still_there()) is not None
+        )
         self.at_rest = sum(self.bit(row.name) for row in self.rows if row.at_rest is not None)
         """Rows that trip in idle, too."""
         self.warnings = sum(self.bit(row.name) for row in self.rows if row.reaction is WARN)
@@ -70,7 +87,7 @@ class InterlockTable:
         return self
 
     def _group(self, when: When) -> Group:
-        return Group((self.bit(row.name), row.condition) for row in self.rows if row.when is when)
+        return Group((self.bit(row.name), row) for row in self.rows if row.when is when)
 
     def bit(self, name: str) -> int:
         """Return the bit of a row; raises KeyError for a name that is not in the table."""
@@ -91,7 +108,7 @@ class InterlockTable:
 
     def still_there(self, v: ScanInputs) -> int:
         """Return the bits of rows that are watched only while something is wanted, as if it were."""
-        return self._unseen.held(v)
+        return sum(bit for bit, there in self._unseen if there(v))
 
     def delays_s(self, values: Values) -> tuple[float, ...]:
         """Return how long each row's condition must hold on a rig, s."""

@@ -1,27 +1,33 @@
-"""A row of the interlock table: one object that says what is watched, for how long, and what follows.
+"""A row of the interlock table: one object with what is watched, for how long, and what follows.
 
-A condition is a plain function over the kind's inputs, evaluated in every scan in which it can apply (``When``). It is
-written so that NaN and missing data fall on the tripped side: ``not (x <= limit)``, never ``x > limit``. It changes
-nothing and may be asked more than once in a scan. A condition that has held for the row's delay trips.
+``at_most``, ``at_least`` and ``within`` hold a number against its limits: the condition of the row, what a trip records
+and the sentence on the safety page come from the same value and limit. ``condition`` watches a state. Their functions
+take the kind's inputs and run in every scan in which the row can apply (``When``); they change nothing and may run more
+than once in a scan. A number that is NaN is beyond its limit, so missing data trip.
 """
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from math import nan
-from typing import Any, Final, TypeAlias
+from operator import attrgetter
+from typing import Any, Final, Generic, TypeAlias, TypeVar
 
+from tester.base.config_reader import SUFFIXES
 from tester.inputs.rig.parameter import Parameter, Values
 
-Condition: TypeAlias = Callable[[Any], bool]
-"""Over what the kind's rows look at: a class that inherits from ``ScanInputs``."""
+V = TypeVar("V", contravariant=True)
+"""What the kind's rows look at: a class that inherits from ``ScanInputs``."""
+Limit: TypeAlias = Parameter | str | float | Callable[[V], float]
+"""A parameter; the rig's own number by its place in the inputs ("limits.load_n"); a constant; or a function."""
 
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """What a row has found beyond its limit, as a person is told it. NaN where it is not known, or no one number."""
+    """A number beyond its limit, as a trip records it. NaN where it is not known, or where the row watches a state."""
 
     value: float
     limit: float
@@ -71,44 +77,130 @@ REPAIR: Final = "repaired, acknowledged"
 
 
 @dataclass(frozen=True, slots=True)
-class Interlock:
+class Watch(Generic[V]):
+    """What a row watches: made by ``at_most``, ``at_least``, ``within`` and ``condition``."""
+
+    level: str
+    """In words for the safety page; names such as ``stale_cell`` are keys of the rig file's section."""
+    holds: Callable[[V], bool]
+    compared: Callable[[V], Compared]
+    """Value and limit of a trip, for the record; called when the row trips."""
+    parameters: tuple[Parameter, ...] = ()
+    """The limit, where it is a parameter."""
+    number: Callable[[V], float] | None = None
+    """Of ``at_most`` a parameter: the table compares it without a call of ``holds``."""
+
+
+def at_most(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
+    """Return the watch of a number that may not exceed its limit.
+
+    ``level``: the sentence for the safety page, with ``{}`` for the limit's name. ``unit``: of value and limit; a
+    parameter brings its own, and so does a place in the inputs, whose name ends with it.
+    """
+    return _one_sided(operator.le, level, value, limit, unit)
+
+
+def at_least(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
+    """Return the watch of a number that may not fall below its limit; arguments as of ``at_most``."""
+    return _one_sided(operator.ge, level, value, limit, unit)
+
+
+def within(level: str, span: Callable[[V], tuple[float, float, float]], unit: str) -> Watch[V]:
+    """Return the watch of a number between two limits that may move; ``span``: lower limit, number, upper limit.
+
+    It also serves a row that watches several numbers: ``span`` returns the first that is beyond its limits.
+    """
+
+    def holds(v: V) -> bool:
+        low, value, high = span(v)
+        return not (low <= value <= high)
+
+    def compared(v: V) -> Compared:
+        low, value, high = span(v)
+        return Compared(value, low if value < low else high, unit)
+
+    return Watch(level, holds, compared)
+
+
+def condition(
+    level: str, holds: Callable[[V], bool], compared: Callable[[V], Compared] = lambda _: NOTHING_COMPARED
+) -> Watch[V]:
+    """Return the watch of a state. Write it so that missing data trip: ``not (x <= limit)``, never ``x > limit``."""
+    return Watch(level, holds, compared)
+
+
+def _one_sided(
+    inside: Callable[[float, float], bool], level: str, value: Callable[[V], float], limit: Limit[V], unit: str
+) -> Watch[V]:
+    parameters = (limit,) if isinstance(limit, Parameter) else ()
+    read, name, unit = _limit(limit, unit)
+    return Watch(
+        level.format(name),
+        lambda v: not inside(value(v), read(v)),
+        lambda v: Compared(value(v), read(v), unit),
+        parameters,
+        value if parameters and inside is operator.le else None,
+    )
+
+
+def _limit(limit: Limit[Any], unit: str) -> tuple[Callable[[Any], float], str, str]:
+    """Return how a limit is read from the inputs, its name and its unit."""
+    if isinstance(limit, Parameter):
+        return lambda v: v.parameters[limit], limit.key, limit.unit
+    if isinstance(limit, str):
+        unit, suffix = max(SUFFIXES.items(), key=lambda one: len(one[1]) * limit.endswith(one[1]))
+        return attrgetter(limit), limit.removesuffix(suffix), unit
+    if isinstance(limit, int | float):
+        return lambda _: limit, f"{limit:g}", unit
+    return limit, "", unit
+
+
+@dataclass(frozen=True, slots=True)
+class Interlock(Generic[V]):
     """One row."""
 
     name: str
     cause: str
     """What an operator reads when it trips."""
-    level: str
-    """The condition in words for docs/safety.md; names such as ``stale_cell`` are keys of the rig file's section."""
-    condition: Condition
+    watch: Watch[V]
     reaction: Reaction
     reset: str
     """What has to be the case before a run may begin again."""
     parameters: tuple[Parameter, ...] = ()
-    """What the condition compares with, in the order of the rig file; a parameter that several rows use stands in the
-    section once, with the first of them."""
+    """What the row compares with beside the limit of its watch, in the order of the rig file (which may name the limit
+    too, to place it); a parameter that several rows use is listed once in the section, with the first of them."""
+    applies: Callable[[V], bool] | None = None
+    """Whether the row applies in a scan, called only where the watch is beyond its limit. None: always."""
     delay: Parameter | None = None
-    """How long the condition must hold; None: it trips in its first scan."""
+    """How long the row must hold; None: it trips in its first scan."""
     channels: tuple[str, ...] = ()
-    """Channels of further sensors that the condition looks at (``ScanInputs.further``), by their names in the record. A
-    rig file without such a sensor is refused."""
+    """Channels of further sensors that the row looks at (``ScanInputs.further``), by their names in the record. A rig
+    file without such a sensor is refused."""
     when: When = ALWAYS
-    compared: Callable[[Any], Compared] | None = None
-    """Value and limit of a trip, for the record; asked when the row trips. None: what it looks at is no number."""
-    unseen: Condition | None = None
-    """For a condition that is only looked at while something is wanted (drives, load, heat): is its cause still there?
-    Asked before a trip of this row is acknowledged."""
-    at_rest: Condition | None = None
-    """Tells whether the row trips in idle, too: nothing is left to stop then, but something to take the power off."""
+    unseen: Callable[[V], bool] | bool = False
+    """For a row that is watched only while something is wanted (drives, load, heat): is its cause still there? Called
+    before a trip of this row is acknowledged. True: its watch, whether or not the row applies."""
+    at_rest: Callable[[V], bool] | None = None
+    """Whether the row trips in idle, too: nothing is left to stop then, but something to take the power off."""
     ends_lease: bool = False
     """A device that is still on when it trips is left to its lease: its setpoint is not renewed any more."""
 
+    def holds(self, v: V) -> bool:
+        """Return whether the row holds in a scan."""
+        return self.watch.holds(v) and (self.applies is None or self.applies(v))
+
+    def still_there(self) -> Callable[[V], bool] | None:
+        """Return what an acknowledgement asks of the row's cause; None: only whether the row holds."""
+        return self.unseen if callable(self.unseen) else self.watch.holds if self.unseen else None
+
     def delay_s(self, values: Values) -> float:
-        """Return how long the condition must hold on a rig, s."""
+        """Return how long the row must hold on a rig, s."""
         return values[self.delay] if self.delay is not None else 0.0
 
     def declared(self) -> tuple[Parameter, ...]:
-        """Return every parameter of the row, its delay last."""
-        return self.parameters if self.delay is None else (*self.parameters, self.delay)
+        """Return every parameter of the row: its limit first where ``parameters`` has it nowhere, its delay last."""
+        limit = tuple(one for one in self.watch.parameters if one not in self.parameters)
+        return (*limit, *self.parameters, *([self.delay] if self.delay is not None else []))
 
 
 def always(_: Any) -> bool:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import nan
-from typing import Final, Protocol
+from typing import Any, Final, Protocol, TypeAlias
 
 from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter, Values
 from tester.machine.image import BaseDemand, BaseReadings
-from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Interlock, at_least, at_most, condition
 
 
 class Limits(Protocol):
@@ -47,15 +47,12 @@ class WireInputs(Protocol):
     def late_before_s(self) -> float: ...
 
 
-def _chain_open(v: WireInputs) -> bool:
-    return not v.readings.safety_chain
+Row: TypeAlias = Interlock[WireInputs]
 
-
-SAFETY_CHAIN: Final = Interlock(
+SAFETY_CHAIN: Final[Row] = Interlock(
     name="safety chain",
     cause="emergency stop circuit open (drive input)",
-    level="input 0x60FD bit 16 = 0",
-    condition=_chain_open,
+    watch=condition("input 0x60FD bit 16 = 0", lambda v: not v.readings.safety_chain),
     reaction=EMERGENCY,
     reset=ACK,
 )
@@ -84,69 +81,49 @@ def _nobody_heard(v: WireInputs) -> bool:
     return not (r.now_s - late_s - r.can_heard_s <= allowed_s)
 
 
-CAN_SILENT: Final = Interlock(
+CAN_SILENT: Final[Row] = Interlock(
     name="CAN silent",
     cause="CAN cable, its terminators or the drives' supply: no drive is heard",
-    level="no frame for silent_can_scans periods (drives on), or silent_can_heartbeats",
-    condition=_nobody_heard,
+    watch=condition("no frame for silent_can_scans periods (drives on), or silent_can_heartbeats", _nobody_heard),
     parameters=(SILENT_CAN_SCANS, SILENT_CAN_HEARTBEATS),
     reaction=FAST,
     reset=ACK,
 )
 
 
-def _drive_faulty(v: WireInputs) -> bool:
-    return v.readings.drive_fault != ""
-
-
-DRIVE_FAULT: Final = Interlock(
+DRIVE_FAULT: Final[Row] = Interlock(
     name="drive fault",
     cause="drive in fault, lost, rebooted or with an emergency message",
-    level="state FAULT, heartbeat missing 3 x 50 ms, boot-up, or EMCY",
-    condition=_drive_faulty,
+    watch=condition(
+        "state FAULT, heartbeat missing 3 x 50 ms, boot-up, or EMCY", lambda v: v.readings.drive_fault != ""
+    ),
     reaction=FAST,
     reset="drive reset by the acknowledgement",
 )
 
 
-def _bus_gone(v: WireInputs) -> bool:
-    return v.readings.bus_fault != ""
-
-
-BUS_LOST: Final = Interlock(
+BUS_LOST: Final[Row] = Interlock(
     name="bus lost",
     cause="CAN adapter or serial line gone, bus-off",
-    level="the wire's port is lost: it is never reopened",
-    condition=_bus_gone,
+    watch=condition("the wire's port is lost: it is never reopened", lambda v: v.readings.bus_fault != ""),
     reaction=FAST,
     reset="started anew",
 )
 
 
-def _other_master(v: WireInputs) -> bool:
-    return v.readings.foreign_master != ""
-
-
-SECOND_MASTER: Final = Interlock(
+SECOND_MASTER: Final[Row] = Interlock(
     name="second master",
     cause="another master on the CAN bus",
-    level="a frame only a master sends",
-    condition=_other_master,
+    watch=condition("a frame only a master sends", lambda v: v.readings.foreign_master != ""),
     reaction=FAST,
     reset="other master gone, started anew",
 )
 
 
-def _clock_back(v: WireInputs) -> bool:
-    return not (v.readings.now_s >= v.last_s)
-
-
-CLOCK_JUMP: Final = Interlock(
+CLOCK_JUMP: Final[Row] = Interlock(
     name="clock jump",
     cause="the scan's clock went back",
-    level="now < last scan",
-    condition=_clock_back,
-    compared=lambda v: Compared(v.readings.now_s - v.last_s, 0.0, "s"),
+    watch=at_least("now < last scan", lambda v: v.readings.now_s - v.last_s, 0.0, "s"),
     reaction=FAST,
     reset=ACK,
 )
@@ -157,37 +134,22 @@ LATE_SCAN_S: Final = Parameter(
     hardest="200 ms", because="the drives stop by themselves 200 ms after the PC's last heartbeat or setpoint",
 )  # fmt: skip
 
-
-def _late(v: WireInputs) -> bool:
-    return not (v.late_s <= v.parameters[LATE_SCAN_S])
-
-
-SCAN_LATE: Final = Interlock(
+SCAN_LATE: Final[Row] = Interlock(
     name="scan late",
     cause="the controlling process was late",
-    level="scan later than late_scan",
-    condition=_late,
-    compared=lambda v: Compared(v.late_s, v.parameters[LATE_SCAN_S], "s"),
+    watch=at_most("scan later than {}", lambda v: v.late_s, LATE_SCAN_S),
     parameters=(LATE_WARN_S, LATE_SCAN_S),
     reaction=FAST,
     reset=ACK,
 )
 
 
-def _guard_open(v: WireInputs) -> bool:
-    return v.demand.enabled and not v.readings.guard_closed
-
-
-def _guard_still_open(v: WireInputs) -> bool:
-    return not v.readings.guard_closed
-
-
-GUARD_OPEN: Final = Interlock(
+GUARD_OPEN: Final[Row] = Interlock(
     name="guard open",
     cause="guard open with drives on",
-    level="input 0x60FD bit 17 = 0, drives wanted",
-    condition=_guard_open,
-    unseen=_guard_still_open,
+    watch=condition("input 0x60FD bit 17 = 0, drives wanted", lambda v: not v.readings.guard_closed),
+    applies=lambda v: v.demand.enabled,
+    unseen=True,
     reaction=FAST,
     reset=ACK,
 )
@@ -199,19 +161,10 @@ STALE_INPUTS_S: Final = Parameter(
     because="five periods of the drive's input word: four lost in a row are no noise, the drive no longer sends them",
 )  # fmt: skip
 
-
-def _inputs_old(v: WireInputs) -> bool:
-    r = v.readings
-    return not (r.now_s - r.inputs_at_s <= v.parameters[STALE_INPUTS_S])
-
-
-INPUTS_STALE: Final = Interlock(
+INPUTS_STALE: Final[Row] = Interlock(
     name="inputs stale",
     cause="no fresh input word from the drive with the safety inputs",
-    level="age > stale_inputs",
-    condition=_inputs_old,
-    compared=lambda v: Compared(v.readings.now_s - v.readings.inputs_at_s, v.parameters[STALE_INPUTS_S], "s"),
-    parameters=(STALE_INPUTS_S,),
+    watch=at_most("age > {}", lambda v: v.readings.now_s - v.readings.inputs_at_s, STALE_INPUTS_S),
     reaction=FAST,
     reset=ACK,
 )
@@ -240,15 +193,10 @@ def drive_data_allowed_s(v: WireInputs) -> float:
     return allowed if allowed < most else most
 
 
-def _device_refuses(v: WireInputs) -> bool:
-    return v.readings.device_fault != ""
-
-
-DEVICE_REFUSED: Final = Interlock(
+DEVICE_REFUSED: Final[Row] = Interlock(
     name="device refused",
     cause="a Modbus device refuses a request, or misses our commands",
-    level="exception 01 to 03, or its lease ran out",
-    condition=_device_refuses,
+    watch=condition("exception 01 to 03, or its lease ran out", lambda v: v.readings.device_fault != ""),
     reaction=CONTROLLED,
     reset=REPAIR,
 )
@@ -263,42 +211,27 @@ LINE_ERRORS_DELAY_S: Final = Parameter(
     hardest="10 s", because="the values' own ages are watched besides: this row only names the line",
 )  # fmt: skip
 
-
-def _line_noisy(v: WireInputs) -> bool:
-    return not (v.readings.line_errors <= v.parameters[LINE_ERRORS])
-
-
-LINE_NOISY: Final = Interlock(
+LINE_NOISY: Final[Row] = Interlock(
     name="line noisy",
     cause="a Modbus device answers badly (CRC, time-outs, late replies)",
-    level="failed requests > line_errors",
-    condition=_line_noisy,
-    compared=lambda v: Compared(v.readings.line_errors, v.parameters[LINE_ERRORS], "1"),
-    parameters=(LINE_ERRORS,),
+    watch=at_most("failed requests > {}", lambda v: v.readings.line_errors, LINE_ERRORS),
     delay=LINE_ERRORS_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
 )
 
-
-def _delayed(v: WireInputs) -> bool:
-    return not (v.late_s <= v.parameters[LATE_WARN_S])
-
-
-SCAN_DELAYED: Final = Interlock(
+SCAN_DELAYED: Final[Row] = Interlock(
     name="scan delayed",
     cause="the controlling process was late, but not dangerously",
-    level="scan later than late_warn",
-    condition=_delayed,
-    parameters=(LATE_WARN_S,),
+    watch=at_most("scan later than {}", lambda v: v.late_s, LATE_WARN_S),
     reaction=WARN,
     reset="by itself",
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Interlock[Any], ...]] = (
     SAFETY_CHAIN, BUS_LOST, CAN_SILENT, DRIVE_FAULT, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
 )  # fmt: skip
-WARNINGS: Final[tuple[Interlock, ...]] = (SCAN_DELAYED,)
+WARNINGS: Final[tuple[Interlock[Any], ...]] = (SCAN_DELAYED,)
 """Only said: they stand last in the table."""
 
 

@@ -103,7 +103,7 @@ def test_a_pull_that_is_not_known_is_taken_for_too_much() -> None:
 
     def held(force_n: float) -> bool:
         seen = SimpleNamespace(readings=SimpleNamespace(force_n=force_n), parameters={SPRING_N: 40.0})
-        return OVERDRAWN.condition(seen)
+        return OVERDRAWN.holds(seen)
 
     assert [held(force_n) for force_n in (0.0, 40.0, -40.0)] == [False] * 3
     assert [held(force_n) for force_n in (40.1, -40.1, nan)] == [True] * 3

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final, Generic, TypeAlias, TypeVar
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.inputs.rig.plain import PlainRig
@@ -18,7 +18,7 @@ from tester.machine.drive_rows import (
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.image import PlainDemand, PlainReadings
-from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Interlock, at_most, condition
 from tester.machine.state import ControlState
 from tester.machine.wires import DEVICE_REFUSED, INPUTS_STALE, LINE_NOISY, WARNINGS
 from tester.machine.wires import ROWS as WIRE_ROWS
@@ -66,7 +66,7 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
 
 
 AnyInputs = PlainInputs[PlainReadings]
-
+Row: TypeAlias = Interlock[AnyInputs]
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.drives_at_s,))
 
@@ -97,17 +97,14 @@ def _fastest(v: AnyInputs) -> float:
     return max(shares, key=lambda share: (share != share, share))
 
 
-def _too_fast(v: AnyInputs) -> bool:
-    return not v.readings.drives_disabled and not (_fastest(v) <= 1.0 + v.parameters[OVERSPEED_SHARE])
-
-
-OVERSPEED: Final = Interlock(
+OVERSPEED: Final[Row] = Interlock(
     name="overspeed",
     cause="a drive is faster than its axis may be",
-    level="speed > max_speed + overspeed_share",
-    condition=_too_fast,
-    compared=lambda v: Compared(_fastest(v), 1.0 + v.parameters[OVERSPEED_SHARE], "1"),
+    watch=at_most(
+        "speed > max_speed + overspeed_share", _fastest, lambda v: 1.0 + v.parameters[OVERSPEED_SHARE], "1"
+    ),
     parameters=(OVERSPEED_SHARE,),
+    applies=lambda v: not v.readings.drives_disabled,
     delay=OVERSPEED_DELAY_S,
     reaction=FAST,
     reset=REPAIR,
@@ -118,21 +115,12 @@ STALE_SENSOR_S: Final = Parameter(
     hardest="500 ms", because="a row that looks at a sensor is blind that long",
 )  # fmt: skip
 
-
-def _sensor_silent(v: AnyInputs) -> bool:
-    r = v.readings
-    return not (r.now_s - r.sensors_at_s <= v.parameters[STALE_SENSOR_S])
-
-
-SENSOR_SILENT: Final = Interlock(
+SENSOR_SILENT: Final[Row] = Interlock(
     name="sensor silent",
     cause="a sensor does not answer, or says that it is not valid",
-    level="age > stale_sensor, or invalid",
-    condition=_sensor_silent,
-    compared=lambda v: Compared(v.readings.now_s - v.readings.sensors_at_s, v.parameters[STALE_SENSOR_S], "s"),
-    parameters=(STALE_SENSOR_S,),
+    watch=at_most("age > {}, or invalid", lambda v: v.readings.now_s - v.readings.sensors_at_s, STALE_SENSOR_S),
     when=LOADED,
-    unseen=_sensor_silent,
+    unseen=True,
     reaction=FAST,
     reset=ACK,
 )
@@ -183,14 +171,14 @@ def _moving_at_rest(v: AnyInputs) -> bool:
     known = r.now_s - r.drives_at_s <= v.parameters[REST_AFTER_S]
     if v.resting or v.demand.enabled:
         return not (known and r.standing)
-    return v.unpowered and not (known and r.drives_disabled)
+    return not (known and r.drives_disabled)
 
 
-MOVING_AT_REST: Final = Interlock(
+MOVING_AT_REST: Final[Row] = Interlock(
     name="moving at rest",
     cause="a drive turns, or has power, although everything is to rest",
-    level="not known to stand; in a run: power that is not wanted",
-    condition=lambda v: (v.resting or v.unpowered) and _moving_at_rest(v),
+    watch=condition("not known to stand; in a run: power that is not wanted", _moving_at_rest),
+    applies=lambda v: v.resting or v.unpowered,
     parameters=(REST_AFTER_S,),
     delay=DROPPED_DELAY_S,
     when=ENDING,
@@ -207,13 +195,13 @@ OPERATION: Final = (HOLD_AT_MOST_S, ACK_WAIT_S)
 ABOUT: Final = "holds and acknowledgements"
 """Parameters of no row, and what they are for."""
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Interlock[Any], ...]] = (
     INPUTS_STALE, DEVICE_REFUSED, LINE_NOISY, DRIVE_DATA_STALE, DRIVE_DROPPED_OUT, OVERSPEED, NOT_STOPPING,
     QUICK_STOP_FAILED, STOP_NOT_ENDED, MOVING_AT_REST,
 )  # fmt: skip
 
 
-def plain_table(*own: Interlock) -> InterlockTable:
+def plain_table(*own: Interlock[Any]) -> InterlockTable:
     """Return the interlock table of a kind with rows of its own.
 
     A sensor that says nothing is told as such: its row comes before those that look at what it measures.

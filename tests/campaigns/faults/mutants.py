@@ -25,7 +25,6 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS
 from tests.campaigns.faults.first_up import FIRST
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -59,28 +58,24 @@ _CONTACT = "tester/kinds/wheel_on_belt/procedures/first_contact.py"
 
 
 def _masked(name: str) -> Mutant:
-    """Return the mutant in which a row of the table never holds."""
-    row = next(one for one in INTERLOCKS if one.name == name)
-    condition = row.condition
-    path = condition.__module__.replace(".", "/") + ".py"
-    return Mutant(
-        f"row masked: {name}", path, f"condition={condition.__name__},\n", "condition=lambda v: False,\n", name
-    )
+    """Return the mutant in which a row of the table is never evaluated."""
+    old = "for row in self.rows if row.when is when)"
+    return Mutant(f"row masked: {name}", _TABLE, old, f"{old[:-1]} and row.name != {name!r})", name)
 
 
 BY_HAND: tuple[Mutant, ...] = (
     Mutant("a comparison inverted: overload", _LOAD,
-           "not (v.readings.force_z_n <= v.limits.load_n)", "not (v.readings.force_z_n >= v.limits.load_n)"),
+           'at_most("Fz > {}", _force_n,', 'at_least("Fz > {}", _force_n,'),
     Mutant("a comparison inverted: standing under load", _MOTION,
            "if v.turning is belt_moves:", "if v.turning is not belt_moves:"),
     Mutant("a comparison inverted: overshoot", _LOAD,
-           "return not (v.readings.force_z_n <= _most_n(v))", "return v.readings.force_z_n <= -_most_n(v)"),
+           '_force_n, _most_n, "N"', 'lambda v: -_force_n(v), _most_n, "N"'),
     Mutant("a comparison inverted: wheel speed", _MOTION,
-           "return not (wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error)",
-           "return wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error"),
+           "return wheel.low_m_s - error, v.readings.wheel_speed_m_s, wheel.high_m_s + error",
+           "return wheel.high_m_s + error, v.readings.wheel_speed_m_s, wheel.low_m_s - error"),
     Mutant("a delay x 10: stale temperatures", _HUB,
-           "parameters=(STALE_JACKET_S,),\n    delay=STALE_DELAY_S,",
-           "parameters=(STALE_JACKET_S,),\n    delay=JACKET_DELAY_S,"),
+           "applies=lambda v: not v.attended,\n    delay=STALE_DELAY_S,",
+           "applies=lambda v: not v.attended,\n    delay=JACKET_DELAY_S,"),
     Mutant("a delay x 10: load overshoot", _LOAD,
            "    delay=OVERLOAD_DELAY_S,\n", "    delay=FROZEN_CELL_S,\n"),
     Mutant("a level made an edge", _CONTROL,
@@ -92,19 +87,18 @@ BY_HAND: tuple[Mutant, ...] = (
     Mutant("stale accepted: drives", _WIRES,
            "return allowed if allowed < most else most", "return 1e9"),
     Mutant("stale accepted: load", _LOAD,
-           "return not (_cell_answered_s(v) <= v.parameters[STALE_CELL_S])",
-           "return not (v.readings.now_s - v.readings.cell_at_s <= 1e9)"),
+           "        _cell_answered_s,\n", "        lambda v: 1e-9 * (v.readings.now_s - v.readings.cell_at_s),\n"),
     Mutant("not a number passes: hub", _HUB,
-           "not (_hub_answered_s(v) <= v.parameters[STALE_JACKET_S])",
-           "_hub_answered_s(v) > v.parameters[STALE_JACKET_S]"),
+           "_hub_answered_s, STALE_JACKET_S", "lambda v: max(0.0, _hub_answered_s(v)), STALE_JACKET_S"),
+    Mutant("not a number passes: every limit that is a parameter", _TABLE,
+           "not (number(v) <= parameters[limit])", "number(v) > parameters[limit]"),
     Mutant("acknowledged without the cause gone", _CONTROL,
            "        holding = (state.held | table.still_there(self.view) & state.tripped) & ~table.warnings\n",
            "        holding = 0\n"),
     Mutant("the drives do not watch our heartbeat", "drivers/servo_setup.py",
            "    watched = heartbeat.consumer_entry(pc_node_id, config.consumer_heartbeat_s)\n", "    watched = 0\n"),
     Mutant("a unit factor 1000: late scans", _WIRES,
-           "return not (v.late_s <= v.parameters[LATE_SCAN_S])",
-           "return not (1e-3 * v.late_s <= v.parameters[LATE_SCAN_S])"),
+           "lambda v: v.late_s, LATE_SCAN_S", "lambda v: 1e-3 * v.late_s, LATE_SCAN_S"),
     Mutant("safe outputs without: heat off", _SAFE, "    setpoints.heat = False\n", ""),
     Mutant("safe outputs without: contactor off", _SAFE, "    setpoints.contactor = False\n", ""),
     Mutant("safe outputs without: lift", _SAFE,

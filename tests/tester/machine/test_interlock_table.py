@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import replace
-from math import inf
+from math import inf, nan
 from typing import Any
 
 import pytest
@@ -12,7 +12,7 @@ import pytest
 from tester.inputs.rig.parameter import Parameter
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import Group, InterlockTable, parameters_of
-from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always
+from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always, at_most, condition
 
 DELAY = Parameter("toy_delay_s", "s", "30 ms", "for this long")
 LEVEL = Parameter("toy_level_n", "N", "3 N", "more than this")
@@ -23,13 +23,17 @@ def never(_: Any) -> bool:
     return False
 
 
-ROW = Interlock("always", "a toy", "always", always, FAST, "by itself", parameters=(LEVEL,), delay=DELAY)
+NEVER = condition("never", never)
+ROW: Interlock[ScanInputs] = Interlock(
+    "always", "a toy", condition("always", always), FAST, "by itself", parameters=(LEVEL,), delay=DELAY
+)
+LATE: Interlock[ScanInputs] = Interlock("late", "a toy", at_most("late", lambda v: v.late_s, LEVEL), FAST, "by itself")
 TABLE = InterlockTable(
     [
         ROW,
-        replace(ROW, name="loaded", when=LOADED, unseen=always),
+        replace(ROW, name="loaded", when=LOADED, unseen=True),
         replace(ROW, name="ending", when=ENDING, at_rest=always),
-        replace(ROW, name="never", condition=never, unseen=never),
+        replace(ROW, name="never", watch=NEVER, unseen=never),
         replace(ROW, name="warning", reaction=WARN),
     ],
     [OPERATION],
@@ -39,6 +43,7 @@ TABLE = InterlockTable(
 def scan(**what: object) -> ScanInputs:
     """Return a scan of a run in contact, in which nothing ends."""
     inputs = ScanInputs(resting=False)
+    inputs.parameters = {LEVEL: 3.0}
     for name, value in what.items():
         setattr(inputs, name, value)
     return inputs
@@ -83,12 +88,17 @@ def test_a_row_is_timed_by_its_delay() -> None:
 
 
 def test_a_group_tells_every_condition_that_holds() -> None:
-    group = Group([(1, never), (2, always), (4, never), (8, always)])
-    assert group.held(scan()) == 10
+    rows = [replace(ROW, watch=NEVER), ROW, replace(ROW, applies=never), LATE, replace(LATE, applies=never)]
+    group = Group((1 << i, row) for i, row in enumerate(rows))
+    assert group.held(scan(late_s=4.0)) == 0b1010 and group.held(scan(late_s=3.0)) == 0b0010
+
+
+def test_a_number_that_is_not_known_is_beyond_its_limit() -> None:
+    assert [Group([(1, LATE)]).held(scan(late_s=late_s)) for late_s in (-inf, 3.0, 3.1, nan)] == [0, 0, 1, 1]
 
 
 def test_every_row_is_in_exactly_one_group() -> None:
-    bits = [one for group in (TABLE.always, TABLE.while_loaded, TABLE.while_ending) for one in group.bits]
+    bits = [one for group in (TABLE.always, TABLE.while_loaded, TABLE.while_ending) for one, _ in group.members]
     assert sorted(bits) == [1 << i for i in range(len(TABLE.rows))]
 
 

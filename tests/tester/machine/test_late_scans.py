@@ -55,7 +55,7 @@ def tripped(row: Interlock, late_s: Sequence[float], lost: Collection[int] = ())
             readings=shown, demand=SimpleNamespace(enabled=True), limits=SimpleNamespace(heartbeat_s=0.05),
             late_s=control.view.late_s, late_before_s=control.view.late_before_s,
         )  # fmt: skip
-        if row.condition(looked_at):
+        if row.holds(looked_at):
             found.append(number)
         syncs.append(now_s)
     return found

@@ -13,7 +13,7 @@ from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.prompts import Prompts
-from tester.machine.row import CONTROLLED, FAST, POWER_OFF, WARN, Compared, Interlock
+from tester.machine.row import CONTROLLED, FAST, POWER_OFF, WARN, Interlock, at_most, condition
 from tester.machine.state import ControlState
 from tester.store.recorder import NullRecorder
 from tests.tester.inputs.recipe.texts import rig
@@ -52,28 +52,19 @@ class LampInputs(ScanInputs):
     readings: LampReadings = field(default_factory=LampReadings)
 
 
-def _hot(v: LampInputs) -> bool:
-    return not (v.readings.lamp_c <= v.parameters[HOT_C])
-
-
-def _open(v: LampInputs) -> bool:
-    return not v.readings.safety_chain
-
-
 def _lit(v: LampInputs) -> bool:
     return v.readings.drives_enabled
 
 
 TABLE: Final = InterlockTable(
     (
-        Interlock("chain", "the safety chain is open", "open", _open, FAST, "closed", at_rest=_lit),
-        Interlock(
-            "hot", "the lamp is hot", "above hot", _hot, CONTROLLED, "cool", parameters=(HOT_C,), delay=HOT_DELAY_S,
-            compared=lambda v: Compared(v.readings.lamp_c, v.parameters[HOT_C], "degC"),
-        ),
-        Interlock("stays on", "it is lit at rest", "power at rest", lambda v: v.resting and _lit(v), POWER_OFF, "off",
-                  at_rest=_lit),
-        Interlock("late", "a scan came late", "late", lambda v: v.late_s > 1.0, WARN, "by itself"),
+        Interlock("chain", "the safety chain is open", condition("open", lambda v: not v.readings.safety_chain),
+                  FAST, "closed", at_rest=_lit),
+        Interlock("hot", "the lamp is hot", at_most("above {}", lambda v: v.readings.lamp_c, HOT_C),
+                  CONTROLLED, "cool", delay=HOT_DELAY_S),
+        Interlock("stays on", "it is lit at rest", condition("power at rest", lambda v: v.resting and _lit(v)),
+                  POWER_OFF, "off", at_rest=_lit),
+        Interlock("late", "a scan came late", at_most("late", lambda v: v.late_s, 1.0, "s"), WARN, "by itself"),
     )
 )  # fmt: skip
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
-from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
-from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
+from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
+from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock, at_most, condition, within
 from tester.machine.wires import answered_s
 
 STALE_AIR_S: Final = Parameter(
@@ -34,25 +34,21 @@ def _exit_s(v: TrackInputs) -> float:
     return answered_s(r.exit_silent, r.now_s, r.exit_at_s)
 
 
-AIR_SILENT: Final = Interlock(
+AIR_SILENT: Final[Row] = Interlock(
     name="air silent",
     cause="chamber or thermometer does not answer: nobody knows the temperature of the specimen",
-    level="age > stale_air",
-    condition=lambda v: v.limits.air and not v.attended and not (_air_s(v) <= v.parameters[STALE_AIR_S]),
-    compared=lambda v: Compared(_air_s(v), v.parameters[STALE_AIR_S], "s"),
-    parameters=(STALE_AIR_S,),
+    watch=at_most("age > {}", _air_s, STALE_AIR_S),
+    applies=lambda v: v.limits.air and not v.attended,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
 )
 
-EXIT_SILENT: Final = Interlock(
+EXIT_SILENT: Final[Row] = Interlock(
     name="pyrometer silent",
     cause="the pyrometer does not answer",
-    level="age > stale_exit",
-    condition=lambda v: v.limits.exit and not v.attended and not (_exit_s(v) <= v.parameters[STALE_EXIT_S]),
-    compared=lambda v: Compared(_exit_s(v), v.parameters[STALE_EXIT_S], "s"),
-    parameters=(STALE_EXIT_S,),
+    watch=at_most("age > {}", _exit_s, STALE_EXIT_S),
+    applies=lambda v: v.limits.exit and not v.attended,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
@@ -63,17 +59,13 @@ BROKEN_DELAY_S: Final = Parameter(
     hardest="5 s", because="a chamber with a broken sensor stands by on its own; in 5 s its air changes by 0.3 K",
 )  # fmt: skip
 
-
-def _broken(v: TrackInputs) -> bool:
-    r = v.readings
-    return v.limits.air and not v.attended and not r.air_silent and not (r.air_valid and isfinite(r.air_c))
-
-
-AIR_BROKEN: Final = Interlock(
+AIR_BROKEN: Final[Row] = Interlock(
     name="air sensor broken",
     cause="the sensor of the air is open",
-    level="reading denied by its device",
-    condition=_broken,
+    watch=condition(
+        "reading denied by its device", lambda v: not (v.readings.air_valid and isfinite(v.readings.air_c))
+    ),
+    applies=lambda v: v.limits.air and not v.attended and not v.readings.air_silent,
     delay=BROKEN_DELAY_S,
     reaction=CONTROLLED,
     reset=REPAIR,
@@ -89,26 +81,17 @@ RANGE_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _out_of_range(v: TrackInputs) -> bool:
-    far, r = v.parameters[RANGE_K], v.readings
-    if not (v.limits.chamber and r.air_valid):
-        return False
-    return not (v.limits.air_low_c - far <= r.air_c <= v.limits.air_high_c + far)
+def _air_range(v: TrackInputs) -> tuple[float, float, float]:
+    far = v.parameters[RANGE_K]
+    return v.limits.air_low_c - far, v.readings.air_c, v.limits.air_high_c + far
 
 
-def _beyond(v: TrackInputs) -> Compared:
-    far, air_c = v.parameters[RANGE_K], v.readings.air_c
-    limit = v.limits.air_low_c - far if air_c < v.limits.air_low_c else v.limits.air_high_c + far
-    return Compared(air_c, limit, "degC")
-
-
-OUT_OF_RANGE: Final = Interlock(
+OUT_OF_RANGE: Final[Row] = Interlock(
     name="chamber beyond its range",
     cause="the chamber is hotter or colder than it may be",
-    level="air beyond limits.air_low or limits.air_high by range",
-    condition=_out_of_range,
-    compared=_beyond,
+    watch=within("air beyond limits.air_low or limits.air_high by range", _air_range, "degC"),
     parameters=(RANGE_K,),
+    applies=lambda v: v.limits.chamber and v.readings.air_valid,
     delay=RANGE_DELAY_S,
     ends_lease=True,
     reaction=FAST,
@@ -124,20 +107,13 @@ RUNAWAY_DELAY_S: Final = Parameter(
     hardest="10 s", because="at full output the air changes by 0.6 K in 10 s",
 )  # fmt: skip
 
-
-def _runaway(v: TrackInputs) -> bool:
-    if v.arrived_c == float("inf") or not v.readings.air_valid:
-        return False
-    return not (abs(v.readings.air_c - v.arrived_c) <= v.parameters[RUNAWAY_K])
-
-
-RUNAWAY: Final = Interlock(
+RUNAWAY: Final[Row] = Interlock(
     name="chamber runaway",
     cause="the chamber leaves its setpoint: output stuck, door open",
-    level="air off the setpoint by runaway after it was there",
-    condition=_runaway,
-    compared=lambda v: Compared(abs(v.readings.air_c - v.arrived_c), v.parameters[RUNAWAY_K], "K"),
-    parameters=(RUNAWAY_K,),
+    watch=at_most(
+        "air off the setpoint by {} after it was there", lambda v: abs(v.readings.air_c - v.arrived_c), RUNAWAY_K
+    ),
+    applies=lambda v: v.arrived_c != inf and v.readings.air_valid,
     delay=RUNAWAY_DELAY_S,
     ends_lease=True,
     reaction=CONTROLLED,
@@ -148,12 +124,12 @@ ALARM_DELAY_S: Final = Parameter(
     "alarm_delay_s", "s", "1500 ms", "the chamber says so in more than two polls [A]", NOT_NEGATIVE,
     hardest="5 s", because="it has stood by already: nothing gets worse meanwhile",
 )  # fmt: skip
-CHAMBER_ALARM: Final = Interlock(
+CHAMBER_ALARM: Final[Row] = Interlock(
     name="chamber alarm",
     cause="the chamber has stood by itself: its own limiter, or it misses our setpoint",
-    level="its alarm word, while it is to run",
-    condition=lambda v: v.setpoints.chamber and v.readings.chamber_alarm,
-    unseen=lambda v: v.limits.chamber and v.readings.chamber_alarm,
+    watch=condition("its alarm word, while it is to run", lambda v: v.readings.chamber_alarm),
+    applies=lambda v: v.setpoints.chamber,
+    unseen=True,
     delay=ALARM_DELAY_S,
     reaction=CONTROLLED,
     reset=REPAIR,
@@ -166,21 +142,19 @@ CHAMBER_OFF_S: Final = Parameter(
 
 
 def _still_on(v: TrackInputs) -> bool:
-    return v.off_since_s < float("inf") and not (v.readings.now_s - v.off_since_s <= v.parameters[CHAMBER_OFF_S])
+    return v.off_since_s < inf and not (v.readings.now_s - v.off_since_s <= v.parameters[CHAMBER_OFF_S])
 
 
-CHAMBER_NOT_OFF: Final = Interlock(
+CHAMBER_NOT_OFF: Final[Row] = Interlock(
     name="chamber not off",
     cause="the chamber heats or cools although it is to stand by",
-    level="output after chamber_off",
-    condition=_still_on,
-    compared=lambda v: Compared(v.readings.chamber_percent, 0.0, "%"),
+    watch=condition("output after chamber_off", _still_on, lambda v: Compared(v.readings.chamber_percent, 0.0, "%")),
     parameters=(CHAMBER_OFF_S,),
     ends_lease=True,
     reaction=CONTROLLED,
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     OUT_OF_RANGE, RUNAWAY, AIR_SILENT, AIR_BROKEN, CHAMBER_ALARM, CHAMBER_NOT_OFF, EXIT_SILENT,
 )  # fmt: skip

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
-from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
-from tester.machine.row import ACK, CONTROLLED, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
+from tester.machine.row import ACK, CONTROLLED, FAST, LOADED, REPAIR, Interlock, at_least, at_most, condition
 from tester.machine.wires import answered_s
 
 STALE_CELL_S: Final = Parameter(
@@ -24,13 +24,10 @@ def _cell_s(v: TrackInputs) -> float:
     return answered_s(v.readings.cell_silent, v.readings.now_s, v.readings.cell_at_s)
 
 
-CELL_SILENT: Final = Interlock(
+CELL_SILENT: Final[Row] = Interlock(
     name="load cell silent",
     cause="load cell, its transmitter or its line does not answer",
-    level="age > stale_cell with the arm down",
-    condition=lambda v: not (_cell_s(v) <= v.parameters[STALE_CELL_S]),
-    compared=lambda v: Compared(_cell_s(v), v.parameters[STALE_CELL_S], "s"),
-    parameters=(STALE_CELL_S,),
+    watch=at_most("age > {} with the arm down", _cell_s, STALE_CELL_S),
     delay=STALE_CELL_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -42,17 +39,11 @@ INVALID_DELAY_S: Final = Parameter(
     hardest="200 ms", because="a broken bridge is at the end of its range at once; nothing better comes of waiting",
 )  # fmt: skip
 
-
-def _invalid(v: TrackInputs) -> bool:
-    r = v.readings
-    return not r.cell_valid and not r.cell_silent and not v.attended
-
-
-CELL_INVALID: Final = Interlock(
+CELL_INVALID: Final[Row] = Interlock(
     name="load cell saturated",
     cause="load cell open, overloaded, or denied by its transmitter's status",
-    level="reading not valid",
-    condition=_invalid,
+    watch=condition("reading not valid", lambda v: not v.readings.cell_valid),
+    applies=lambda v: not v.readings.cell_silent and not v.attended,
     delay=INVALID_DELAY_S,
     reaction=FAST,
     reset=REPAIR,
@@ -65,16 +56,15 @@ OVERLOAD_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _overloaded(v: TrackInputs) -> bool:
-    return not v.attended and v.readings.cell_valid and not (abs(v.readings.force_n) <= v.limits.force_n)
+def _force_n(v: TrackInputs) -> float:
+    return abs(v.readings.force_n)
 
 
-OVERLOAD: Final = Interlock(
+OVERLOAD: Final[Row] = Interlock(
     name="overload",
     cause="force beyond what the cell may take: the specimen catches",
-    level="|force| > limits.force",
-    condition=_overloaded,
-    compared=lambda v: Compared(abs(v.readings.force_n), v.limits.force_n, "N"),
+    watch=at_most("|force| > {}", _force_n, "limits.force_n"),
+    applies=lambda v: not v.attended and v.readings.cell_valid,
     delay=OVERLOAD_DELAY_S,
     reaction=FAST,
     reset=REPAIR,
@@ -86,19 +76,15 @@ FROZEN_CELL_S: Final = Parameter(
     because="20 readings of a cell with noise of many counts are never alike; at 10 mm/s 2 s are 20 mm of travel",
 )  # fmt: skip
 
-
-def _frozen(v: TrackInputs) -> bool:
-    r = v.readings
-    return v.demand.track_m_s != 0.0 and not (r.now_s - r.cell_changed_s <= v.parameters[FROZEN_CELL_S])
-
-
-CELL_FROZEN: Final = Interlock(
+CELL_FROZEN: Final[Row] = Interlock(
     name="load cell frozen",
     cause="the transmitter repeats its last reading",
-    level="counts unchanged for frozen_cell while the track is to go",
-    condition=_frozen,
-    compared=lambda v: Compared(v.readings.now_s - v.readings.cell_changed_s, v.parameters[FROZEN_CELL_S], "s"),
-    parameters=(FROZEN_CELL_S,),
+    watch=at_most(
+        "counts unchanged for {} while the track is to go",
+        lambda v: v.readings.now_s - v.readings.cell_changed_s,
+        FROZEN_CELL_S,
+    ),
+    applies=lambda v: v.demand.track_m_s != 0.0,
     when=LOADED,
     reaction=FAST,
     reset=REPAIR,
@@ -114,20 +100,17 @@ RAISED_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _touches(v: TrackInputs) -> bool:
+def _weighs_nothing(v: TrackInputs) -> bool:
+    """Return whether the cell should show no force: arm raised, cell tared and valid."""
     r = v.readings
-    if not (v.confirmed and r.raised and v.demand.tared and not v.demand.lowered and r.cell_valid):
-        return False
-    return not (abs(r.force_n) <= v.parameters[RAISED_N])
+    return v.confirmed and r.raised and v.demand.tared and not v.demand.lowered and r.cell_valid
 
 
-FORCE_RAISED: Final = Interlock(
+FORCE_RAISED: Final[Row] = Interlock(
     name="force with the arm raised",
     cause="the specimen touches though the arm is raised, or the cell's zero has gone",
-    level="|force| > raised, arm raised, cell tared",
-    condition=_touches,
-    compared=lambda v: Compared(abs(v.readings.force_n), v.parameters[RAISED_N], "N"),
-    parameters=(RAISED_N,),
+    watch=at_most("|force| > {}, arm raised, cell tared", _force_n, RAISED_N),
+    applies=_weighs_nothing,
     delay=RAISED_DELAY_S,
     reaction=CONTROLLED,
     reset=REPAIR,
@@ -148,20 +131,22 @@ LOST_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _no_friction(v: TrackInputs) -> bool:
-    r, p = v.readings, v.parameters
-    if not v.confirmed or v.demand.track_m_s == 0.0 or not (v.demand.sliding_m > 1e-3 * p[CONTACT_WAY_MM]):
-        return False
-    return not (r.friction_n >= p[LOST_SHARE] * r.load_n)
+def _slides(v: TrackInputs) -> bool:
+    way_m = 1e-3 * v.parameters[CONTACT_WAY_MM]
+    return v.confirmed and v.demand.track_m_s != 0.0 and v.demand.sliding_m > way_m
 
 
-CONTACT_LOST: Final = Interlock(
+CONTACT_LOST: Final[Row] = Interlock(
     name="contact lost",
     cause="no friction where the specimen is to slide: it is worn away or out of its holder, or the cell is deaf",
-    level="friction < lost_share of the load after contact_way",
-    condition=_no_friction,
-    compared=lambda v: Compared(v.readings.friction_n, v.parameters[LOST_SHARE] * v.readings.load_n, "N"),
+    watch=at_least(
+        "friction < lost_share of the load after contact_way",
+        lambda v: v.readings.friction_n,
+        lambda v: v.parameters[LOST_SHARE] * v.readings.load_n,
+        "N",
+    ),
     parameters=(LOST_SHARE, CONTACT_WAY_MM),
+    applies=_slides,
     delay=LOST_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -186,13 +171,12 @@ def _most_n(v: TrackInputs) -> float:
     return v.parameters[FRICTION_SHARE] * v.readings.load_n + v.parameters[FRICTION_LEAST_N]
 
 
-BEYOND_LOAD: Final = Interlock(
+BEYOND_LOAD: Final[Row] = Interlock(
     name="friction beyond load",
     cause="more force than rubber can have under these weights: it digs in, or other weights hang on the arm",
-    level="|force| > friction_share x weights + friction_least",
-    condition=lambda v: v.demand.tared and v.readings.lowered and not (abs(v.readings.force_n) <= _most_n(v)),
-    compared=lambda v: Compared(abs(v.readings.force_n), _most_n(v), "N"),
+    watch=at_most("|force| > friction_share x weights + friction_least", _force_n, _most_n, "N"),
     parameters=(FRICTION_SHARE, FRICTION_LEAST_N),
+    applies=lambda v: v.demand.tared and v.readings.lowered,
     delay=FRICTION_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -200,6 +184,6 @@ BEYOND_LOAD: Final = Interlock(
 )
 
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     CELL_SILENT, CELL_INVALID, CELL_FROZEN, OVERLOAD, BEYOND_LOAD, CONTACT_LOST, FORCE_RAISED,
 )  # fmt: skip

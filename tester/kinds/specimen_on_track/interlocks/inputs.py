@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass, field
 from math import inf
+from typing import TypeAlias
 
 from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
 from tester.machine.inputs import ScanInputs
+from tester.machine.row import Interlock
 
 WINDOW_S = 1.0
 """Over this time the track's way is held against what its commands allow, s [A]: at 1 um/s it goes 1000 increments."""
@@ -108,3 +110,6 @@ class TrackInputs(ScanInputs):
     """The chamber's setpoint that its air has been at; infinite where it has not got there yet."""
     off_since_s: float = inf
     """Since when the chamber is to stand by and still gives output."""
+
+
+Row: TypeAlias = Interlock[TrackInputs]

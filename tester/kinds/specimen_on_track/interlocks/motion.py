@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
-from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
+from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
 from tester.kinds.specimen_on_track.interlocks.known import STANDING_SHARE, standing_m_s
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
-from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock, at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.track_at_s, r.lift_at_s))
@@ -32,20 +33,21 @@ OVERSPEED_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _too_fast(v: TrackInputs) -> bool:
-    most = v.limits.track_m_s * (1.0 + v.parameters[OVERSPEED_SHARE])
-    return not v.readings.drives_disabled and not (-most <= v.readings.track_now_m_s <= most)
+def _speed_m_s(v: TrackInputs) -> float:
+    return abs(v.readings.track_now_m_s)
 
 
-OVERSPEED: Final = Interlock(
+OVERSPEED: Final[Row] = Interlock(
     name="overspeed",
     cause="the track is faster than it may be",
-    level="speed > limits.track_speed + overspeed_share",
-    condition=_too_fast,
-    compared=lambda v: Compared(
-        abs(v.readings.track_now_m_s), v.limits.track_m_s * (1.0 + v.parameters[OVERSPEED_SHARE]), "m/s"
+    watch=at_most(
+        "speed > limits.track_speed + overspeed_share",
+        _speed_m_s,
+        lambda v: v.limits.track_m_s * (1.0 + v.parameters[OVERSPEED_SHARE]),
+        "m/s",
     ),
     parameters=(OVERSPEED_SHARE,),
+    applies=lambda v: not v.readings.drives_disabled,
     delay=OVERSPEED_DELAY_S,
     reaction=FAST,
     reset=ACK,
@@ -70,17 +72,17 @@ def _allowed_m(v: TrackInputs) -> float:
     return v.track.allowed_m(v.parameters[SPEED_SHARE], v.parameters[SPEED_FLOOR] * v.limits.fastest_m_s)
 
 
-def _off_its_way(v: TrackInputs) -> bool:
-    return v.confirmed and not (abs(v.track.off_m) <= _allowed_m(v))
-
-
-TRACK_SPEED: Final = Interlock(
+TRACK_SPEED: Final[Row] = Interlock(
     name="track speed",
     cause="the track does not go as it is told: stalled, slipping, running away, wrong scale",
-    level="way of the last second off its command by > speed_share and speed_floor",
-    condition=_off_its_way,
-    compared=lambda v: Compared(abs(v.track.off_m), _allowed_m(v), "m"),
+    watch=at_most(
+        "way of the last second off its command by > speed_share and speed_floor",
+        lambda v: abs(v.track.off_m),
+        _allowed_m,
+        "m",
+    ),
     parameters=(SPEED_SHARE, SPEED_FLOOR),
+    applies=lambda v: v.confirmed,
     delay=SPEED_DELAY_S,
     reaction=FAST,
     reset=ACK,
@@ -92,44 +94,37 @@ BEYOND_MM: Final = Parameter(
 )  # fmt: skip
 
 
-def _beyond_travel(v: TrackInputs) -> bool:
-    r, far = v.readings, v.parameters[BEYOND_MM]
-    if r.drives_disabled or v.limits.high_mm == float("inf"):
-        return False
-    return not (v.limits.low_mm - far <= r.track_mm <= v.limits.high_mm + far)
+def _travel_mm(v: TrackInputs) -> tuple[float, float, float]:
+    far = v.parameters[BEYOND_MM]
+    return v.limits.low_mm - far, v.readings.track_mm, v.limits.high_mm + far
 
 
-def _beyond_end(v: TrackInputs) -> Compared:
-    r, far = v.readings, v.parameters[BEYOND_MM]
-    low = r.track_mm < v.limits.low_mm
-    return Compared(r.track_mm, v.limits.low_mm - far if low else v.limits.high_mm + far, "mm")
-
-
-END_OF_TRAVEL: Final = Interlock(
+END_OF_TRAVEL: Final[Row] = Interlock(
     name="end of travel",
     cause="the track is beyond the soft end of its travel, where it is never sent",
-    level="a linear track beyond limits.travel by beyond",
-    condition=_beyond_travel,
-    compared=_beyond_end,
+    watch=within("a linear track beyond limits.travel by beyond", _travel_mm, "mm"),
     parameters=(BEYOND_MM,),
+    applies=lambda v: not v.readings.drives_disabled and v.limits.high_mm != inf,
     reaction=FAST,
     reset=ACK,
 )
 
 
 def _arm_wrong(v: TrackInputs) -> bool:
-    r, slow = v.readings, standing_m_s(v)
+    r = v.readings
     if not v.confirmed or r.raised or (r.lowered and v.demand.tared):
         return False
-    return not (-slow < r.track_now_m_s < slow)
+    return not (_speed_m_s(v) < standing_m_s(v))
 
 
-ARM_WRONG: Final = Interlock(
+ARM_WRONG: Final[Row] = Interlock(
     name="arm not in place",
     cause="the track moves while the arm is on its way, or down before the tare",
-    level="speed >= standing_share, arm neither raised nor lowered with a cell that is tared",
-    condition=_arm_wrong,
-    compared=lambda v: Compared(abs(v.readings.track_now_m_s), standing_m_s(v), "m/s"),
+    watch=condition(
+        "speed >= standing_share, arm neither raised nor lowered with a cell that is tared",
+        _arm_wrong,
+        lambda v: Compared(_speed_m_s(v), standing_m_s(v), "m/s"),
+    ),
     parameters=(STANDING_SHARE,),
     reaction=FAST,
     reset=ACK,
@@ -140,22 +135,15 @@ ARM_LATE_S: Final = Parameter(
     hardest="5 s", because="three times as long as the way takes: what is not there by then does not come",
 )  # fmt: skip
 
-
-def _arm_late(v: TrackInputs) -> bool:
-    return not (v.readings.now_s - v.arm_since_s <= v.parameters[ARM_LATE_S]) and v.arm_since_s < float("inf")
-
-
-ARM_LATE: Final = Interlock(
+ARM_LATE: Final[Row] = Interlock(
     name="arm stuck",
     cause="the arm does not arrive: lift jammed, or something in its way",
-    level="arm off where it was sent for arm_late",
-    condition=_arm_late,
-    compared=lambda v: Compared(v.readings.now_s - v.arm_since_s, v.parameters[ARM_LATE_S], "s"),
-    parameters=(ARM_LATE_S,),
+    watch=at_most("arm off where it was sent for {}", lambda v: v.readings.now_s - v.arm_since_s, ARM_LATE_S),
+    applies=lambda v: v.arm_since_s < inf,
     reaction=CONTROLLED,
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     DRIVE_DATA_STALE, INPUTS_STALE, DRIVE_DROPPED_OUT, ARM_WRONG, OVERSPEED, END_OF_TRAVEL, TRACK_SPEED, ARM_LATE,
 )  # fmt: skip

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
-from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
+from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
 from tester.kinds.specimen_on_track.interlocks.known import SPEEDS_OLD_S, STANDING_SHARE, standing
 from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
-from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock
+from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock, condition
 
 STOP_MARGIN_S: Final = Parameter(
     "stop_margin_s", "s", "600 ms", "the track may stand this much later than its ramp says [A]; seen late, too",
@@ -50,18 +50,15 @@ OFF_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _goes_on(v: TrackInputs) -> bool:
-    if v.resting or v.stopped_s >= 0.0 or v.demand.enabled or v.readings.drives_disabled:
-        return False
-    return not standing(v)
-
-
-NOT_SWITCHED_OFF: Final = Interlock(
+NOT_SWITCHED_OFF: Final[Row] = Interlock(
     name="not switched off",
     cause="the track goes on though the drives are told to switch off",
-    level="in a run, drives not wanted, power still on and speed >= standing_share",
-    condition=_goes_on,
+    watch=condition(
+        "in a run, drives not wanted, power still on and speed >= standing_share",
+        lambda v: not (v.resting or v.demand.enabled or v.readings.drives_disabled or standing(v)),
+    ),
     parameters=(STANDING_SHARE,),
+    applies=lambda v: not v.stopped_s >= 0.0,
     delay=OFF_DELAY_S,
     reaction=FAST,
     reset=REPAIR,
@@ -82,23 +79,19 @@ STOP_NOT_ENDED: Final = stop_not_ended(
 
 
 def _moving(v: TrackInputs) -> bool:
-    if v.resting:
-        return not standing(v)
-    if not v.unpowered:
-        return False
     r = v.readings
-    if v.demand.enabled:
+    if v.resting or v.demand.enabled:
         return not standing(v)
     since = r.now_s - v.parameters[SPEEDS_OLD_S]
     return not (r.drives_disabled and r.track_at_s >= since and r.lift_at_s >= since)
 
 
-MOVING_AT_REST: Final = Interlock(
+MOVING_AT_REST: Final[Row] = Interlock(
     name="moving at rest",
     cause="the track goes, or a drive has power, although everything is to rest",
-    level="speed >= standing_share or unknown; in a run: power that is not wanted",
-    condition=_moving,
+    watch=condition("speed >= standing_share or unknown; in a run: power that is not wanted", _moving),
     parameters=(STANDING_SHARE, SPEEDS_OLD_S),
+    applies=lambda v: v.resting or v.unpowered,
     delay=DROPPED_DELAY_S,
     when=ENDING,
     at_rest=lambda v: not v.readings.drives_disabled,
@@ -106,4 +99,4 @@ MOVING_AT_REST: Final = Interlock(
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (NOT_SWITCHED_OFF, QUICK_STOP_FAILED, NOT_STOPPING, STOP_NOT_ENDED, MOVING_AT_REST)
+ROWS: Final[tuple[Row, ...]] = (NOT_SWITCHED_OFF, QUICK_STOP_FAILED, NOT_STOPPING, STOP_NOT_ENDED, MOVING_AT_REST)

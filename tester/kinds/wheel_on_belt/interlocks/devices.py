@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import Direction, Parameter
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
-from tester.machine.row import CONTROLLED, Compared, Interlock
+from tester.kinds.wheel_on_belt.interlocks.inputs import Row
+from tester.machine.row import CONTROLLED, Interlock, at_least
 from tester.machine.wires import DEVICE_REFUSED, LINE_NOISY
 
 LEAST_DIAMETER_MM: Final = Parameter(
@@ -15,20 +15,12 @@ LEAST_DIAMETER_MM: Final = Parameter(
     because="the rubber is 8 mm on a hub of 74 mm: 1 mm is left, the depth of a contact of 100 N",
 )  # fmt: skip
 
-
-def _wheel_worn(v: Inputs) -> bool:
-    return not (v.readings.cold_mm >= v.parameters[LEAST_DIAMETER_MM])
-
-
-WHEEL_WORN: Final = Interlock(
+WHEEL_WORN: Final[Row] = Interlock(
     name="wheel worn",
     cause="wheel diameter below its least",
-    level="cold diameter < least_diameter",
-    condition=_wheel_worn,
-    compared=lambda v: Compared(v.readings.cold_mm, v.parameters[LEAST_DIAMETER_MM], "mm"),
-    parameters=(LEAST_DIAMETER_MM,),
+    watch=at_least("cold diameter < {}", lambda v: v.readings.cold_mm, LEAST_DIAMETER_MM),
     reaction=CONTROLLED,
     reset="new wheel, acknowledged",
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (DEVICE_REFUSED, LINE_NOISY, WHEEL_WORN)
+ROWS: Final[tuple[Row, ...]] = (DEVICE_REFUSED, LINE_NOISY, WHEEL_WORN)

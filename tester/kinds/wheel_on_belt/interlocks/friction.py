@@ -7,8 +7,8 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.image.process import Readings
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
-from tester.machine.row import FAST, LOADED, REPAIR, Compared, Interlock
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
+from tester.machine.row import FAST, LOADED, REPAIR, Interlock, at_most, condition, within
 
 _RADIANS: Final = pi / 180.0
 
@@ -26,16 +26,14 @@ FRICTION_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _too_much_friction(v: Inputs) -> bool:
-    p = v.parameters
-    return not (v.friction_n <= p[FRICTION_SHARE] * v.readings.force_z_n + p[FRICTION_LEAST_N])
+def _most_n(v: Inputs) -> float:
+    return v.parameters[FRICTION_SHARE] * v.readings.force_z_n + v.parameters[FRICTION_LEAST_N]
 
 
-FRICTION_BEYOND_LOAD: Final = Interlock(
+FRICTION_BEYOND_LOAD: Final[Row] = Interlock(
     name="friction beyond load",
     cause="more friction than the load can make: load cell channels exchanged, or the wheel touches something",
-    level="friction > friction_share x Fz + friction_least",
-    condition=_too_much_friction,
+    watch=at_most("friction > friction_share x Fz + friction_least", lambda v: v.friction_n, _most_n, "N"),
     parameters=(FRICTION_SHARE, FRICTION_LEAST_N),
     delay=FRICTION_DELAY_S,
     when=LOADED,
@@ -63,9 +61,10 @@ AGAINST_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _friction_with_slip(v: Inputs) -> bool:
-    r, p = v.readings, v.parameters
-    clear, along, across = p[CLEAR_SLIP_M_S], r.wheel_speed_m_s - r.belt_speed_m_s, 0.0
+def _friction_with_slip_n(v: Inputs) -> float:
+    """Return the friction that acts with a slip of sure direction, N; 0 where the slip is not sure."""
+    r = v.readings
+    clear, along, across = v.parameters[CLEAR_SLIP_M_S], r.wheel_speed_m_s - r.belt_speed_m_s, 0.0
     if r.positions["sideslip"] != 0.0:
         angle = r.positions["sideslip"] * _RADIANS
         along, across = r.wheel_speed_m_s - r.belt_speed_m_s * cos(angle), r.belt_speed_m_s * sin(angle)
@@ -75,14 +74,18 @@ def _friction_with_slip(v: Inputs) -> bool:
     if not -clear <= across <= clear:
         lateral_n = -r.force_y_n if across > 0.0 else r.force_y_n
         with_n = with_n if with_n > lateral_n else lateral_n
-    return not (with_n <= p[AGAINST_SHARE] * r.force_z_n + p[AGAINST_LEAST_N])
+    return with_n
 
 
-FRICTION_SIGN: Final = Interlock(
+FRICTION_SIGN: Final[Row] = Interlock(
     name="friction sign",
     cause="friction acts with the slip: direction of wheel, belt or load cell, or their scale",
-    level="friction along slip > clear_slip, and with it, > against_share x Fz + against_least",
-    condition=_friction_with_slip,
+    watch=at_most(
+        "friction along slip > clear_slip, and with it, > against_share x Fz + against_least",
+        _friction_with_slip_n,
+        lambda v: v.parameters[AGAINST_SHARE] * v.readings.force_z_n + v.parameters[AGAINST_LEAST_N],
+        "N",
+    ),
     parameters=(CLEAR_SLIP_M_S, AGAINST_SHARE, AGAINST_LEAST_N),
     delay=AGAINST_DELAY_S,
     when=LOADED,
@@ -108,8 +111,6 @@ SHAFT_POWER_DELAY_S: Final = Parameter(
 
 
 def _shafts_deny_slip(v: Inputs) -> bool:
-    if not v.confirmed:
-        return False
     r, p = v.readings, v.parameters
     wheel_w = r.drive_torque_nm * r.wheel_rad_s
     belt_w = r.belt_torque_nm * r.belt_speed_m_s / v.limits.roller_m
@@ -118,12 +119,15 @@ def _shafts_deny_slip(v: Inputs) -> bool:
     return not (-allowed_w <= power_w - v.friction_w <= allowed_w and power_w - allowed_w <= v.limits.slip_power_w)
 
 
-SHAFT_POWER: Final = Interlock(
+SHAFT_POWER: Final[Row] = Interlock(
     name="shaft power",
     cause="the shafts take another power than friction and slip: direction, scale or diameter, or the load cell",
-    level="sum of torque x speed off friction x slip, or above limits.slip_power, by > shaft_friction (and share)",
-    condition=_shafts_deny_slip,
+    watch=condition(
+        "sum of torque x speed off friction x slip, or above limits.slip_power, by > shaft_friction (and share)",
+        _shafts_deny_slip,
+    ),
     parameters=(SHAFT_FRICTION_W, SHAFT_GAIN_SHARE),
+    applies=lambda v: v.confirmed,
     delay=SHAFT_POWER_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -162,35 +166,23 @@ def _along_n(r: Readings) -> float:
     return r.force_x_n * cos(angle) - r.force_y_n * sin(angle)
 
 
-def _friction_nm(v: Inputs) -> float:
-    """Return what friction asks of the belt's drive while its roller grips the belt, N m."""
-    return -_along_n(v.readings) * v.limits.roller_m
+def _off_friction_nm(v: Inputs) -> tuple[float, float, float]:
+    """Return 0, how far the belt's drive is off what friction asks of it on a gripping roller, and may be, N m."""
+    friction_nm = -_along_n(v.readings) * v.limits.roller_m
+    allowed_nm = v.parameters[BELT_TORQUE_NM] + v.parameters[BELT_TORQUE_SHARE] * abs(friction_nm)
+    return 0.0, abs(v.readings.belt_torque_nm - friction_nm), allowed_nm
 
 
-def _allowed_nm(v: Inputs, friction_nm: float) -> float:
-    return v.parameters[BELT_TORQUE_NM] + v.parameters[BELT_TORQUE_SHARE] * abs(friction_nm)
-
-
-def _belt_not_gripped(v: Inputs) -> bool:
-    if not _driven(v):
-        return False
-    friction_nm = _friction_nm(v)
-    allowed_nm = _allowed_nm(v, friction_nm)
-    return not (-allowed_nm <= v.readings.belt_torque_nm - friction_nm <= allowed_nm)
-
-
-def _off_friction(v: Inputs) -> Compared:
-    friction_nm = _friction_nm(v)
-    return Compared(abs(v.readings.belt_torque_nm - friction_nm), _allowed_nm(v, friction_nm), "N m")
-
-
-BELT_TORQUE: Final = Interlock(
+BELT_TORQUE: Final[Row] = Interlock(
     name="belt torque",
     cause="the belt's drive denies the friction shown: the belt is held and slips on its roller, or the load cell",
-    level="belt drive's torque off - friction along the belt x roller radius by > belt_torque (and share)",
-    condition=_belt_not_gripped,
-    compared=_off_friction,
+    watch=within(
+        "belt drive's torque off - friction along the belt x roller radius by > belt_torque (and share)",
+        _off_friction_nm,
+        "N m",
+    ),
     parameters=(BELT_TORQUE_NM, BELT_TORQUE_SHARE),
+    applies=_driven,
     delay=BELT_TORQUE_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -224,20 +216,19 @@ def _sense(v: Inputs) -> float:
     return 0.0 if -least <= along_n <= least else 1.0 if along_n > 0.0 else -1.0
 
 
-def _belt_caught(v: Inputs) -> bool:
-    return _driven(v) and not (_sense(v) * v.readings.belt_torque_nm <= v.parameters[BELT_PULL_NM])
-
-
-BELT_CAUGHT: Final = Interlock(
+BELT_CAUGHT: Final[Row] = Interlock(
     name="belt caught",
     cause="the belt's drive pulls where friction does: the belt is held, its roller slips; or a direction is wrong",
-    level="belt drive's torque > belt_pull the way friction acts on the belt: slip > clear_slip, or scans are slow",
-    condition=_belt_caught,
-    compared=lambda v: Compared(_sense(v) * v.readings.belt_torque_nm, v.parameters[BELT_PULL_NM], "N m"),
-    parameters=(BELT_PULL_NM, CLEAR_SLIP_M_S, AGAINST_LEAST_N, BELT_TORQUE_DELAY_S),
+    watch=at_most(
+        "belt drive's torque > {} the way friction acts on the belt: slip > clear_slip, or scans are slow",
+        lambda v: _sense(v) * v.readings.belt_torque_nm,
+        BELT_PULL_NM,
+    ),
+    parameters=(CLEAR_SLIP_M_S, AGAINST_LEAST_N, BELT_TORQUE_DELAY_S),
+    applies=_driven,
     when=LOADED,
     reaction=FAST,
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (FRICTION_SIGN, SHAFT_POWER, BELT_TORQUE, BELT_CAUGHT, FRICTION_BEYOND_LOAD)
+ROWS: Final[tuple[Row, ...]] = (FRICTION_SIGN, SHAFT_POWER, BELT_TORQUE, BELT_CAUGHT, FRICTION_BEYOND_LOAD)

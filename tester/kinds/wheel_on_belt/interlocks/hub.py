@@ -6,12 +6,17 @@ from math import inf
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
-from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock, always
+from tester.machine.row import ACK, CONTROLLED, REPAIR, Interlock, always, at_least, at_most, condition
 from tester.machine.wires import answered_s
 
 _INF: Final = inf
+
+
+def _hub_known(v: Inputs) -> bool:
+    return v.readings.jacket_valid and not v.attended
+
 
 JACKET_MARGIN_K: Final = Parameter(
     "jacket_margin_k", "K", "3 K", "the hub may overshoot limits.jacket by this; 155 degC is harm [A]", NOT_NEGATIVE,
@@ -23,19 +28,17 @@ JACKET_DELAY_S: Final = Parameter(
     because="200 W heat a hub of 420 J/K by 1 K in two seconds; above limits.jacket and its margin 2 K are left",
 )  # fmt: skip
 
-
-def _hub_hot(v: Inputs) -> bool:
-    r = v.readings
-    return r.jacket_valid and not (r.hub_c <= v.limits.jacket_c + v.parameters[JACKET_MARGIN_K])
-
-
-JACKET_HOT: Final = Interlock(
+JACKET_HOT: Final[Row] = Interlock(
     name="jacket hot",
     cause="hub above its limit",
-    level="hub > limits.jacket + jacket_margin",
-    condition=_hub_hot,
-    compared=lambda v: Compared(v.readings.hub_c, v.limits.jacket_c + v.parameters[JACKET_MARGIN_K], "degC"),
+    watch=at_most(
+        "hub > limits.jacket + jacket_margin",
+        lambda v: v.readings.hub_c,
+        lambda v: v.limits.jacket_c + v.parameters[JACKET_MARGIN_K],
+        "degC",
+    ),
     parameters=(JACKET_MARGIN_K,),
+    applies=lambda v: v.readings.jacket_valid,
     delay=JACKET_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
@@ -57,31 +60,28 @@ RUNAWAY_DELAY_S: Final = Parameter(
 
 
 def _highest_c(v: Inputs) -> float:
-    """Return what the hub may be by its setpoints: the highest of those that count."""
+    """Return what the hub may be by its setpoints, the highest of those that count, and ``runaway``, degC."""
     r, setpoints = v.readings, v.hub_setpoints
     # A hub that was hot takes longer to cool than the window is: without output it must not get hotter again,
     # except by a rubber that friction has made hotter than itself.
     coolest = v.jacket.coolest_c
-    highest = max(setpoints[0][1], v.limits.hub_min_c, coolest)
+    highest = max(setpoints[0][1] if setpoints else _INF, v.limits.hub_min_c, coolest)
     if coolest > -_INF and r.surface_valid and r.surface_c > highest:
         highest = r.surface_c
-    return highest
+    return highest + v.parameters[RUNAWAY_K]
 
 
-def _hub_above_setpoints(v: Inputs) -> bool:
-    r = v.readings
-    if v.attended or not r.jacket_valid or not v.hub_setpoints:
-        return False
-    return not (r.hub_c <= _highest_c(v) + v.parameters[RUNAWAY_K])
-
-
-JACKET_RUNAWAY: Final = Interlock(
+JACKET_RUNAWAY: Final[Row] = Interlock(
     name="jacket runaway",
     cause="hub above every setpoint of the last ten minutes",
-    level="hub > highest setpoint in runaway_window + runaway; without output: > coolest since, or rubber, + runaway",
-    condition=_hub_above_setpoints,
-    compared=lambda v: Compared(v.readings.hub_c, _highest_c(v) + v.parameters[RUNAWAY_K], "degC"),
+    watch=at_most(
+        "hub > highest setpoint in runaway_window + runaway; without output: > coolest since, or rubber, + runaway",
+        lambda v: v.readings.hub_c,
+        _highest_c,
+        "degC",
+    ),
     parameters=(RUNAWAY_K, RUNAWAY_WINDOW_S),
+    applies=lambda v: _hub_known(v) and len(v.hub_setpoints) > 0,
     delay=RUNAWAY_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
@@ -113,20 +113,16 @@ RATE_SETTLE_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _hub_rises(v: Inputs) -> bool:
-    r, p, jacket = v.readings, v.parameters, v.jacket
-    if v.attended or not r.jacket_valid:
-        return False
-    return not (jacket.rate_k_s <= p[STUCK_RATE_K_S]) and r.now_s - jacket.off_since_s >= p[STUCK_OFF_S]
+def _off_for_long(v: Inputs) -> bool:
+    return _hub_known(v) and v.readings.now_s - v.jacket.off_since_s >= v.parameters[STUCK_OFF_S]
 
 
-HEATER_STUCK: Final = Interlock(
+HEATER_STUCK: Final[Row] = Interlock(
     name="heater stuck",
     cause="the hub heats although no output is given",
-    level="rate > stuck_rate, no output for stuck_off",
-    condition=_hub_rises,
-    compared=lambda v: Compared(v.jacket.rate_k_s, v.parameters[STUCK_RATE_K_S], "K/s"),
-    parameters=(STUCK_RATE_K_S, STUCK_OFF_S, RATE_FILTER_S, RATE_WINDOW_S, RATE_SETTLE_S),
+    watch=at_most("rate > {}, no output for stuck_off", lambda v: v.jacket.rate_k_s, STUCK_RATE_K_S),
+    parameters=(STUCK_OFF_S, RATE_FILTER_S, RATE_WINDOW_S, RATE_SETTLE_S),
+    applies=_off_for_long,
     delay=STUCK_DELAY_S,
     reaction=CONTROLLED,
     reset=REPAIR,
@@ -137,19 +133,12 @@ OPEN_S: Final = Parameter("open_s", "s", "60 s", "... for this long ...")
 OPEN_BELOW_K: Final = Parameter("open_below_k", "K", "5 K", "... with the hub this far below its setpoint ...")
 OPEN_RISE_K: Final = Parameter("open_rise_k", "K", "2 K", "... and rising by less than this: the heater's line is open")
 
-
-def _hub_does_not_warm(v: Inputs) -> bool:
-    jacket, p = v.jacket, v.parameters
-    return v.readings.now_s - jacket.weak_since_s >= p[OPEN_S] and not (jacket.rise_k >= p[OPEN_RISE_K])
-
-
-HEATER_LINE_OPEN: Final = Interlock(
+HEATER_LINE_OPEN: Final[Row] = Interlock(
     name="heater line open",
     cause="full output and the hub does not warm: slip ring or heater open",
-    level="output > open_output for open, rise < open_rise",
-    condition=_hub_does_not_warm,
-    compared=lambda v: Compared(v.jacket.rise_k, v.parameters[OPEN_RISE_K], "K"),
+    watch=at_least("output > open_output for open, rise < {}", lambda v: v.jacket.rise_k, OPEN_RISE_K),
     parameters=(OPEN_OUTPUT_PERCENT, OPEN_S, OPEN_BELOW_K, OPEN_RISE_K),
+    applies=lambda v: v.readings.now_s - v.jacket.weak_since_s >= v.parameters[OPEN_S],
     reaction=CONTROLLED,
     reset=REPAIR,
 )
@@ -159,18 +148,11 @@ STANDSTILL_HEAT_DELAY_S: Final = Parameter(
     hardest="300 ms", because="harm is half a second of heat on a standing wheel; the contactor needs its time to open",
 )  # fmt: skip
 
-
-def _heats_a_standing_wheel(v: Inputs) -> bool:
-    r = v.readings
-    return r.contactor_closed and not v.turning and not (r.heat_percent <= 0.0)
-
-
-HEATING_AT_STANDSTILL: Final = Interlock(
+HEATING_AT_STANDSTILL: Final[Row] = Interlock(
     name="heating at standstill",
     cause="jacket heating with the wheel not turning",
-    level="output > 0, wheel stands",
-    condition=_heats_a_standing_wheel,
-    compared=lambda v: Compared(v.readings.heat_percent, 0.0, "%"),
+    watch=at_most("output > {}, wheel stands", lambda v: v.readings.heat_percent, 0.0, "%"),
+    applies=lambda v: v.readings.contactor_closed and not v.turning,
     delay=STANDSTILL_HEAT_DELAY_S,
     at_rest=always,
     ends_lease=True,
@@ -179,17 +161,12 @@ HEATING_AT_STANDSTILL: Final = Interlock(
 )
 
 
-def _hub_jumps(v: Inputs) -> bool:
-    return not v.attended and not (v.jacket.jump_k <= v.parameters[JUMP_K])
-
-
-HUB_JUMP: Final = Interlock(
+HUB_JUMP: Final[Row] = Interlock(
     name="hub sensor jump",
     cause="hub sensor's line noisy (slip ring)",
-    level="two readings apart by > jump",
-    condition=_hub_jumps,
-    compared=lambda v: Compared(v.jacket.jump_k, v.parameters[JUMP_K], "K"),
-    parameters=(JUMP_K, BLIND_S),
+    watch=at_most("two readings apart by > {}", lambda v: v.jacket.jump_k, JUMP_K),
+    parameters=(BLIND_S,),
+    applies=lambda v: not v.attended,
     reaction=CONTROLLED,
     reset=ACK,
 )
@@ -222,13 +199,6 @@ UNSEEN_LEAST_K: Final = 1.0
 """A sound sensor hides this at most, K [A]: 1 s behind and read every 0.2 s, 0.6 K at full output."""
 
 
-def _heat_missing(v: Inputs) -> bool:
-    unseen_k = v.heat.unseen_k
-    if unseen_k <= 0.0 or v.attended or not v.readings.jacket_valid:
-        return False
-    return not (unseen_k <= _unseen_most_k(v))
-
-
 def _unseen_most_k(v: Inputs) -> float:
     """Return by how much the hub may be hotter than shown: never beyond its limit."""
     heat, p = v.heat, v.parameters
@@ -238,13 +208,17 @@ def _unseen_most_k(v: Inputs) -> float:
     return p[UNSEEN_HEAT_K]
 
 
-HEAT_NOT_SHOWN: Final = Interlock(
+HEAT_NOT_SHOWN: Final[Row] = Interlock(
     name="heat not shown",
     cause="more heat put in than the temperatures show: hub sensor, or its supply, low, late or loose; or heater weak",
-    level="heat beyond the shares of what is shown > unseen_heat of hub, while half of it shows; or hub then too hot",
-    condition=_heat_missing,
-    compared=lambda v: Compared(v.heat.unseen_k, _unseen_most_k(v), "K"),
+    watch=at_most(
+        "heat beyond the shares of what is shown > unseen_heat of hub, while half of it shows; or hub then too hot",
+        lambda v: v.heat.unseen_k,
+        _unseen_most_k,
+        "K",
+    ),
     parameters=(HEAT_SHARE, HEAT_SHARE_KNOWN, HEAT_LEAK_W, UNSEEN_HEAT_K, JACKET_MARGIN_K),
+    applies=lambda v: not v.heat.unseen_k <= 0.0 and _hub_known(v),
     reaction=CONTROLLED,
     reset=REPAIR,
 )
@@ -267,20 +241,17 @@ def _still_most_k(v: Inputs) -> float:
     return max(p[FROZEN_HUB_K], p[FROZEN_HUB_SHARE] * away_k)
 
 
-def _hub_stands_still(v: Inputs) -> bool:
-    still_k = v.heat.still_k
-    if still_k <= 0.0 or v.attended or not v.readings.jacket_valid:
-        return False
-    return not (still_k <= _still_most_k(v))
-
-
-HUB_FROZEN: Final = Interlock(
+HUB_FROZEN: Final[Row] = Interlock(
     name="hub sensor frozen",
     cause="the hub's temperature repeats itself while the heater gives more",
-    level="within a count, and heat beyond the least since, heat_leak and what is lost > frozen_hub, or its share",
-    condition=_hub_stands_still,
-    compared=lambda v: Compared(v.heat.still_k, _still_most_k(v), "K"),
+    watch=at_most(
+        "within a count, and heat beyond the least since, heat_leak and what is lost > frozen_hub, or its share",
+        lambda v: v.heat.still_k,
+        _still_most_k,
+        "K",
+    ),
     parameters=(FROZEN_HUB_K, FROZEN_HUB_SHARE),
+    applies=lambda v: not v.heat.still_k <= 0.0 and _hub_known(v),
     reaction=CONTROLLED,
     reset=REPAIR,
 )
@@ -297,39 +268,27 @@ def _hub_answered_s(v: Inputs) -> float:
     return answered_s(r.jacket_silent, r.now_s, r.jacket_at_s)
 
 
-def _jacket_old(v: Inputs) -> bool:
-    return not v.attended and not (_hub_answered_s(v) <= v.parameters[STALE_JACKET_S])
-
-
-JACKET_SILENT: Final = Interlock(
+JACKET_SILENT: Final[Row] = Interlock(
     name="jacket silent",
     cause="cable, supply or address; the hub's temperature is not known",
-    level="age > stale_jacket, or several requests without an answer",
-    condition=_jacket_old,
-    compared=lambda v: Compared(_hub_answered_s(v), v.parameters[STALE_JACKET_S], "s"),
-    parameters=(STALE_JACKET_S,),
+    watch=at_most("age > {}, or several requests without an answer", _hub_answered_s, STALE_JACKET_S),
+    applies=lambda v: not v.attended,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
 )
 
-
-def _hub_invalid(v: Inputs) -> bool:
-    r = v.readings
-    return not v.attended and not r.jacket_valid and not r.jacket_silent
-
-
-HUB_NOT_VALID: Final = Interlock(
+HUB_NOT_VALID: Final[Row] = Interlock(
     name="hub sensor broken",
     cause="the jacket's controller reports a broken sensor, or a hub out of its range",
-    level="reading not valid",
-    condition=_hub_invalid,
+    watch=condition("reading not valid", lambda v: not v.readings.jacket_valid),
+    applies=lambda v: not v.attended and not v.readings.jacket_silent,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP, HUB_FROZEN,
     HEAT_NOT_SHOWN, JACKET_SILENT, HUB_NOT_VALID,
 )  # fmt: skip

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import inf, nan
+from typing import TypeAlias
 
 from tester.kinds.wheel_on_belt.image.process import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact import Contact
@@ -14,6 +15,7 @@ from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.machine.inputs import ScanInputs
+from tester.machine.row import Interlock
 
 
 @dataclass(slots=True)
@@ -112,3 +114,6 @@ class Inputs(ScanInputs):
     """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
     rest_mm: float = inf
     """How far back the press has been since a run was seen without power (``unpowered``)."""
+
+
+Row: TypeAlias = Interlock[Inputs]

@@ -6,9 +6,9 @@ from typing import Final
 
 from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N, depth_mm
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.known import SPEEDS_OLD_S
-from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock, at_least, at_most, condition
 from tester.machine.wires import answered_s
 
 STALE_CELL_S: Final = Parameter(
@@ -31,42 +31,32 @@ def _cell_answered_s(v: Inputs) -> float:
     return answered_s(r.cell_silent, r.now_s, r.cell_at_s)
 
 
-def _cell_old(v: Inputs) -> bool:
-    return not (_cell_answered_s(v) <= v.parameters[STALE_CELL_S])
-
-
 def _cell_still_old(v: Inputs) -> bool:
     r = v.readings
     return not (r.cell_at_s >= r.now_s - v.parameters[SPEEDS_OLD_S])
 
 
-CELL_SILENT: Final = Interlock(
+CELL_SILENT: Final[Row] = Interlock(
     name="load cell silent",
     cause="cable, supply or address; the load is not known",
-    level="age > stale_cell (of a transmitter, or its parts more than cell_skew apart), or several requests"
-    " without an answer",
-    condition=_cell_old,
-    compared=lambda v: Compared(_cell_answered_s(v), v.parameters[STALE_CELL_S], "s"),
+    watch=at_most(
+        "age > {} (of a transmitter, or its parts more than cell_skew apart), or several requests without an answer",
+        _cell_answered_s,
+        STALE_CELL_S,
+    ),
     unseen=_cell_still_old,
-    parameters=(STALE_CELL_S, CELL_SKEW_S),
+    parameters=(CELL_SKEW_S,),
     delay=STALE_CELL_DELAY_S,
     when=LOADED,
     reaction=FAST,
     reset=ACK,
 )
 
-
-def _cell_invalid(v: Inputs) -> bool:
-    r = v.readings
-    return not r.cell_valid and not r.cell_silent
-
-
-CELL_SATURATED: Final = Interlock(
+CELL_SATURATED: Final[Row] = Interlock(
     name="load cell saturated",
     cause="a channel at 98 % of its range, or the transmitter reports an error",
-    level="reading not valid",
-    condition=_cell_invalid,
-    unseen=_cell_invalid,
+    watch=condition("reading not valid", lambda v: not v.readings.cell_valid and not v.readings.cell_silent),
+    unseen=True,
     delay=STALE_CELL_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -97,24 +87,31 @@ def _cell_frozen(v: Inputs) -> bool:
     unloaded = r.force_z_n < UNLOADED_N
     if v.turning and not unloaded and not (r.now_s - r.cell_changed_s <= v.parameters[FROZEN_CELL_S]):
         return True
-    unmoved = not (r.force_z_n >= UNLOADED_N)
-    return v.pressing and unmoved and not (r.press_mm - v.contact_mm <= v.parameters[TOUCH_MARGIN_MM])
+    return _no_force(v)
+
+
+def _no_force(v: Inputs) -> bool:
+    """Return whether the cell shows no force although the press is well beyond the contact."""
+    r = v.readings
+    unmoved = v.pressing and not (r.force_z_n >= UNLOADED_N)
+    return unmoved and not (r.press_mm - v.contact_mm <= v.parameters[TOUCH_MARGIN_MM])
 
 
 def _repeated(v: Inputs) -> Compared:
     r, p = v.readings, v.parameters
-    beyond_mm = r.press_mm - v.contact_mm
-    if v.pressing and not (r.force_z_n >= UNLOADED_N) and not (beyond_mm <= p[TOUCH_MARGIN_MM]):
-        return Compared(beyond_mm, p[TOUCH_MARGIN_MM], "mm")
+    if _no_force(v):
+        return Compared(r.press_mm - v.contact_mm, p[TOUCH_MARGIN_MM], "mm")
     return Compared(r.now_s - r.cell_changed_s, p[FROZEN_CELL_S], "s")
 
 
-CELL_FROZEN: Final = Interlock(
+CELL_FROZEN: Final[Row] = Interlock(
     name="load cell frozen",
     cause="the cell repeats itself",
-    level="identical raw counts for frozen_cell, loaded and turning; or no force touch_margin beyond the contact",
-    condition=_cell_frozen,
-    compared=_repeated,
+    watch=condition(
+        "identical raw counts for frozen_cell, loaded and turning; or no force touch_margin beyond the contact",
+        _cell_frozen,
+        _repeated,
+    ),
     parameters=(FROZEN_CELL_S, TOUCH_MARGIN_MM),
     when=LOADED,
     reaction=FAST,
@@ -122,16 +119,14 @@ CELL_FROZEN: Final = Interlock(
 )
 
 
-def _overloaded(v: Inputs) -> bool:
-    return not (v.readings.force_z_n <= v.limits.load_n)
+def _force_n(v: Inputs) -> float:
+    return v.readings.force_z_n
 
 
-OVERLOAD: Final = Interlock(
+OVERLOAD: Final[Row] = Interlock(
     name="overload",
     cause="normal force above the rig's limit",
-    level="Fz > limits.load",
-    condition=_overloaded,
-    compared=lambda v: Compared(v.readings.force_z_n, v.limits.load_n, "N"),
+    watch=at_most("Fz > {}", _force_n, "limits.load_n"),
     when=LOADED,
     reaction=FAST,
     reset=ACK,
@@ -165,16 +160,12 @@ def _most_n(v: Inputs) -> float:
     return p[OVERLOAD_FACTOR] * highest_n + p[OVERLOAD_MARGIN_N]
 
 
-def _above_target(v: Inputs) -> bool:
-    return not (v.readings.force_z_n <= _most_n(v))
-
-
-OVERSHOOT: Final = Interlock(
+OVERSHOOT: Final[Row] = Interlock(
     name="load overshoot",
     cause="normal force above its target",
-    level="Fz > overload_factor x target + overload_margin; or pressed more while none is wanted",
-    condition=_above_target,
-    compared=lambda v: Compared(v.readings.force_z_n, _most_n(v), "N"),
+    watch=at_most(
+        "Fz > overload_factor x target + overload_margin; or pressed more while none is wanted", _force_n, _most_n, "N"
+    ),
     parameters=(OVERLOAD_FACTOR, OVERLOAD_MARGIN_N, PRESSED_N),
     delay=OVERLOAD_DELAY_S,
     when=LOADED,
@@ -202,19 +193,17 @@ def _deepest_mm(v: Inputs) -> float:
     return p[DEPTH_FACTOR] * needed_mm + p[DEPTH_MARGIN_MM]
 
 
-def _too_deep(v: Inputs) -> bool:
-    if not (v.pressing and v.contact.in_contact):
-        return False
-    return not (v.readings.press_mm - v.contact_mm <= _deepest_mm(v))
-
-
-TOO_DEEP: Final = Interlock(
+TOO_DEEP: Final[Row] = Interlock(
     name="contact too deep",
     cause="the cell reads too little: the press is further than its load needs",
-    level="depth > depth_factor x that of Fz (loops.load.stiffness) + depth_margin",
-    condition=_too_deep,
-    compared=lambda v: Compared(v.readings.press_mm - v.contact_mm, _deepest_mm(v), "mm"),
+    watch=at_most(
+        "depth > depth_factor x that of Fz (loops.load.stiffness) + depth_margin",
+        lambda v: v.readings.press_mm - v.contact_mm,
+        _deepest_mm,
+        "mm",
+    ),
     parameters=(DEPTH_FACTOR, DEPTH_MARGIN_MM),
+    applies=lambda v: v.pressing and v.contact.in_contact,
     delay=DEPTH_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -241,21 +230,21 @@ def _lowest_n(v: Inputs) -> float:
     return lowest_n if lowest_n < wanted_n else wanted_n
 
 
-def _contact_lost(v: Inputs) -> bool:
-    p = v.parameters
-    if not (v.pressing and v.contact.loaded):
-        return False
-    lowest_n = _lowest_n(v)
-    return lowest_n >= p[CONTACT_LEAST_N] and not (v.readings.force_z_n >= p[CONTACT_SHARE] * lowest_n)
+def _load_watched(v: Inputs) -> bool:
+    return v.pressing and v.contact.loaded and _lowest_n(v) >= v.parameters[CONTACT_LEAST_N]
 
 
-CONTACT_LOST: Final = Interlock(
+CONTACT_LOST: Final[Row] = Interlock(
     name="contact lost",
     cause="normal force far below target",
-    level="Fz < contact_share of a target of contact_least or more",
-    condition=_contact_lost,
-    compared=lambda v: Compared(v.readings.force_z_n, v.parameters[CONTACT_SHARE] * _lowest_n(v), "N"),
+    watch=at_least(
+        "Fz < contact_share of a target of contact_least or more",
+        _force_n,
+        lambda v: v.parameters[CONTACT_SHARE] * _lowest_n(v),
+        "N",
+    ),
     parameters=(CONTACT_SHARE, CONTACT_LEAST_N),
+    applies=_load_watched,
     delay=CONTACT_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -267,23 +256,16 @@ SLIP_POWER_DELAY_S: Final = Parameter(
     hardest="200 ms", because="harm is 0.5 s beyond, and a quick stop from 0.8 m/s takes 0.1 s",
 )  # fmt: skip
 
-
-def _too_much_power(v: Inputs) -> bool:
-    return not (v.friction_w <= v.limits.slip_power_w)
-
-
-SLIP_POWER: Final = Interlock(
+SLIP_POWER: Final[Row] = Interlock(
     name="slip power",
     cause="friction power above the rig's limit",
-    level="friction x slip > limits.slip_power",
-    condition=_too_much_power,
-    compared=lambda v: Compared(v.friction_w, v.limits.slip_power_w, "W"),
+    watch=at_most("friction x slip > {}", lambda v: v.friction_w, "limits.slip_power_w"),
     delay=SLIP_POWER_DELAY_S,
     when=LOADED,
     reaction=FAST,
     reset=ACK,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     CELL_SILENT, CELL_SATURATED, CELL_FROZEN, OVERLOAD, OVERSHOOT, TOO_DEEP, CONTACT_LOST, SLIP_POWER,
 )  # fmt: skip

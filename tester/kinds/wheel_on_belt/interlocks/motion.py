@@ -6,11 +6,10 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
-from tester.kinds.wheel_on_belt.interlocks.monitors import SpeedTracker
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
-from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock, at_least, at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.wheel_at_s, r.belt_at_s, r.press_at_s, r.positions_at_s))
@@ -35,30 +34,20 @@ OVERSPEED_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _too_fast(v: Inputs) -> bool:
-    r = v.readings
-    if r.drives_disabled:
-        return False
-    share = 1.0 + v.parameters[OVERSPEED_SHARE]
-    wheel, belt = v.limits.wheel_speed_m_s * share, v.limits.belt_speed_m_s * share
-    return not (-wheel <= r.wheel_speed_m_s <= wheel and -belt <= r.belt_speed_m_s <= belt)
-
-
-def _faster(v: Inputs) -> Compared:
+def _speeds_m_s(v: Inputs) -> tuple[float, float, float]:
     r, share = v.readings, 1.0 + v.parameters[OVERSPEED_SHARE]
     belt_m_s, most_m_s = abs(r.belt_speed_m_s), v.limits.belt_speed_m_s * share
     if not (belt_m_s <= most_m_s):
-        return Compared(belt_m_s, most_m_s, "m/s")
-    return Compared(abs(r.wheel_speed_m_s), v.limits.wheel_speed_m_s * share, "m/s")
+        return 0.0, belt_m_s, most_m_s
+    return 0.0, abs(r.wheel_speed_m_s), v.limits.wheel_speed_m_s * share
 
 
-OVERSPEED: Final = Interlock(
+OVERSPEED: Final[Row] = Interlock(
     name="overspeed",
     cause="wheel or belt above its limit",
-    level="speed > limit + overspeed_share",
-    condition=_too_fast,
-    compared=_faster,
+    watch=within("speed > limit + overspeed_share", _speeds_m_s, "m/s"),
     parameters=(OVERSPEED_SHARE,),
+    applies=lambda v: not v.readings.drives_disabled,
     delay=OVERSPEED_DELAY_S,
     reaction=FAST,
     reset=ACK,
@@ -81,46 +70,34 @@ SPEED_ERROR_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _off_ramp(v: Inputs, speed_m_s: float, ramp: SpeedTracker) -> Compared:
-    error = v.parameters[SPEED_ERROR_M_S]
-    limit = ramp.low_m_s - error if speed_m_s < ramp.low_m_s else ramp.high_m_s + error
-    return Compared(speed_m_s, limit, "m/s")
-
-
-def _wheel_off_its_ramp(v: Inputs) -> bool:
-    if not v.confirmed:
-        return False
+def _wheel_on_ramp(v: Inputs) -> tuple[float, float, float]:
     error, wheel = v.parameters[SPEED_ERROR_M_S], v.wheel
-    return not (wheel.low_m_s - error <= v.readings.wheel_speed_m_s <= wheel.high_m_s + error)
+    return wheel.low_m_s - error, v.readings.wheel_speed_m_s, wheel.high_m_s + error
 
 
-WHEEL_SPEED: Final = Interlock(
+WHEEL_SPEED: Final[Row] = Interlock(
     name="wheel speed",
     cause="wheel not at its speed: jammed, slipping coupling, wrong scale",
-    level="off what its ramp allows by > speed_error",
-    condition=_wheel_off_its_ramp,
-    compared=lambda v: _off_ramp(v, v.readings.wheel_speed_m_s, v.wheel),
+    watch=within("off what its ramp allows by > speed_error", _wheel_on_ramp, "m/s"),
     parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
+    applies=lambda v: v.confirmed,
     delay=SPEED_ERROR_DELAY_S,
     reaction=FAST,
     reset=ACK,
 )
 
 
-def _belt_off_its_ramp(v: Inputs) -> bool:
-    if not v.confirmed:
-        return False
+def _belt_on_ramp(v: Inputs) -> tuple[float, float, float]:
     error, belt = v.parameters[SPEED_ERROR_M_S], v.belt
-    return not (belt.low_m_s - error <= v.readings.belt_speed_m_s <= belt.high_m_s + error)
+    return belt.low_m_s - error, v.readings.belt_speed_m_s, belt.high_m_s + error
 
 
-BELT_SPEED: Final = Interlock(
+BELT_SPEED: Final[Row] = Interlock(
     name="belt speed",
     cause="belt not at its speed: jammed, wrong scale",
-    level="off what its ramp allows by > speed_error",
-    condition=_belt_off_its_ramp,
-    compared=lambda v: _off_ramp(v, v.readings.belt_speed_m_s, v.belt),
+    watch=within("off what its ramp allows by > speed_error", _belt_on_ramp, "m/s"),
     parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
+    applies=lambda v: v.confirmed,
     delay=SPEED_ERROR_DELAY_S,
     reaction=FAST,
     reset=ACK,
@@ -131,41 +108,26 @@ PRESS_ERROR_MM: Final = Parameter(
     hardest="0.5 mm", because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
 )  # fmt: skip
 
-
-def _press_ahead(v: Inputs) -> bool:
-    return v.confirmed and not (v.press.ahead_mm <= v.parameters[PRESS_ERROR_MM])
-
-
-PRESS_SPEED: Final = Interlock(
+PRESS_SPEED: Final[Row] = Interlock(
     name="press speed",
     cause="press comes on its own: broken velocity loop, setpoints lost",
-    level="further towards the contact than its ramp allows by > press_error",
-    condition=_press_ahead,
-    compared=lambda v: Compared(v.press.ahead_mm, v.parameters[PRESS_ERROR_MM], "mm"),
-    parameters=(PRESS_ERROR_MM,),
+    watch=at_most(
+        "further towards the contact than its ramp allows by > {}", lambda v: v.press.ahead_mm, PRESS_ERROR_MM
+    ),
+    applies=lambda v: v.confirmed,
     reaction=FAST,
     reset=REPAIR,
 )
 
-
-def _press_beyond_travel(v: Inputs) -> bool:
-    r, limits = v.readings, v.limits
-    wanted = v.demand.enabled and r.drives_enabled
-    return wanted and not (limits.press_low_mm <= r.press_mm <= limits.press_high_mm)
-
-
-def _beyond_end(v: Inputs) -> Compared:
-    press_mm, limits = v.readings.press_mm, v.limits
-    end_mm = limits.press_low_mm if press_mm < limits.press_low_mm else limits.press_high_mm
-    return Compared(press_mm, end_mm, "mm")
-
-
-PRESS_TRAVEL: Final = Interlock(
+PRESS_TRAVEL: Final[Row] = Interlock(
     name="press travel",
     cause="press outside its travel: ran past its end, or its zero is wrong",
-    level="position outside axes.press.software_limits",
-    condition=_press_beyond_travel,
-    compared=_beyond_end,
+    watch=within(
+        "position outside axes.press.software_limits",
+        lambda v: (v.limits.press_low_mm, v.readings.press_mm, v.limits.press_high_mm),
+        "mm",
+    ),
+    applies=lambda v: v.demand.enabled and v.readings.drives_enabled,
     reaction=FAST,
     reset=ACK,
 )
@@ -207,12 +169,10 @@ def _slower(v: Inputs) -> Compared:
     return Compared(belt_m_s if not (belt_m_s > still_m_s) else wheel_m_s, still_m_s, "m/s")
 
 
-STANDING_UNDER_LOAD: Final = Interlock(
+STANDING_UNDER_LOAD: Final[Row] = Interlock(
     name="drive standing under load",
     cause="wheel on a stopped belt, or belt under a stopped wheel",
-    level="load > 20 N, one below standing, the other above apart",
-    condition=_one_stands,
-    compared=_slower,
+    watch=condition("load > 20 N, one below standing, the other above apart", _one_stands, _slower),
     parameters=(STANDING_M_S, APART_M_S),
     delay=STANDING_DELAY_S,
     reaction=FAST,
@@ -240,30 +200,37 @@ TORN_FRICTION_NM: Final = Parameter(
 )  # fmt: skip
 
 
-def _no_friction(v: Inputs) -> bool:
+def _least_n(v: Inputs) -> float:
+    return v.parameters[TORN_SHARE] * v.readings.force_z_n
+
+
+def _slides_without_torque(v: Inputs) -> bool:
     r, p = v.readings, v.parameters
     if not (v.pressing and v.contact.in_contact and v.contact.loaded and r.slip_m_s > p[TORN_SLIP_M_S]):
         return False
-    least_n = p[TORN_SHARE] * r.force_z_n
     # Bearings and seals take torque without any belt; without a deduction they pass for friction at a small load.
     rubbing_nm = abs(r.drive_torque_nm) - p[TORN_FRICTION_NM]
-    return not (v.friction_n >= least_n) and not (rubbing_nm >= least_n * r.diameter_mm * 0.5e-3)
+    return not (rubbing_nm >= _least_n(v) * r.diameter_mm * 0.5e-3)
 
 
-BELT_TORN: Final = Interlock(
+BELT_TORN: Final[Row] = Interlock(
     name="belt torn",
     cause="friction and drive torque collapsed while sliding under load",
-    level="friction, and torque less torn_friction, < torn_share of the load at slip > torn_slip",
-    condition=_no_friction,
-    compared=lambda v: Compared(v.friction_n, v.parameters[TORN_SHARE] * v.readings.force_z_n, "N"),
+    watch=at_least(
+        "friction, and torque less torn_friction, < torn_share of the load at slip > torn_slip",
+        lambda v: v.friction_n,
+        _least_n,
+        "N",
+    ),
     parameters=(TORN_SHARE, TORN_SLIP_M_S, TORN_FRICTION_NM),
+    applies=_slides_without_torque,
     delay=TORN_DELAY_S,
     when=LOADED,
     reaction=FAST,
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     DRIVE_DATA_STALE, INPUTS_STALE, DRIVE_DROPPED_OUT, OVERSPEED, WHEEL_SPEED, BELT_SPEED, PRESS_SPEED, PRESS_TRAVEL,
     STANDING_UNDER_LOAD, BELT_TORN,
 )  # fmt: skip

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, STANDING_M_S, standing, unloaded
 from tester.kinds.wheel_on_belt.interlocks.motion import DROPPED_DELAY_S
 from tester.kinds.wheel_on_belt.interlocks.stops import PUSHED_MM
-from tester.machine.row import ENDING, POWER_OFF, REFUSE, REPAIR, Interlock
+from tester.machine.row import ENDING, POWER_OFF, REFUSE, REPAIR, Interlock, condition
 
 
 def _moving(v: Inputs) -> bool:
@@ -31,38 +31,30 @@ def _still(v: Inputs) -> bool:
     return r.drives_disabled and r.wheel_at_s >= since and r.belt_at_s >= since and r.press_at_s >= since
 
 
-def _has_power(v: Inputs) -> bool:
-    """Tell whether there is a power to take off: a belt may be turned by hand."""
-    return not v.readings.drives_disabled
-
-
-MOVING_AT_REST: Final = Interlock(
+MOVING_AT_REST: Final[Row] = Interlock(
     name="moving at rest",
     cause="a drive turns, has power or comes although everything is to rest",
-    level="a speed >= standing or unknown, or the press further by pushed; in a run: power that is not wanted",
-    condition=_moving,
+    watch=condition(
+        "a speed >= standing or unknown, or the press further by pushed; in a run: power that is not wanted", _moving
+    ),
     parameters=(STANDING_M_S, SPEEDS_OLD_S, PUSHED_MM),
     delay=DROPPED_DELAY_S,
     when=ENDING,
-    at_rest=_has_power,
+    at_rest=lambda v: not v.readings.drives_disabled,  # without power a hand may turn the belt
     reaction=POWER_OFF,
     reset=REPAIR,
 )
 
-
-def _pressed(v: Inputs) -> bool:
-    return v.resting and not unloaded(v)
-
-
-LOADED_AT_REST: Final = Interlock(
+LOADED_AT_REST: Final[Row] = Interlock(
     name="loaded at rest",
     cause="the wheel is pressed although everything is to rest",
-    level="Fz >= 20 N, or unknown and the press not clear of the contact",
-    condition=_pressed,
+    watch=condition(
+        "Fz >= 20 N, or unknown and the press not clear of the contact", lambda v: v.resting and not unloaded(v)
+    ),
     parameters=(SPEEDS_OLD_S, CLEAR_MM),
     when=ENDING,
     reaction=REFUSE,
     reset="cause gone",
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (MOVING_AT_REST, LOADED_AT_REST)
+ROWS: Final[tuple[Row, ...]] = (MOVING_AT_REST, LOADED_AT_REST)

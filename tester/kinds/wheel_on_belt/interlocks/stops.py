@@ -5,10 +5,21 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import POSITIVE, Parameter
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, contactor_open, standing, unloaded
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
-from tester.machine.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
+from tester.machine.row import (
+    CONTROLLED,
+    ENDING,
+    FAST,
+    POWER_OFF,
+    REPAIR,
+    Compared,
+    Interlock,
+    always,
+    at_most,
+    condition,
+)
 
 LIFT_LATE_S: Final = Parameter(
     "lift_late_s", "s", "1 s", "after a stop: unloaded by then, else both drives stop fast [A]",
@@ -16,18 +27,12 @@ LIFT_LATE_S: Final = Parameter(
     because="lifting 2.5 mm at 10 mm/s takes 0.3 s; what does not lift must have lost its power 2.5 s after the stop",
 )  # fmt: skip
 
-
-def _still_loaded(v: Inputs) -> bool:
-    return v.lifting_s >= 0.0 and not (v.lifting_s <= v.parameters[LIFT_LATE_S]) and not unloaded(v)
-
-
-NOT_LIFTED: Final = Interlock(
+NOT_LIFTED: Final[Row] = Interlock(
     name="not lifted",
     cause="still loaded after a stop or in a hold",
-    level="Fz >= 20 N at lift_late after it began",
-    condition=_still_loaded,
-    compared=lambda v: Compared(v.lifting_s, v.parameters[LIFT_LATE_S], "s"),
-    parameters=(LIFT_LATE_S, SPEEDS_OLD_S, CLEAR_MM),
+    watch=at_most("Fz >= 20 N at {} after it began", lambda v: v.lifting_s, LIFT_LATE_S),
+    parameters=(SPEEDS_OLD_S, CLEAR_MM),
+    applies=lambda v: v.lifting_s >= 0.0 and not unloaded(v),
     when=ENDING,
     reaction=FAST,
     reset=REPAIR,
@@ -51,7 +56,7 @@ def _lift_failed(v: Inputs) -> bool:
     p = v.parameters
     late = v.lifting_s >= 0.0 and not (v.lifting_s <= p[LIFT_LATE_S]) and not (v.lifting_s <= p[LIFT_FAILED_S])
     goes_on = v.stopped_s >= 0.0 and not (v.readings.press_mm <= v.stop_start.press_mm + p[PUSHED_MM])
-    return (late or goes_on) and not unloaded(v)
+    return late or goes_on
 
 
 def _still_pressing(v: Inputs) -> Compared:
@@ -61,13 +66,16 @@ def _still_pressing(v: Inputs) -> Compared:
     return Compared(v.lifting_s, v.parameters[LIFT_FAILED_S], "s")
 
 
-LIFT_FAILED: Final = Interlock(
+LIFT_FAILED: Final[Row] = Interlock(
     name="lift failed",
     cause="still loaded after the quick stop, or the press goes on",
-    level="Fz >= 20 N at lift_failed after it began; or the press beyond its ramp and lag by pushed",
-    condition=_lift_failed,
-    compared=_still_pressing,
+    watch=condition(
+        "Fz >= 20 N at lift_failed after it began; or the press beyond its ramp and lag by pushed",
+        _lift_failed,
+        _still_pressing,
+    ),
     parameters=(LIFT_FAILED_S, PUSHED_MM, PRESS_LAG_S),
+    applies=lambda v: not unloaded(v),
     when=ENDING,
     reaction=POWER_OFF,
     reset=REPAIR,
@@ -118,44 +126,32 @@ HEAT_OFF_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _gives_output(v: Inputs) -> bool:
-    due = v.stopped_s >= 0.0 and not (v.stopped_s <= v.parameters[HEAT_OFF_S])
-    return due and not (v.readings.heat_percent <= 0.0)
+def _output_percent(v: Inputs) -> float:
+    return v.readings.heat_percent
 
 
-def _output(v: Inputs) -> Compared:
-    return Compared(v.readings.heat_percent, 0.0, "%")
+def _off_due(v: Inputs) -> bool:
+    return v.stopped_s >= 0.0 and not (v.stopped_s <= v.parameters[HEAT_OFF_S])
 
 
-def _still_heats(v: Inputs) -> bool:
-    return _gives_output(v) and not contactor_open(v)
-
-
-HEAT_NOT_OFF: Final = Interlock(
+HEAT_NOT_OFF: Final[Row] = Interlock(
     name="heat not off",
     cause="the jacket heats after a stop",
-    level="output and contactor on at heat_off after the stop",
-    condition=_still_heats,
-    compared=_output,
+    watch=at_most("output and contactor on at heat_off after the stop", _output_percent, 0.0, "%"),
     parameters=(HEAT_OFF_S,),
+    applies=lambda v: _off_due(v) and not contactor_open(v),
     when=ENDING,
     ends_lease=True,
     reaction=FAST,
     reset=REPAIR,
 )
 
-
-def _output_on(v: Inputs) -> bool:
-    return _gives_output(v) or (v.resting and not (v.readings.heat_percent <= 0.0))
-
-
-OUTPUT_NOT_OFF: Final = Interlock(
+OUTPUT_NOT_OFF: Final[Row] = Interlock(
     name="output not off",
     cause="the jacket's controller gives output after a stop, whatever the contactor does",
-    level="output on at heat_off after the stop, or at rest",
-    condition=_output_on,
-    compared=_output,
+    watch=at_most("output on at heat_off after the stop, or at rest", _output_percent, 0.0, "%"),
     parameters=(HEAT_OFF_S,),
+    applies=lambda v: v.resting or _off_due(v),
     when=ENDING,
     ends_lease=True,
     reaction=CONTROLLED,
@@ -186,16 +182,11 @@ CONTACTOR_DELAY_S: Final = Parameter(
     hardest="1 s", because="a contactor opens within 0.1 s [A]; the input word that says so may be 0.25 s old",
 )  # fmt: skip
 
-
-def _contactor_closed(v: Inputs) -> bool:
-    return v.readings.contactor_closed and not v.setpoints.contactor
-
-
-CONTACTOR_WELDED: Final = Interlock(
+CONTACTOR_WELDED: Final[Row] = Interlock(
     name="contactor welded",
     cause="the contactor is closed without request",
-    level="feedback closed, request off",
-    condition=_contactor_closed,
+    watch=condition("feedback closed, request off", lambda v: v.readings.contactor_closed),
+    applies=lambda v: not v.setpoints.contactor,
     delay=CONTACTOR_DELAY_S,
     at_rest=always,
     ends_lease=True,
@@ -203,7 +194,7 @@ CONTACTOR_WELDED: Final = Interlock(
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     NOT_LIFTED, LIFT_FAILED, NOT_STOPPING, QUICK_STOP_FAILED, HEAT_NOT_OFF, OUTPUT_NOT_OFF, STOP_NOT_ENDED,
     CONTACTOR_WELDED,
 )  # fmt: skip

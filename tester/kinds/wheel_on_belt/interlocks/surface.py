@@ -6,9 +6,9 @@ from math import inf
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
-from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock, at_most, condition
 from tester.machine.wires import answered_s
 
 _INF: Final = inf
@@ -18,18 +18,11 @@ SURFACE_DELAY_S: Final = Parameter(
     hardest="2 s", because="35 K are left from limits.surface to harm, and a burst is over after some seconds [A]",
 )  # fmt: skip
 
-
-def _surface_hot(v: Inputs) -> bool:
-    r = v.readings
-    return r.surface_valid and not (r.surface_c <= v.limits.surface_c)
-
-
-SURFACE_HOT: Final = Interlock(
+SURFACE_HOT: Final[Row] = Interlock(
     name="surface hot",
     cause="rubber surface above its limit",
-    level="surface > limits.surface",
-    condition=_surface_hot,
-    compared=lambda v: Compared(v.readings.surface_c, v.limits.surface_c, "degC"),
+    watch=at_most("surface > {}", lambda v: v.readings.surface_c, "limits.surface_c"),
+    applies=lambda v: v.readings.surface_valid,
     delay=SURFACE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
@@ -41,17 +34,12 @@ def _surface_wanted(v: Inputs) -> bool:
     return v.pressing or -_INF < v.demand.surface_c < _INF
 
 
-def _surface_jumps(v: Inputs) -> bool:
-    return not (v.surface.jump_k <= v.parameters[JUMP_K]) and _surface_wanted(v)
-
-
-SURFACE_JUMP: Final = Interlock(
+SURFACE_JUMP: Final[Row] = Interlock(
     name="surface sensor jump",
     cause="thermometer moved, covered or disturbed",
-    level="two readings apart by > jump",
-    condition=_surface_jumps,
-    compared=lambda v: Compared(v.surface.jump_k, v.parameters[JUMP_K], "K"),
-    parameters=(JUMP_K, BLIND_S),
+    watch=at_most("two readings apart by > {}", lambda v: v.surface.jump_k, JUMP_K),
+    parameters=(BLIND_S,),
+    applies=_surface_wanted,
     reaction=CONTROLLED,
     reset=ACK,
 )
@@ -77,31 +65,34 @@ FROZEN_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
+def _same_s(v: Inputs) -> float:
+    return v.readings.now_s - v.readings.surface_changed_s
+
+
+def _moved_k(v: Inputs) -> float:
+    """Return how far the model has moved since the thermometer last changed, K."""
+    return abs(v.model_c - v.surface.model_c)
+
+
 def _surface_frozen(v: Inputs) -> bool:
-    if not _measures(v):
-        return False
-    r, p = v.readings, v.parameters
-    most = p[FROZEN_MODEL_K]
-    return not (r.now_s - r.surface_changed_s <= p[FROZEN_SURFACE_S]) or not (
-        -most <= v.model_c - v.surface.model_c <= most
-    )
+    return not (_same_s(v) <= v.parameters[FROZEN_SURFACE_S]) or not (_moved_k(v) <= v.parameters[FROZEN_MODEL_K])
 
 
 def _repeated(v: Inputs) -> Compared:
-    r, p = v.readings, v.parameters
-    same_s = r.now_s - r.surface_changed_s
+    same_s, p = _same_s(v), v.parameters
     if not (same_s <= p[FROZEN_SURFACE_S]):
         return Compared(same_s, p[FROZEN_SURFACE_S], "s")
-    return Compared(abs(v.model_c - v.surface.model_c), p[FROZEN_MODEL_K], "K")
+    return Compared(_moved_k(v), p[FROZEN_MODEL_K], "K")
 
 
-THERMOMETER_FROZEN: Final = Interlock(
+THERMOMETER_FROZEN: Final[Row] = Interlock(
     name="thermometer frozen",
     cause="the thermometer repeats itself",
-    level="unchanged for frozen_surface, or while the model moved by frozen_model, turning",
-    condition=_surface_frozen,
-    compared=_repeated,
+    watch=condition(
+        "unchanged for frozen_surface, or while the model moved by frozen_model, turning", _surface_frozen, _repeated
+    ),
     parameters=(FROZEN_SURFACE_S, FROZEN_MODEL_K),
+    applies=_measures,
     delay=FROZEN_DELAY_S,
     reaction=CONTROLLED,
     reset=REPAIR,
@@ -117,21 +108,13 @@ MODEL_DELAY_S: Final = Parameter(
     hardest="60 s", because="full output heats the hub by 29 K in a minute",
 )  # fmt: skip
 
-
-def _surface_off_model(v: Inputs) -> bool:
-    if not _measures(v):
-        return False
-    most = v.parameters[MODEL_K]
-    return not (-most <= v.readings.surface_c - v.model_c <= most)
-
-
-SURFACE_OFF_MODEL: Final = Interlock(
+SURFACE_OFF_MODEL: Final[Row] = Interlock(
     name="surface off model",
     cause="thermometer misaligned, dirty or wrong emissivity",
-    level="surface off the thermal observer by > model, turning",
-    condition=_surface_off_model,
-    compared=lambda v: Compared(abs(v.readings.surface_c - v.model_c), v.parameters[MODEL_K], "K"),
-    parameters=(MODEL_K,),
+    watch=at_most(
+        "surface off the thermal observer by > {}, turning", lambda v: abs(v.readings.surface_c - v.model_c), MODEL_K
+    ),
+    applies=_measures,
     delay=MODEL_DELAY_S,
     reaction=CONTROLLED,
     reset=REPAIR,
@@ -148,48 +131,30 @@ def _surface_answered_s(v: Inputs) -> float:
     return answered_s(r.surface_silent, r.now_s, r.surface_at_s)
 
 
-def _surface_old(v: Inputs) -> bool:
-    return not (_surface_answered_s(v) <= v.parameters[STALE_IR_S])
-
-
-def _surface_missed(v: Inputs) -> bool:
-    return _surface_old(v) and _surface_wanted(v)
-
-
-THERMOMETER_SILENT: Final = Interlock(
+THERMOMETER_SILENT: Final[Row] = Interlock(
     name="thermometer silent",
     cause="cable, supply or address; the surface temperature is not known",
-    level="age > stale_ir, or several requests without an answer, and wanted",
-    condition=_surface_missed,
-    compared=lambda v: Compared(_surface_answered_s(v), v.parameters[STALE_IR_S], "s"),
-    unseen=_surface_old,
-    parameters=(STALE_IR_S,),
+    watch=at_most("age > {}, or several requests without an answer, and wanted", _surface_answered_s, STALE_IR_S),
+    applies=_surface_wanted,
+    unseen=True,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
 )
 
-
-def _surface_invalid(v: Inputs) -> bool:
-    r = v.readings
-    return not r.surface_valid and not r.surface_silent
-
-
-def _surface_unusable(v: Inputs) -> bool:
-    return _surface_invalid(v) and _surface_wanted(v)
-
-
-SURFACE_NOT_VALID: Final = Interlock(
+SURFACE_NOT_VALID: Final[Row] = Interlock(
     name="surface not valid",
     cause="the thermometer is out of its range, or reports an error",
-    level="reading not valid, and wanted",
-    condition=_surface_unusable,
-    unseen=_surface_invalid,
+    watch=condition(
+        "reading not valid, and wanted", lambda v: not v.readings.surface_valid and not v.readings.surface_silent
+    ),
+    applies=_surface_wanted,
+    unseen=True,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     SURFACE_HOT, SURFACE_JUMP, THERMOMETER_FROZEN, SURFACE_OFF_MODEL, THERMOMETER_SILENT, SURFACE_NOT_VALID,
 )  # fmt: skip

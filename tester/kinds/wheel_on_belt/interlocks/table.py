@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 from tester.inputs.rig.parameter import Parameter
 from tester.kinds.wheel_on_belt.interlocks import (
@@ -28,6 +28,6 @@ TABLE: Final = InterlockTable(
     ),
     operation.PARAMETERS,
 )  # fmt: skip
-INTERLOCKS: Final[tuple[Interlock, ...]] = TABLE.rows
+INTERLOCKS: Final[tuple[Interlock[Any], ...]] = TABLE.rows
 PARAMETERS: Final[tuple[Parameter, ...]] = TABLE.parameters
 """Every key of the rig file's section ``interlocks``, in its order."""

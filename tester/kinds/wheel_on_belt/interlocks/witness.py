@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
-from tester.machine.row import FAST, LOADED, REPAIR, Interlock
+from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
+from tester.machine.row import FAST, LOADED, REPAIR, Interlock, at_most, within
 
 FORCE_STEP_N: Final = Parameter(
     "force_step_n", "N", "14 N",
@@ -32,17 +32,16 @@ FORCE_STEP_DELAY_S: Final = Parameter(
     hardest="80 ms", because="a step stands in the comparison for 100 ms",
 )  # fmt: skip
 
-
-def _force_steps(v: Inputs) -> bool:
-    return v.pressing and not (v.force.off_n <= v.parameters[FORCE_STEP_N])
-
-
-FORCE_STEP: Final = Interlock(
+FORCE_STEP: Final[Row] = Interlock(
     name="force step",
     cause="the force has changed without the press: load cell, its amplifier, or the rubber",
-    level="change of Fz in 0.1 s off what press and Fx explain by > force_step (and shares of both)",
-    condition=_force_steps,
-    parameters=(FORCE_STEP_N, FORCE_STEP_UNSEEN_SHARE, FORCE_STEP_SEEN_SHARE, FORCE_STEP_CROSS_SHARE),
+    watch=at_most(
+        "change of Fz in 0.1 s off what press and Fx explain by > {} (and shares of both)",
+        lambda v: v.force.off_n,
+        FORCE_STEP_N,
+    ),
+    parameters=(FORCE_STEP_UNSEEN_SHARE, FORCE_STEP_SEEN_SHARE, FORCE_STEP_CROSS_SHARE),
+    applies=lambda v: v.pressing,
     delay=FORCE_STEP_DELAY_S,
     when=LOADED,
     reaction=FAST,
@@ -62,26 +61,21 @@ TORQUE_DELAY_S: Final = Parameter(
 )  # fmt: skip
 
 
-def _torque_denies(v: Inputs) -> bool:
-    band = v.press_band
-    if not (v.confirmed and band.known):
-        return False
-    r, margin = v.readings, v.parameters[TORQUE_MARGIN_N]
-    torque_nm = r.press_torque_nm
-    least, most = band.least_n(torque_nm), band.most_n(torque_nm)
-    return not (least - margin <= r.force_z_n <= most + margin)
+def _torque_allows_n(v: Inputs) -> tuple[float, float, float]:
+    band, margin, torque_nm = v.press_band, v.parameters[TORQUE_MARGIN_N], v.readings.press_torque_nm
+    return band.least_n(torque_nm) - margin, v.readings.force_z_n, band.most_n(torque_nm) + margin
 
 
-PRESS_TORQUE: Final = Interlock(
+PRESS_TORQUE: Final[Row] = Interlock(
     name="press torque",
     cause="the load cell denies the press's torque: its gain, zero or channels, or the press's screw",
-    level="Fz off the range that the press's torque allows by > press_torque_margin",
-    condition=_torque_denies,
+    watch=within("Fz off the range that the press's torque allows by > press_torque_margin", _torque_allows_n, "N"),
     parameters=(TORQUE_MARGIN_N,),
+    applies=lambda v: v.confirmed and v.press_band.known,
     delay=TORQUE_DELAY_S,
     when=LOADED,
     reaction=FAST,
     reset=REPAIR,
 )
 
-ROWS: Final[tuple[Interlock, ...]] = (FORCE_STEP, PRESS_TORQUE)
+ROWS: Final[tuple[Row, ...]] = (FORCE_STEP, PRESS_TORQUE)

@@ -8,12 +8,12 @@ from tester.inputs.rig.config import section_of
 from tester.inputs.rig.parameter import Parameter
 from tester.kinds import wheel_on_belt
 from tester.kinds.wheel_on_belt.interlocks import operation
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
+from tester.kinds.wheel_on_belt.interlocks.inputs import Row
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.kinds.wheel_on_belt.rig.config import RigConfig
 from tester.machine.interlock_sheet import SECTION, InterlockSheet
 from tester.machine.interlock_table import InterlockTable
-from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, Interlock, at_most
 
 FAULT = "thermometer drift 2 K/s"
 """Trips it first: a line of a fault script, behind the time at which it begins."""
@@ -23,18 +23,11 @@ EXCESS_K = Parameter(
 )  # fmt: skip
 
 
-def _hotter_than_hub(v: Inputs) -> bool:
-    r = v.readings
-    return r.surface_valid and r.jacket_valid and not (r.surface_c - r.hub_c <= v.parameters[EXCESS_K])
-
-
-HOTTER_THAN_HUB = Interlock(
+HOTTER_THAN_HUB: Row = Interlock(
     name="rubber hotter than hub",
     cause="rubber far hotter than its hub: thermometer wrong, or far too much friction",
-    level="surface - hub > surface_excess",
-    condition=_hotter_than_hub,
-    compared=lambda v: Compared(v.readings.surface_c - v.readings.hub_c, v.parameters[EXCESS_K], "K"),
-    parameters=(EXCESS_K,),
+    watch=at_most("surface - hub > {}", lambda v: v.readings.surface_c - v.readings.hub_c, EXCESS_K),
+    applies=lambda v: v.readings.surface_valid and v.readings.jacket_valid,
     reaction=CONTROLLED,
     reset=ACK,
 )

@@ -10,7 +10,7 @@ import pytest
 from tester.machine.plain.control import PlainControl
 from tester.machine.plain.image import PlainDemand
 from tester.machine.plain.rows import OPERATION, ROWS, SENSOR_SILENT, plain_table
-from tester.machine.row import Interlock, Reaction
+from tester.machine.row import Interlock, Reaction, condition
 from tester.machine.state import Mode
 from tests.tester.machine.plain.bench import TABLE, BenchReadings, bench_rig
 
@@ -180,13 +180,13 @@ def test_power_that_a_run_does_not_want_trips() -> None:
 
 @pytest.mark.parametrize("row", [*ROWS, SENSOR_SILENT], ids=lambda row: row.name)
 def test_every_row_says_what_it_compares_with_a_unit_and_tells_a_person(row: Interlock) -> None:
-    assert row in TABLE.rows and row.cause and row.level and row.reset
+    assert row in TABLE.rows and row.cause and row.watch.level and row.reset
     for one in row.declared():
         assert one.value is not None and one.text and one.hardest and one.because
 
 
 def test_a_kinds_own_rows_stand_behind_the_wires_and_a_silent_sensor_and_before_the_rest() -> None:
-    own = Interlock("own", "cause", "level", lambda v: False, SENSOR_SILENT.reaction, "reset")
+    own = Interlock("own", "cause", condition("level", lambda v: False), SENSOR_SILENT.reaction, "reset")
     table = plain_table(own)
     names = [row.name for row in table.rows]
     assert names.index("sensor silent") < names.index("own") < names.index(ROWS[0].name)

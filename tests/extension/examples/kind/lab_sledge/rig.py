@@ -13,7 +13,7 @@ from tester.inputs.rig.config import OwnDevice, section_of
 from tester.inputs.rig.parameter import SECTION, Parameter
 from tester.inputs.rig.plain import PlainRig
 from tester.machine.plain.rows import PlainInputs, plain_table
-from tester.machine.row import FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.row import FAST, LOADED, REPAIR, Interlock, at_most
 
 SPRING_N = Parameter(
     "spring_n", "N", "40 N", "the spring pulls at most this: a sledge that slides needs half of it [A]",
@@ -21,19 +21,12 @@ SPRING_N = Parameter(
 )  # fmt: skip
 
 
-def _overdrawn(v: PlainInputs[SledgeReadings]) -> bool:
-    return not (abs(v.readings.force_n) <= v.parameters[SPRING_N])
-
-
-OVERDRAWN = Interlock(
+OVERDRAWN: Interlock[PlainInputs[SledgeReadings]] = Interlock(
     name="spring overdrawn",
     cause="the spring is drawn too far: the sledge sticks or has jammed",
-    level="pull > spring, or unknown",
-    condition=_overdrawn,
-    compared=lambda v: Compared(abs(v.readings.force_n), v.parameters[SPRING_N], "N"),
-    parameters=(SPRING_N,),
+    watch=at_most("pull > {}, or unknown", lambda v: abs(v.readings.force_n), SPRING_N),
     when=LOADED,
-    unseen=_overdrawn,
+    unseen=True,
     reaction=FAST,
     reset=REPAIR,
 )

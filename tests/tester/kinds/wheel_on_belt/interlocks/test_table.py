@@ -17,10 +17,11 @@ from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS, 
 from tester.kinds.wheel_on_belt.rig import interlock_values
 from tester.machine.row import Interlock
 
-OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester.machine.drive_rows")
+OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester.machine.drive_rows",
+        "tester.machine.row")  # fmt: skip
 
 
-def compared(condition: Callable[[Inputs], bool], known: set[FunctionType] | None = None) -> set[Parameter]:
+def compared(condition: Callable[[Inputs], object], known: set[FunctionType] | None = None) -> set[Parameter]:
     """Return the parameters that a condition, and whatever function of ours it calls, names."""
     known = set() if known is None else known
     assert isinstance(condition, FunctionType)
@@ -47,8 +48,9 @@ SHARED = {"stale_inputs_s", "speeds_old_s", "standing_m_s", "clear_mm", "lift_la
 
 @pytest.mark.parametrize("row", INTERLOCKS, ids=lambda row: row.name)
 def test_a_row_declares_what_its_condition_compares_with(row: Interlock) -> None:
-    used = {one.name for one in compared(row.condition)}
-    declared = {one.name for one in row.parameters}
+    used = {one.name for one in compared(row.watch.holds)}
+    used |= {one.name for one in compared(row.applies)} if row.applies is not None else set()
+    declared = {one.name for one in row.declared()} - {row.delay.name if row.delay is not None else ""}
     assert used - declared <= SHARED
     assert declared - used <= INSIDE
 
