@@ -11,9 +11,10 @@ from typing import Any, TypeAlias
 
 from tester.inputs.rig.parameter import Parameter, Values
 from tester.machine.inputs import ScanInputs
-from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Interlock, When, always
+from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Form, Interlock, Watch, When, always
 
 Asked: TypeAlias = Callable[[Any], bool]
+Read: TypeAlias = Callable[[Any], float]
 
 
 def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
@@ -22,34 +23,61 @@ def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
 
 
 class Group:
-    """Rows that are evaluated together, with their bits: one call a row."""
+    """Rows that are evaluated together, with their bits: a number costs a call of its function and of a limit's."""
 
-    __slots__ = ("members", "numbers", "others")
+    __slots__ = ("least", "members", "most", "numbers", "spans", "states")
 
     def __init__(self, members: Iterable[tuple[int, Interlock[Any]]]) -> None:
         """Take (bit, row) pairs."""
         self.members: tuple[tuple[int, Interlock[Any]], ...] = tuple(members)
-        rows = [row for _, row in self.members]
-        self.numbers: tuple[tuple[Callable[[Any], float], Parameter, Asked], ...] = tuple(
-            (row.watch.number, row.watch.parameters[0], row.applies or always)
-            for row in rows
-            if row.watch.number is not None
+        self.numbers: tuple[tuple[Read, Parameter, Asked], ...] = tuple(
+            (watch.parts[0], watch.parameters[0], applies)
+            for watch, applies in self._of(Form.AT_MOST)
+            if watch.parameters
         )
         """Number, the parameter that it may not exceed, whether the row applies."""
-        self.others: tuple[tuple[Asked, Asked], ...] = tuple(
-            (row.watch.holds, row.applies or always) for row in rows if row.watch.number is None
+        self.most: tuple[tuple[Read, Read, Asked], ...] = tuple(
+            (watch.parts[0], watch.parts[1], applies)
+            for watch, applies in self._of(Form.AT_MOST)
+            if not watch.parameters
         )
+        """The same of other limits."""
+        self.least: tuple[tuple[Read, Read, Asked], ...] = tuple(
+            (watch.parts[0], watch.parts[1], applies) for watch, applies in self._of(Form.AT_LEAST)
+        )
+        self.spans: tuple[tuple[Callable[[Any], tuple[float, float, float]], Asked], ...] = tuple(
+            (watch.parts[0], applies) for watch, applies in self._of(Form.WITHIN)
+        )
+        self.states: tuple[tuple[Asked, Asked], ...] = tuple(
+            (watch.holds, applies) for watch, applies in self._of(Form.STATE)
+        )
+
+    def _of(self, form: Form) -> list[tuple[Watch[Any], Asked]]:
+        return [(row.watch, row.applies or always) for _, row in self.members if row.watch.form is form]
 
     def held(self, v: ScanInputs) -> int:
         """Return the bits of the rows that hold. Nearly always none does: only then the search for which begins."""
+        return self._which(v) if self._any(v) else 0
+
+    def _any(self, v: ScanInputs) -> bool:
         parameters = v.parameters
-        for number, limit, applies in self.numbers:
-            if not (number(v) <= parameters[limit]) and applies(v):
-                return self._which(v)
-        for holds, applies in self.others:
+        for number, parameter, applies in self.numbers:
+            if not (number(v) <= parameters[parameter]) and applies(v):
+                return True
+        for number, limit, applies in self.most:
+            if not (number(v) <= limit(v)) and applies(v):
+                return True
+        for number, limit, applies in self.least:
+            if not (number(v) >= limit(v)) and applies(v):
+                return True
+        for holds, applies in self.states:
             if holds(v) and applies(v):
-                return self._which(v)
-        return 0
+                return True
+        for span, applies in self.spans:
+            low, value, high = span(v)
+            if not (low <= value <= high) and applies(v):
+                return True
+        return False
 
     def _which(self, v: ScanInputs) -> int:
         held = 0

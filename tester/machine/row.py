@@ -76,6 +76,15 @@ ACK: Final = "cause gone, acknowledged"
 REPAIR: Final = "repaired, acknowledged"
 
 
+class Form(Enum):
+    """How a row's number is compared."""
+
+    STATE = "state"
+    AT_MOST = "at most"
+    AT_LEAST = "at least"
+    WITHIN = "within"
+
+
 @dataclass(frozen=True, slots=True)
 class Watch(Generic[V]):
     """What a row watches: made by ``at_most``, ``at_least``, ``within`` and ``condition``."""
@@ -87,8 +96,9 @@ class Watch(Generic[V]):
     """Value and limit of a trip, for the record; called when the row trips."""
     parameters: tuple[Parameter, ...] = ()
     """The limit, where it is a parameter."""
-    number: Callable[[V], float] | None = None
-    """Of ``at_most`` a parameter: the table compares it without a call of ``holds``."""
+    form: Form = Form.STATE
+    parts: tuple[Callable[[V], Any], ...] = ()
+    """What ``holds`` is made of: number and limit, or the span. The table compares them without a call of ``holds``."""
 
 
 def at_most(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
@@ -97,12 +107,12 @@ def at_most(level: str, value: Callable[[V], float], limit: Limit[V], unit: str 
     ``level``: the sentence for the safety page, with ``{}`` for the limit's name. ``unit``: of value and limit; a
     parameter brings its own, and so does a place in the inputs, whose name ends with it.
     """
-    return _one_sided(operator.le, level, value, limit, unit)
+    return _one_sided(Form.AT_MOST, level, value, limit, unit)
 
 
 def at_least(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
     """Return the watch of a number that may not fall below its limit; arguments as of ``at_most``."""
-    return _one_sided(operator.ge, level, value, limit, unit)
+    return _one_sided(Form.AT_LEAST, level, value, limit, unit)
 
 
 def within(level: str, span: Callable[[V], tuple[float, float, float]], unit: str) -> Watch[V]:
@@ -119,7 +129,7 @@ def within(level: str, span: Callable[[V], tuple[float, float, float]], unit: st
         low, value, high = span(v)
         return Compared(value, low if value < low else high, unit)
 
-    return Watch(level, holds, compared)
+    return Watch(level, holds, compared, (), Form.WITHIN, (span,))
 
 
 def condition(
@@ -129,9 +139,8 @@ def condition(
     return Watch(level, holds, compared)
 
 
-def _one_sided(
-    inside: Callable[[float, float], bool], level: str, value: Callable[[V], float], limit: Limit[V], unit: str
-) -> Watch[V]:
+def _one_sided(form: Form, level: str, value: Callable[[V], float], limit: Limit[V], unit: str) -> Watch[V]:
+    inside = operator.le if form is Form.AT_MOST else operator.ge
     parameters = (limit,) if isinstance(limit, Parameter) else ()
     read, name, unit = _limit(limit, unit)
     return Watch(
@@ -139,7 +148,8 @@ def _one_sided(
         lambda v: not inside(value(v), read(v)),
         lambda v: Compared(value(v), read(v), unit),
         parameters,
-        value if parameters and inside is operator.le else None,
+        form,
+        (value, read),
     )
 
 

@@ -122,9 +122,9 @@ class StoredTrip:
         """Value and limit in words, "" where there are none."""
         if isnan(self.value) and isnan(self.limit_value):
             return ""
-        value = "unknown" if isnan(self.value) else f"{self.value:.4g}"
         unit = "" if self.unit in ("", "1") else f" {self.unit}"
-        return f"{value}{unit}, limit {self.limit_value:.4g}{unit}"
+        value, limit = ("unknown" if isnan(one) else f"{one:.4g}" for one in (self.value, self.limit_value))
+        return f"{value}{unit}, limit {limit}{unit}"
 
     @property
     def acknowledged(self) -> str:

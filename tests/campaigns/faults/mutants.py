@@ -91,7 +91,7 @@ BY_HAND: tuple[Mutant, ...] = (
     Mutant("not a number passes: hub", _HUB,
            "_hub_answered_s, STALE_JACKET_S", "lambda v: max(0.0, _hub_answered_s(v)), STALE_JACKET_S"),
     Mutant("not a number passes: every limit that is a parameter", _TABLE,
-           "not (number(v) <= parameters[limit])", "number(v) > parameters[limit]"),
+           "not (number(v) <= parameters[parameter])", "number(v) > parameters[parameter]"),
     Mutant("acknowledged without the cause gone", _CONTROL,
            "        holding = (state.held | table.still_there(self.view) & state.tripped) & ~table.warnings\n",
            "        holding = 0\n"),

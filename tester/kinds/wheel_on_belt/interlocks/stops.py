@@ -185,8 +185,9 @@ CONTACTOR_DELAY_S: Final = Parameter(
 CONTACTOR_WELDED: Final[Row] = Interlock(
     name="contactor welded",
     cause="the contactor is closed without request",
-    watch=condition("feedback closed, request off", lambda v: v.readings.contactor_closed),
-    applies=lambda v: not v.setpoints.contactor,
+    watch=condition(
+        "feedback closed, request off", lambda v: v.readings.contactor_closed and not v.setpoints.contactor
+    ),
     delay=CONTACTOR_DELAY_S,
     at_rest=always,
     ends_lease=True,
