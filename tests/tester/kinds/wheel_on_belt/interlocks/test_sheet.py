@@ -31,7 +31,7 @@ def test_the_page_shows_every_row() -> None:
 
 
 def test_every_key_the_table_names_is_a_parameter() -> None:
-    named = {word for row in INTERLOCKS for word in re.findall(r"[a-z]+(?:_[a-z]+)+", row.level)}
+    named = {word for row in INTERLOCKS for word in re.findall(r"[a-z]+(?:_[a-z]+)+", row.watch.level)}
     assert named <= {one.key for one in PARAMETERS} | OTHER_KEYS
 
 
