@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from math import isfinite
-from typing import Final
+from collections.abc import Mapping
+from typing import ClassVar, Final
 
-from tester.base.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
+from tester.base.screen import Check, HandAxis, MachineView, PlotView, SoakView, axis_views, trend_columns
 from tester.kinds.specimen_on_track.axes import AXES, NAME
 from tester.kinds.specimen_on_track.procedures.steps import TemperAir
 from tester.kinds.specimen_on_track.process import GATE_CONTACT, GATE_SETTLING, GATE_SPEED, GATE_TEMPERATURE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.engine import Engine
+from tester.machine.panel import Panel, soak_view
 from tester.machine.served import News, Wanted
 
-GATES: Final = (
-    ("speed", GATE_SPEED), ("temperature", GATE_TEMPERATURE), ("contact", GATE_CONTACT), ("settling", GATE_SETTLING),
-)  # fmt: skip
 HAND: Final = (
     HandAxis("track", "Track speed", "a tenth of the greatest a step, arm raised"),
     HandAxis("arm", "Arm", "down or up, track standing"),
@@ -34,19 +32,23 @@ MACHINE: Final = MachineView(
     ),
     ("track", "force", "lift", "air", "chamber"),
     HAND,
-    tuple(AxisView(one.name, one.unit, one.column, one.title, one.word, one.default) for one in AXES),
+    axis_views(AXES),
     specimen="specimen",
     moves="the track",
     look=("Take the weights off the arm if it is down.",),
 )
 
 
-class TrackPanel:
+class TrackPanel(Panel):
     """One run on this machine, to look at."""
+
+    gates_of: ClassVar[Mapping[str, int]] = {
+        "speed": GATE_SPEED, "temperature": GATE_TEMPERATURE, "contact": GATE_CONTACT, "settling": GATE_SETTLING,
+    }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
         """Look only."""
-        self.engine = engine
+        super().__init__(engine)
         limits = engine.ctx.rig.interlocks
         self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_air_s, limits.stale_exit_s)
 
@@ -77,31 +79,22 @@ class TrackPanel:
             found["air"] = Wanted(target.temperature_c, target.band_k)
         return found
 
-    def gates(self) -> tuple[Gate, ...]:
-        """Return the gates as of the last scan."""
-        closed = self.engine.ctx.gate
-        return tuple(Gate(key, not closed & bit) for key, bit in GATES)
-
     def soak(self, now: float) -> SoakView | None:
         """Return the soak under way, None where there is none."""
         activity = self.engine.executor.activity
         if not isinstance(activity, TemperAir):
             return None
-        air_c, step = self.engine.ctx.readings.air_c, activity.temper
-        return SoakView(
-            air_c if isfinite(air_c) else None, step.temperature_c, step.within_k,
-            max(now - activity.since_s, 0.0) if isfinite(activity.since_s) else 0.0, step.for_s,
-            max(now - activity.began_s, 0.0) if isfinite(activity.began_s) else 0.0, step.at_most_s,
+        step = activity.temper
+        return soak_view(
+            now, self.engine.ctx.readings.air_c, step.temperature_c, step.within_k, activity.since_s, step.for_s,
+            activity.began_s, step.at_most_s,
         )  # fmt: skip
 
     def checks(self) -> tuple[Check, ...]:
         """Return what the connected rig says of its readiness."""
-        r, on = self.engine.ctx.readings, self.engine.ctx.on
-        return (
-            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
-            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
-            Check("specimen", None, f"{on.compound}, {1e3 * on.sliding_m:.1f} mm slid" if on.number else "none on"),
-        )
+        on = self.engine.ctx.on
+        specimen = f"{on.compound}, {1e3 * on.sliding_m:.1f} mm slid" if on.number else "none on"
+        return (*super().checks(), Check("specimen", None, specimen))
 
     def mounted(self) -> tuple[int, str]:
         """Return number and compound of the specimen on the arm."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 from tester.base.quantities import Quantities
@@ -16,21 +15,11 @@ from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.kinds.specimen_on_track.screen import MACHINE, TrackPanel
 from tester.machine.engine import Engine
+from tester.machine.panel import NotReused, drives_alone
 from tester.machine.ports import Ports
 from tester.machine.served import ByHand, History, Left, ServedKind
 from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
-
-
-@dataclass(frozen=True, slots=True)
-class SpecimenLeft:
-    """What a run left on the arm; nobody goes on with it."""
-
-    known: bool
-
-    def usable(self, rig: Rig) -> bool:
-        """Tell that a run begins with a specimen of its own."""
-        return False
 
 
 class SpecimenOnTrack:
@@ -50,21 +39,12 @@ class SpecimenOnTrack:
     def alone(self, rig: Rig) -> str:
         """Return what drives and chamber do by themselves."""
         own = TrackConfig.of(rig)
-        if own.simulated:
-            return "The simulated rig was part of the service and is gone with it."
-        waits = min(
-            wait
-            for axis in own.drives().values()
-            for wait in (axis.consumer_heartbeat_s, axis.rpdo_deadline_s)
-            if wait > 0.0
-        )
-        text = f"Without heartbeat and setpoints each drive makes a quick stop by itself ({1e3 * waits:.0f} ms)."
-        text += " The arm stays where it is, with its weights."
-        return text + (" The chamber stands by itself (30 s without a setpoint)." if own.chamber else "")
+        also = ("The chamber stands by itself (30 s without a setpoint).",) if own.chamber else ()
+        return drives_alone(own, "The arm stays where it is, with its weights.", *also)
 
-    def left(self, reader: RunReader, name: str) -> SpecimenLeft:
+    def left(self, reader: RunReader, name: str) -> NotReused:
         """Return what a run left on its rig."""
-        return SpecimenLeft(bool(reader.pieces()))
+        return NotReused(bool(reader.pieces()))
 
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: TrackAttendant, record: Recorder, left: Left | None, history: History

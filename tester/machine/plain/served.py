@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Final
+from typing import ClassVar, Final
 
 from tester.base.axes import Axes
 from tester.base.quantities import Quantities
-from tester.base.screen import AxisView, Check, Gate, HandAxis, MachineView, PlotView, SoakView, trend_columns
+from tester.base.screen import HandAxis, MachineView, PlotView, axis_views, trend_columns
 from tester.inputs.recipe.plan import Plan, Step
 from tester.inputs.rig import Rig
 from tester.inputs.rig.plain import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
+from tester.machine.panel import NotReused, Panel, drives_alone
 from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
-from tester.machine.served import ByHand, History, Left, News, Wanted
+from tester.machine.served import ByHand, History, Left, News
 from tester.machine.wires import STALE_INPUTS_S
 from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
@@ -27,58 +27,29 @@ STEPS_TO_TOP: Final = 20
 """By hand a drive gets to its greatest speed in this many steps [A]."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlainLeft:
-    """What a run left on a plain machine: a specimen that nobody goes on with."""
-
-    known: bool
-
-    def usable(self, rig: Rig) -> bool:
-        """Tell that another one is taken to be on."""
-        return False
-
-
-class PlainPanel:
+class PlainPanel(Panel):
     """One run on a plain machine, to look at."""
+
+    gates_of: ClassVar[Mapping[str, int]] = {"speed": GATE_SPEED}
 
     def __init__(self, engine: Engine) -> None:
         """Look only."""
-        self.engine = engine
+        super().__init__(engine)
         self._ctx: PlainContext = engine.ctx
         self._stale_s = self._ctx.rig.values()[STALE_INPUTS_S]
 
     def news(self) -> dict[str, News]:
         """Return the news of the drives, as "can", and of each of the machine's own sensors."""
         r = self._ctx.readings
-        found = {"can": News(r.drives_at_s, not r.drive_fault, self._stale_s)}
-        return found | {
-            name: News(one.stamp_s, one.valid, one.stale_s) for name, one in self._ctx.sensors.items()
-        }  # fmt: skip
-
-    def wanted(self) -> dict[str, Wanted]:
-        """Return nothing: a kind with setpoints on its screen says them."""
-        return {}
-
-    def gates(self) -> tuple[Gate, ...]:
-        """Return the gate of the speeds."""
-        return (Gate("speed", not self._ctx.gate & GATE_SPEED),)
-
-    def soak(self, now: float) -> SoakView | None:
-        """Return that nothing is soaked."""
-        return None
-
-    def checks(self) -> tuple[Check, ...]:
-        """Return what the connected rig says of its readiness."""
-        r = self._ctx.readings
-        return (
-            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
-            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
-        )
+        drives = {"can": News(r.drives_at_s, not r.drive_fault, self._stale_s)}
+        return drives | {
+            name: News(sensor.stamp_s, sensor.valid, sensor.stale_s) for name, sensor in self._ctx.sensors.items()
+        }
 
     def mounted(self) -> tuple[int, str]:
         """Return the specimen that is on."""
-        one = self._ctx.mounted
-        return (one.specimen, one.compound) if one is not None else (0, "")
+        mount = self._ctx.mounted
+        return (mount.specimen, mount.compound) if mount is not None else (0, "")
 
 
 class SpeedHand:
@@ -132,7 +103,7 @@ class PlainServed:
             trend_columns(quantities),
             plots,
             hand=tuple(HandAxis(name, title, step) for name, title in drives.items()),
-            axes=tuple(AxisView(one.name, one.unit, one.column, one.title, one.word, one.default) for one in axes),
+            axes=axis_views(axes),
             moves=" and ".join(drives.values()),
         )
 
@@ -146,15 +117,11 @@ class PlainServed:
 
     def alone(self, rig: Rig) -> str:
         """Return what the drives do by themselves."""
-        if rig.simulated:
-            return "The simulated rig was part of the service and is gone with it."
-        waits = {name: 1e3 * axis.consumer_heartbeat_s for name, axis in rig.drives().items()}
-        stops = ", ".join(f"{name}: {ms:.0f} ms" for name, ms in waits.items())
-        return f"Without heartbeat each drive makes a quick stop by itself ({stops})."
+        return drives_alone(rig)
 
-    def left(self, reader: RunReader, name: str) -> PlainLeft:
+    def left(self, reader: RunReader, name: str) -> NotReused:
         """Return whether a run put a specimen on."""
-        return PlainLeft(any(True for _ in reader.pieces()))
+        return NotReused(any(True for _ in reader.pieces()))
 
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: PlainAttendant, record: Recorder, left: Left | None, history: History

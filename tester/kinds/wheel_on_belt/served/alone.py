@@ -5,25 +5,14 @@ from __future__ import annotations
 from drivers.jacket import LEASE_S
 from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.panel import drives_alone
 
 PRESS = "The press stops where it is: where no spring lifts it, its load stays on the wheel."
 
 
 def left_alone(rig: RigConfig) -> str:
     """Return what drives and heating do, and by when, from the rig file's numbers."""
-    if rig.can.interface == "sim":
-        return "The simulated rig was part of the service and is gone with it."
-    return f"{_drives(rig)} {PRESS} {_heating(rig)}"
-
-
-def _drives(rig: RigConfig) -> str:
-    """Return by when each drive makes its quick stop: the first of its two watchdogs that runs out."""
-    by_ms: dict[int, list[str]] = {}
-    for name, axis in rig.drives().items():
-        waits = [wait for wait in (axis.consumer_heartbeat_s, axis.rpdo_deadline_s) if wait > 0.0]
-        by_ms.setdefault(round(1e3 * min(waits)), []).append(name)
-    stops = "; ".join(f"{', '.join(names)}: {ms} ms" for ms, names in sorted(by_ms.items()))
-    return f"Without heartbeat and setpoints each drive makes a quick stop by itself ({stops})."
+    return drives_alone(rig, PRESS, _heating(rig))
 
 
 def _heating(rig: RigConfig) -> str:

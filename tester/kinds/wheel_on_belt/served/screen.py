@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import isfinite
-from typing import Final
+from typing import ClassVar, Final
 
-from tester.base.screen import Check, Gate, MachineView, PlotView, SoakView, axis_views, trend_columns
+from tester.base.screen import Check, MachineView, PlotView, SoakView, axis_views, trend_columns
 from tester.kinds.wheel_on_belt.image.axes import AXES, POSITIONED
 from tester.kinds.wheel_on_belt.image.process import (
     GATE_LOAD,
@@ -21,16 +22,10 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
 from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.served.manual import HAND
 from tester.machine.engine import Engine
+from tester.machine.panel import Panel, soak_view
 from tester.machine.served import News, Wanted
 
 KIND: Final = "wheel_on_belt"
-GATES: Final = (
-    ("load", GATE_LOAD),
-    ("speed", GATE_SPEED),
-    ("slip", GATE_SLIP),
-    ("temperature", GATE_TEMPERATURE),
-    ("settling", GATE_SETTLING),
-)
 PLOTS: Final = (
     PlotView("friction", "friction", 0.1),
     PlotView("surface", "surface_c", 4.0),
@@ -57,12 +52,17 @@ MACHINE: Final = MachineView(
 )
 
 
-class WheelPanel:
+class WheelPanel(Panel):
     """One run on this machine, to look at."""
+
+    gates_of: ClassVar[Mapping[str, int]] = {
+        "load": GATE_LOAD, "speed": GATE_SPEED, "slip": GATE_SLIP, "temperature": GATE_TEMPERATURE,
+        "settling": GATE_SETTLING,
+    }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
         """Look only."""
-        self.engine = engine
+        super().__init__(engine)
         self._gates = engine.ctx.rig.gates
         limits = engine.ctx.rig.interlocks
         self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_ir_s, limits.stale_jacket_s)
@@ -97,11 +97,6 @@ class WheelPanel:
             found["surface"] = Wanted(target.temperature_c, target.band_k)
         return found
 
-    def gates(self) -> tuple[Gate, ...]:
-        """Return the gates as of the last scan."""
-        closed = self.engine.ctx.gate
-        return tuple(Gate(key, not closed & bit) for key, bit in GATES)
-
     def soak(self, now: float) -> SoakView | None:
         """Return the soak under way, None where there is none."""
         activity = self.engine.executor.activity
@@ -112,16 +107,14 @@ class WheelPanel:
             soak = None if activity.soaked else activity.soak
         if soak is None:
             return None
-        surface = self.engine.ctx.gates.surface.slow_c
-        return SoakView(
-            surface if isfinite(surface) else None, soak.target_c, soak.within_k,
-            max(now - soak.since_s, 0.0) if isfinite(soak.since_s) else 0.0, soak.for_s,
-            max(now - soak.began_s, 0.0) if isfinite(soak.began_s) else 0.0, soak.at_most_s,
+        return soak_view(
+            now, self.engine.ctx.gates.surface.slow_c, soak.target_c, soak.within_k, soak.since_s, soak.for_s,
+            soak.began_s, soak.at_most_s,
         )  # fmt: skip
 
     def checks(self) -> tuple[Check, ...]:
         """Return what the connected rig says of its readiness."""
-        r, wheel = self.engine.ctx.readings, self.engine.ctx.wheel
+        wheel = self.engine.ctx.wheel
         worn = f"{wheel.cold_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
         plan = self.engine.executor.plan
         allowed_mm = plan.replace_after_mm if isinstance(plan, WheelPlan) else 0.0  # by hand nothing is planned
@@ -130,11 +123,7 @@ class WheelPanel:
         if allowed_mm > 0.0:
             left = f"{max(left_mm, 0.0):.2f} mm left before it is changed"
             wheel_check = Check("wheel", left_mm > 0.0, f"{worn}, {left}")
-        return (
-            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
-            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
-            wheel_check,
-        )
+        return (*super().checks(), wheel_check)
 
     def mounted(self) -> tuple[int, str]:
         """Return specimen and compound of the wheel on the rig."""

@@ -1,0 +1,86 @@
+"""One run to look at between two ticks, and what its drives do once nothing controls them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import ClassVar
+
+from tester.base.screen import Check, Gate, SoakView
+from tester.inputs.rig import Rig
+from tester.machine.engine import Engine
+from tester.machine.served import News, Wanted
+
+
+class Panel:
+    """A ``MachinePanel`` of a machine that has gates and soaks nothing. A kind adds its devices and checks."""
+
+    gates_of: ClassVar[Mapping[str, int]] = {}
+    """Bit of each gate in the channel ``gate``, by its key on the screen."""
+
+    def __init__(self, engine: Engine) -> None:
+        """Look only."""
+        self.engine = engine
+
+    def news(self) -> dict[str, News]:
+        """Return the news of every device that the table of channels names."""
+        raise NotImplementedError
+
+    def wanted(self) -> dict[str, Wanted]:
+        """Return nothing: a kind with setpoints on its screen returns them."""
+        return {}
+
+    def gates(self) -> tuple[Gate, ...]:
+        """Return the gates as of the last scan."""
+        closed = self.engine.ctx.gate
+        return tuple(Gate(key, not closed & bit) for key, bit in self.gates_of.items())
+
+    def soak(self, now: float) -> SoakView | None:
+        """Return None: nothing is soaked."""
+        return None
+
+    def checks(self) -> tuple[Check, ...]:
+        """Return what the safety inputs say of the rig's readiness."""
+        r = self.engine.ctx.readings
+        return (
+            Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
+            Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
+        )
+
+
+def soak_view(
+    now: float, shown_c: float, target_c: float, within_k: float, since_s: float, for_s: float, began_s: float,
+    at_most_s: float,
+) -> SoakView:  # fmt: skip
+    """Return a soak at ``now``, rig s; ``since_s``: in its band since, ``began_s``: under way since; inf: not yet."""
+    within_s, whole_s = (max(now - t, 0.0) if isfinite(t) else 0.0 for t in (since_s, began_s))
+    return SoakView(
+        shown_c if isfinite(shown_c) else None, target_c, within_k, within_s, for_s, whole_s, at_most_s
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class NotReused:
+    """A specimen that a finished run left on the rig: the next run begins with one of its own."""
+
+    known: bool
+
+    def usable(self, rig: Rig) -> bool:
+        """Return False: another one is taken to be on."""
+        return False
+
+
+def drives_alone(rig: Rig, *also: str) -> str:
+    """Return what drives do without a master, and by when: the first of each one's two watchdogs that runs out.
+
+    ``also``: what the kind's other devices do, in sentences.
+    """
+    if rig.can.interface == "sim":
+        return "The simulated rig was part of the service and is gone with it."
+    by_ms: dict[int, list[str]] = {}
+    for name, axis in rig.drives().items():
+        waits = [wait for wait in (axis.consumer_heartbeat_s, axis.rpdo_deadline_s) if wait > 0.0]
+        by_ms.setdefault(round(1e3 * min(waits)), []).append(name)
+    stops = "; ".join(f"{', '.join(names)}: {ms} ms" for ms, names in sorted(by_ms.items()))
+    return " ".join((f"Without heartbeat and setpoints each drive makes a quick stop by itself ({stops}).", *also))
