@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import Final
 
@@ -39,6 +40,26 @@ def duration(seconds: float | None) -> str:
         return NONE
     minutes, s = divmod(round(max(seconds, 0.0)), 60)
     return f"{minutes // 60}:{minutes % 60:02d}:{s:02d}"
+
+
+def rough_duration(seconds: float) -> str:
+    """Return a duration as people say it: 45 s, 12 min, 3 h 05 min."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def listed(items: Iterable[str], word: str = "and") -> str:
+    """Return items in words: ``a``, ``a and b``, ``a, b and c``; ``word`` before the last."""
+    texts = list(items)
+    return f" {word} ".join([", ".join(texts[:-1]), *texts[-1:]] if len(texts) > 1 else texts)
+
+
+def listed_some(items: Sequence[object], at_most: int) -> str:
+    """Return the first items, and how many more there are: ``a, b, c and 3 more``."""
+    shown = ", ".join(map(str, items[:at_most]))
+    return f"{shown} and {len(items) - at_most} more" if len(items) > at_most else shown
 
 
 def counted(n: int, noun: str, plural: str = "") -> str:

@@ -20,6 +20,7 @@ from sim.servers.tcp_doors import GATEWAY, SOCKETCAND
 from sim.servers.text_doors import CommandDoor, StandardInput
 from tester.base import clock
 from tester.base.priority import RealTimePriority
+from tester.base.words import listed
 from tester.inputs.rig import Rig
 from tester.inputs.rig.reach import reached
 from tester.machine.tickers import collector_at_rest
@@ -174,7 +175,7 @@ def _reached(config: Rig, server: RigServer) -> Rig:
     can = server.can.place
     lines = {name: (place.at, place.speaks == GATEWAY) for name, place in server.line_places.items()}
     spoken = sorted({can.speaks, *(place.speaks for place in server.line_places.values())})
-    how = "TCP" if spoken == sorted((SOCKETCAND, GATEWAY)) else " and ".join(spoken)
+    how = "TCP" if spoken == sorted((SOCKETCAND, GATEWAY)) else listed(spoken)
     return reached(config, (can.speaks, can.at), lines, how)
 
 

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from tester.base.lock import RUN_LOCK, Holder, user_of
+from tester.base.words import listed_some
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 
@@ -49,9 +50,8 @@ def find_run(name: str, under: Path = RUNS) -> Path:
     if len(begin_so) == 1:
         return begin_so[0]
     if begin_so:
-        listed = ", ".join(folder.name for folder in begin_so[:NAMED])
-        more = f" and {len(begin_so) - NAMED} more" if len(begin_so) > NAMED else ""
-        raise StoreError(f"no run {name}: {len(begin_so)} runs begin so: {listed}{more}")
+        some = listed_some([folder.name for folder in begin_so], NAMED)
+        raise StoreError(f"no run {name}: {len(begin_so)} runs begin so: {some}")
     near = get_close_matches(name, [folder.name for folder in run_folders(under)], 1)
     hint = f", did you mean {near[0]}?" if near else ""
     raise StoreError(f"no run {name}: neither a run folder nor a name under {under}{hint}")

@@ -12,6 +12,8 @@ from math import pi
 from types import MappingProxyType
 from typing import Final
 
+from tester.base.words import listed
+
 ZERO_C = 273.15
 
 QUANTITIES: Final = ("temperature", "frequency", "omega", "E'", 'E"', "G'", 'G"', "tan")
@@ -113,8 +115,7 @@ def unit_of(quantity: str, text: str, where: str = "") -> str:
 
 def accepted(quantity: str) -> str:
     """Return the units of a quantity in words."""
-    units = _UNITS[quantity]
-    return units[0] if len(units) == 1 else f"{', '.join(units[:-1])} or {units[-1]}"
+    return listed(_UNITS[quantity], "or")
 
 
 def first_unit(quantity: str) -> str:

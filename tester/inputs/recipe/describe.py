@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tester.base.words import rough_duration
 from tester.inputs.recipe.estimate import Estimate
 from tester.inputs.recipe.part import RecipePart
 from tester.inputs.recipe.plan import ConditionStep, Plan, Step, Window
 
 _WIDTH = 76
 """Columns of a line before its duration."""
-
-
-def duration(seconds: float) -> str:
-    """Return a duration as people say it: 45 s, 12 min, 3 h 05 min."""
-    if seconds < 99.5:
-        return f"{seconds:.0f} s"
-    minutes = round(seconds / 60.0)
-    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
 
 
 def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
@@ -29,7 +22,7 @@ def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
             yield ""
             yield heading
         text = f"{_indent(step)}{part.words(step, one)}"
-        yield f"{text:<{_WIDTH}} {duration(one.seconds):>10}" if one.seconds else text
+        yield f"{text:<{_WIDTH}} {rough_duration(one.seconds):>10}" if one.seconds else text
     yield ""
     yield from totals(plan, estimate, part)
 
@@ -39,8 +32,8 @@ def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
     conditions = list(plan.conditions())
     repeats = sum(step.repeats * step.scheme.repeats_each for step in conditions)
     yield f"conditions        {len(conditions)}, {repeats} repeats"
-    least, most = duration(estimate.rig_seconds_low), duration(estimate.rig_seconds_high)
-    yield f"rig time          {duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
+    least, most = rough_duration(estimate.rig_seconds_low), rough_duration(estimate.rig_seconds_high)
+    yield f"rig time          {rough_duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
     yield f"sliding distance  {estimate.sliding_m:.0f} m"
     yield from part.totals(plan, estimate)
 

@@ -8,6 +8,7 @@ from typing import ClassVar, Final
 from tester.base.axes import Axes
 from tester.base.quantities import Quantities
 from tester.base.screen import HandAxis, MachineView, PlotView, axis_views, trend_columns
+from tester.base.words import listed
 from tester.inputs.recipe.plan import Plan, Step
 from tester.inputs.rig import Rig
 from tester.inputs.rig.plain import PlainRig
@@ -104,7 +105,7 @@ class PlainServed:
             plots,
             hand=tuple(HandAxis(name, title, step) for name, title in drives.items()),
             axes=axis_views(axes),
-            moves=" and ".join(drives.values()),
+            moves=listed(drives.values()),
         )
 
     def title(self, step: Step) -> str:

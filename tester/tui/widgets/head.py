@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.base.words import conditions_done, decimal, duration
+from tester.base.words import conditions_done, counted, decimal, duration
 from tester.service.state import Alarm, StateView
 from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.gone import gone_line
@@ -62,7 +62,7 @@ def _count(alarms: tuple[Alarm, ...]) -> Part:
     waiting = [one for one in alarms if one.state != "acknowledged"]
     if not alarms:
         return "□ 0 alarms"
-    text = f"{'■' if waiting else '▣'} {len(alarms)} alarm{'s' if len(alarms) > 1 else ''}"
+    text = f"{'■' if waiting else '▣'} {counted(len(alarms), 'alarm')}"
     return text, ALARM_STYLES[min(one.priority for one in alarms)] if waiting else NOTICE
 
 

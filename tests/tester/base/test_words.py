@@ -6,7 +6,17 @@ from math import inf, nan
 
 import pytest
 
-from tester.base.words import conditions_done, counted, decimal, duration, percent, significant
+from tester.base.words import (
+    conditions_done,
+    counted,
+    decimal,
+    duration,
+    listed,
+    listed_some,
+    percent,
+    rough_duration,
+    significant,
+)
 
 
 @pytest.mark.parametrize(
@@ -33,3 +43,20 @@ def test_conditions_done_are_counted_in_words_and_in_short() -> None:
     assert conditions_done(17, 55) == "17 of 55 conditions done"
     assert conditions_done(0, 1) == "0 of 1 condition done"
     assert conditions_done(17, 55, short=True) == "17/55 done"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(0.0, "0 s"), (45.4, "45 s"), (99.0, "99 s"), (240.0, "4 min"), (5340.0, "89 min"), (11_100.0, "3 h 05 min")],
+)
+def test_a_rough_duration_is_as_people_say_it(seconds: float, text: str) -> None:
+    assert rough_duration(seconds) == text
+
+
+def test_items_are_listed_with_one_word_before_the_last() -> None:
+    assert [listed("abc"[:n]) for n in range(4)] == ["", "a", "a and b", "a, b and c"]
+    assert listed(["Hz", "rad/s"], "or") == "Hz or rad/s"
+
+
+def test_a_long_list_ends_with_how_many_more_there_are() -> None:
+    assert [listed_some([1, 2, 3], n) for n in (2, 3)] == ["1, 2 and 1 more", "1, 2, 3"]

@@ -12,8 +12,9 @@ from tester.analysis.terms import Term
 from tester.base.axes import Axes, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
+from tester.base.words import rough_duration
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
-from tester.inputs.recipe.describe import duration, repeats_words
+from tester.inputs.recipe.describe import repeats_words
 from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
 from tester.inputs.recipe.part import RecipePart
 from tester.inputs.recipe.plan import Plan, PromptStep, Specimen, Step
@@ -184,7 +185,7 @@ class TrackPart(RecipePart):
             case Prepare():
                 return f"ask: {step.text}"
             case Temper():
-                return f"temper to {step.temperature_c:g} degC, {duration(step.for_s)} within {step.within_k:g} K"
+                return f"temper to {step.temperature_c:g} degC, {rough_duration(step.for_s)} within {step.within_k:g} K"
             case TrackCondition():
                 told = condition_words(step.setpoint, compound=False)
                 rise_k = one.peak_c - held_by(step.setpoint).temperature_c

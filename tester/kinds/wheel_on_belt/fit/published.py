@@ -15,6 +15,7 @@ from tester.analysis.fit.check import Errors, errors_of
 from tester.analysis.fit.joint import fit_only, predict
 from tester.analysis.fit.law import FitPoint, Law, by_group
 from tester.analysis.fit.part import Claim, PublishedTable, TableLine
+from tester.base.words import listed
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix, inferred_rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE, V2_LAW, joint_of
 from tester.kinds.wheel_on_belt.fit.staged import staged
@@ -92,7 +93,7 @@ def published_table() -> PublishedTable:
     a, b = appendix(FIT).points, appendix(VALIDATION).points
     table_3 = _on("Eqs 7 to 9 with Table 3", of_table_3, a, b)
     staged_way, eq_6, v2, *others = _ways(Reading.WITHOUT, b)
-    inferred = " and ".join(row["row_id"] for row in inferred_rows())
+    inferred = listed(row["row_id"] for row in inferred_rows())
     title = (
         f"{len(b)} rows of appendix B of doi 10.3390/polym16050596, "
         f"{len(a)} of appendix A (rows not readable, inferred, suspect, printed twice or with sideslip left out)"

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from tester.analysis.difference import pieces_needed
 from tester.analysis.reference import EVERY, RESERVED
 from tester.base.axes import Axes, condition_words
-from tester.inputs.recipe.describe import duration, repeats_words, window_words
+from tester.base.words import listed_some, rough_duration
+from tester.inputs.recipe.describe import repeats_words, window_words
 from tester.inputs.recipe.estimate import Estimate, StepEstimate
 from tester.inputs.recipe.plan import ConditionStep, PromptStep, Step
 from tester.inputs.recipe.plan_json import ConditionJson, quoted
@@ -33,9 +34,9 @@ def words(step: Step, one: StepEstimate) -> str:
             return f"mount wheel {step.wheel} again" if step.again else f"install wheel {step.wheel}"
         case PreGrind():
             speeds = f"{step.wheel_speed_m_s:g} / {step.belt_speed_m_s:g} m/s"
-            return f"pre-grind {duration(step.duration_s)}, {step.load_n:g} N, wheel / belt {speeds}"
+            return f"pre-grind {rough_duration(step.duration_s)}, {step.load_n:g} N, wheel / belt {speeds}"
         case Rest():
-            least = f"rest at least {duration(step.at_least_s)}" if step.at_least_s else "rest"
+            least = f"rest at least {rough_duration(step.at_least_s)}" if step.at_least_s else "rest"
             return least if step.until_c is None else f"{least}, to {step.until_c:g} degC +- {step.within_k:g} K"
         case Heat():
             return f"heat to {step.temperature_c:g} degC"
@@ -83,9 +84,8 @@ def totals(plan: WheelPlan, estimate: Estimate) -> Iterator[str]:
     yield from _both_directions(plan)
     yield from _references(plan)
     if estimate.not_held:
-        listed = ", ".join(str(number) for number in estimate.not_held[:20])
-        more = f" and {len(estimate.not_held) - 20} more" if len(estimate.not_held) > 20 else ""
-        yield f"not expected to hold their temperature for one revolution: conditions {listed}{more}"
+        some = listed_some(estimate.not_held, 20)
+        yield f"not expected to hold their temperature for one revolution: conditions {some}"
 
 
 TOLD_APART_PERCENT = (10.0, 5.0)

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from tester.inputs.recipe.describe import duration, lines
+from tester.inputs.recipe.describe import lines
 from tester.inputs.recipe.plan_json import json_chunks
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
@@ -16,14 +16,6 @@ from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig
 def described(text: str) -> list[str]:
     plan = expand(recipe(text), rig())
     return list(lines(plan, PART.estimate(plan, rig()), PART))
-
-
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [(0.0, "0 s"), (45.4, "45 s"), (99.0, "99 s"), (240.0, "4 min"), (5340.0, "89 min"), (11_100.0, "3 h 05 min")],
-)
-def test_durations_read_as_people_say_them(seconds: float, text: str) -> None:
-    assert duration(seconds) == text
 
 
 def test_the_plan_lists_wheels_steps_and_totals() -> None:
