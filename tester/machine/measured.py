@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from math import nan
-from typing import Protocol
 
 from tester.analysis.results import RepeatStatus
+from tester.store.statements import Ticket
 
 
 class Ending(Enum):
@@ -21,22 +21,13 @@ class Ending(Enum):
     ZERO_DRIFT = "load cell zero drifted"
 
 
-class CommitTicket(Protocol):
-    """A commit under way."""
-
-    @property
-    def done(self) -> bool:
-        """COMMIT has returned."""
-        ...
-
-
 @dataclass(frozen=True, slots=True)
 class RepeatOutcome:
     """What became of a repeat, and its commit."""
 
     status: RepeatStatus
     text: str
-    ticket: CommitTicket
+    ticket: Ticket
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,21 +6,14 @@ from collections.abc import Callable, Sequence
 from functools import reduce
 from itertools import groupby
 from operator import attrgetter, itemgetter
-from typing import Any, Final, Protocol, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from tester.base.quantities import LAST, Quantities
 from tester.machine.context import BaseContext
+from tester.store.recorder import Recorder
 
 IDLE_PERIOD_S: Final = 0.5
 """Recording period out of contact (2 Hz, interface: exports)."""
-
-
-class Sink(Protocol):
-    """Takes one row: a value for each recorded channel, in the order of the table."""
-
-    def sample(self, row: tuple[float, ...]) -> None:
-        """Record one row."""
-        ...
 
 
 Values: TypeAlias = Callable[[BaseContext[Any, Any, Any]], tuple[float, ...]]
@@ -67,9 +60,9 @@ def row_builder(quantities: Quantities) -> Values:
 class Sampler:
     """Picks scans and makes rows of them."""
 
-    def __init__(self, sink: Sink, quantities: Quantities) -> None:
-        """``sink``: the run's store; ``quantities``: what a row is made of."""
-        self.sink = sink
+    def __init__(self, recorder: Recorder, quantities: Quantities) -> None:
+        """``recorder``: the run's; ``quantities``: what a row is made of."""
+        self.recorder = recorder
         self._measured = row_builder(quantities)
         self.due_s = float("-inf")
 
@@ -80,5 +73,5 @@ class Sampler:
         self.due_s = ctx.now + IDLE_PERIOD_S
         ctx.setpoints = out
         row = (*self._measured(ctx), float(ctx.gate), float(ctx.burst), float(ctx.repeat_key))
-        self.sink.sample(row)
+        self.recorder.sample(row)
         ctx.sample = row

@@ -10,8 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import IntEnum
 from math import inf
-from typing import Final, Protocol
+from typing import Final
 
+from drivers.joined_cell import JoinedCell
 from tester.kinds.wheel_on_belt.image.axes import straight
 from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpoints
 
@@ -26,14 +27,6 @@ GATE_SETTLING: Final = 32
 
 CELL: Final = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
 """The load cell's channels, in its order: what a tare takes off."""
-
-
-class Parted(Protocol):
-    """A load cell of several transmitters (``drivers.joined_cell``)."""
-
-    def blame(self, now: float, limit_s: float) -> str:
-        """Return which transmitter keeps it from being read at ``now`` s, or ""; ``limit_s``: how old a part may be."""
-        ...
 
 
 class Press(IntEnum):
@@ -84,7 +77,7 @@ class Readings(BaseReadings):
     cell_valid: bool = False
     cell_silent: bool = False
     """The load cell has not answered several requests in a row, and is not set up again yet."""
-    joined: Parted | None = None
+    joined: JoinedCell | None = None
     """The load cell, where it has several transmitters: asked which of them is to blame, where something trips."""
     cell_old_s: float = inf
     """A transmitter of the cell without a reading for so long is named."""
