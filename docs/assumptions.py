@@ -1,6 +1,6 @@
-"""Write docs/assumptions.md: every engineering assumption, marked [A], in the code, with its place, name and value.
+"""Print every engineering assumption of the code, marked [A] there, with its place, name and value.
 
-``python docs/assumptions.py`` writes, ``--check`` only says whether the page is out of date and exits 1.
+``python docs/assumptions.py > FILE`` makes a page of them.
 """
 
 from __future__ import annotations
@@ -11,13 +11,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "assumptions.md"
 FOLDERS = ("tester", "drivers", "sim")
 MARK = "[A]"
 HEAD = f"""# Assumptions
 
 Every engineering assumption in the code, marked {MARK} there: plausible, not measured on this machine. Those of a rig
-file stand beside its keys ([a rig file](rig-file.md)). Written by `python docs/assumptions.py`.
+file are beside its keys.
 
 """
 
@@ -64,16 +63,6 @@ def cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def main(arguments: list[str]) -> int:
-    """Write, or with ``--check`` only look."""
-    text = page_text()
-    same = PAGE.is_file() and PAGE.read_text(encoding="utf-8") == text
-    if not same and "--check" not in arguments:
-        PAGE.write_text(text, encoding="utf-8", newline="\n")
-    if not same:
-        print(f"{PAGE.relative_to(ROOT)}: {'out of date' if '--check' in arguments else 'written'}")
-    return 1 if not same and "--check" in arguments else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.stdout.reconfigure(encoding="utf-8")
+    print(page_text(), end="")

@@ -23,7 +23,7 @@ def paper(every: bool, as_json: bool) -> int:
     """Hold the paper's equations and claims against its own appendices; exit code 1 where a figure misses.
 
     Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0): Eqs 7 to 9 with Table 3, fits to appendix A seen
-    on appendix B, and the errors that the paper quotes. With --all: the page docs/papers.md, each item of this paper
+    on appendix B, and the errors that the paper quotes. With --all: a page with each item of this paper
     and of the two that the laws persson and greta come from, with an error that is worked out now and a verdict.
     """
     from tester.base.extras import MissingExtraError

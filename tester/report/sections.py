@@ -176,7 +176,7 @@ def assumption_section(record: RunRecord, key: str) -> ReportSection:
     parts: list[Part] = [
         Paragraph(
             "[A] marks an engineering assumption: plausible, and not measured on this machine. Those of the program "
-            "itself are listed in docs/assumptions.md of its version."
+            "itself are listed by `python docs/assumptions.py` in its source."
         )
     ]
     if terms:

@@ -10,11 +10,10 @@ from tester.analysis.papers.item import Paper, PaperFinding, PaperItem, PaperVer
 
 HEAD = """# The papers, item by item
 
-Every figure, table, equation and statement of three papers, held against this program and against the papers' own data.
-Each number is worked out while `tester paper --all` runs, which writes this page (`tester paper --all >
-docs/papers.md`); the last column names a command that shows more of it, RUN stands for a run of your own. What the
-items of the first paper mean for a user is in [the paper, item by item](paper.md); misprints of the other two are in
-[their errata](explanation/errata-of-the-two-papers.md).
+Every figure, table, equation and statement of three papers, compared with this program and with the papers' own data.
+`tester paper --all` prints this page and computes every number while it runs. The last column names a command that
+shows more; RUN is a run of your own. `docs/paper.md` explains what the items of the first paper mean for a user,
+`docs/explanation/errata-of-the-two-papers.md` lists the misprints of the other two.
 
 | verdict | means |
 |---|---|

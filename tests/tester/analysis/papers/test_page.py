@@ -1,4 +1,4 @@
-"""The page of all papers: the one in docs is what the command writes, and every item has a verdict with its numbers."""
+"""The page of all papers: the command writes the stored page, and every item has a verdict with its numbers."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ from tester.kinds import packaged_papers
 
 pytest.importorskip("scipy", reason="needs the extra `report`")
 
-PAGE = Path(__file__).parents[4] / "docs" / "papers.md"
+PAGE = Path(__file__).with_name("papers.txt")
+"""As `tester paper --all` printed it last; a change of a verdict or a number is a change of this file."""
 NUMBER = re.compile(r"(?<![\w.])[+-]?\d+\.?\d*(?:e[+-]\d+)?")
 ITEMS = [(paper.name, item) for paper in packaged_papers() for item in paper.items]
 COMMANDS = sorted({item.command for _, item in ITEMS if item.command})
