@@ -1,1 +1,1 @@
-"""The process that owns the rig, and what talks to it."""
+"""The process that owns the rig, and its clients."""

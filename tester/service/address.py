@@ -1,7 +1,7 @@
-"""Where the service listens: a Unix socket of one user, or loopback TCP with a token where there are none.
+"""Addresses of the service: a Unix socket of one user, or loopback TCP with a token on systems without Unix sockets.
 
-Both lie in one folder that only the user may enter. A TCP service leaves its address and token in ``service.json``
-there (mode 0600), so that a client finds either the same way.
+Both are in a folder that only the user may enter. A TCP service writes its address and token to ``service.json`` there
+(mode 0600), so that a client finds either in the same place.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ CREDENTIALS = struct.Struct("iII")
 
 
 STOP_SUFFIX = ".stop"
-"""The socket for STOP lies beside the service's: its name with this."""
+"""Suffix of the socket for STOP, which lies beside the service's socket."""
 
 
 class AddressError(Exception):
-    """No service can be addressed that way; the message says why."""
+    """The address is not usable; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class UnixAddress:
     path: Path
 
     def __str__(self) -> str:
-        """Return it as ``--connect`` takes it."""
+        """Return the form that ``--connect`` takes."""
         return f"unix:{self.path}"
 
 
@@ -51,10 +51,10 @@ class TcpAddress:
     port: int
     token: str
     stop_port: int = 0
-    """Where STOP is taken; 0 where nobody knows yet."""
+    """Port for STOP; 0 while unknown."""
 
     def __str__(self) -> str:
-        """Return it without its token."""
+        """Return the address without its token."""
         return f"ws://{self.host}:{self.port}"
 
 
@@ -62,29 +62,29 @@ Address = UnixAddress | TcpAddress
 
 
 def folder() -> Path:
-    """Return the folder of the user's service, and create it (0700) if it is not there.
+    """Return the folder of the user's service, creating it (0700) if needed.
 
     ``TESTER_RUNTIME_DIR``, else ``XDG_RUNTIME_DIR/friction-tester``, else a folder of the user's in the temporary one.
-    Raises AddressError if it belongs to somebody else or others may enter it.
+    Raises AddressError if it belongs to another user or others may enter it.
     """
-    own = os.environ.get("TESTER_RUNTIME_DIR")
+    chosen = os.environ.get("TESTER_RUNTIME_DIR")
     base = os.environ.get("XDG_RUNTIME_DIR")
-    if own:
-        path = Path(own)
+    if chosen:
+        path = Path(chosen)
     elif base:
         path = Path(base) / "friction-tester"
     else:
         path = Path(tempfile.gettempdir()) / f"friction-tester-{os.getuid() if HAS_UNIX else os.getlogin()}"
     path.mkdir(mode=0o700, parents=True, exist_ok=True)
     if HAS_UNIX:
-        found = path.stat()
-        if found.st_uid != os.getuid() or found.st_mode & 0o077:
-            raise AddressError(f"{path} belongs to somebody else, or others may enter it (expected mode 0700)")
+        status = path.stat()
+        if status.st_uid != os.getuid() or status.st_mode & 0o077:
+            raise AddressError(f"{path} belongs to another user, or others may enter it (expected mode 0700)")
     return path
 
 
 def default_address(where: Path | None = None) -> Address:
-    """Return where the user's service is, or would be."""
+    """Return the address of the user's service, whether it runs or not."""
     where = where or folder()
     if HAS_UNIX and not (where / CARD).exists():
         return UnixAddress(where / SOCKET)
@@ -92,7 +92,7 @@ def default_address(where: Path | None = None) -> Address:
 
 
 def address_of(text: str) -> Address:
-    """Return the address that a person wrote: ``unix:PATH``, a path, or ``ws://HOST:PORT`` (token from the card)."""
+    """Return the address in a text: ``unix:PATH``, a path, or ``ws://HOST:PORT`` (token from the card)."""
     if text.startswith("ws://"):
         card = read_card(folder() / CARD)
         host, _, port = text.removeprefix("ws://").rstrip("/").rpartition(":")
@@ -103,12 +103,12 @@ def address_of(text: str) -> Address:
 
 
 def new_tcp_address(port: int = 0) -> TcpAddress:
-    """Return a loopback address with a fresh token; port 0 = any that is free."""
+    """Return a loopback address with a fresh token; port 0 = any free port."""
     return TcpAddress("127.0.0.1", port, secrets.token_urlsafe(32))
 
 
 def write_card(address: TcpAddress, path: Path) -> None:
-    """Write address and token for the user's clients (mode 0600): whole, or not there at all."""
+    """Write address and token for the user's clients (mode 0600), atomically."""
     part = path.with_name(f"{path.name}.part")
     part.unlink(missing_ok=True)
     descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -132,25 +132,25 @@ def read_card(path: Path) -> TcpAddress:
 
 
 def stop_path(service: Path) -> Path:
-    """Return where STOP is taken for a service at this socket."""
+    """Return the path of the socket for STOP beside a service's socket."""
     return service.with_name(service.name + STOP_SUFFIX)
 
 
 def unlink_socket(path: Path) -> None:
-    """Remove a socket that an earlier service has left. Raises AddressError for what is none."""
+    """Remove a socket that an earlier service left. Raises AddressError for any other file."""
     try:
-        found = path.lstat()
+        status = path.lstat()
     except FileNotFoundError:
         return
-    if not stat.S_ISSOCK(found.st_mode):
-        raise AddressError(f"{path} is there and is no socket: nothing is put in its place")
+    if not stat.S_ISSOCK(status.st_mode):
+        raise AddressError(f"{path} exists and is not a socket: it is not replaced")
     path.unlink(missing_ok=True)
 
 
 def peer_of(connection: socket.socket) -> tuple[int, int | None]:
-    """Return process and user id at the other end of a Unix socket; 0 and None where the system does not tell.
+    """Return process and user id at the other end of a Unix socket; 0 and None where the system does not report them.
 
-    Linux: SO_PEERCRED (unix(7)), three ints pid, uid, gid. Elsewhere the folder's and the socket's modes protect.
+    Linux: SO_PEERCRED (unix(7)), three ints pid, uid, gid. Elsewhere the modes of folder and socket protect.
     """
     option = cast("int | None", getattr(socket, "SO_PEERCRED", None))
     if option is None or connection.family != getattr(socket, "AF_UNIX", None):
@@ -161,14 +161,14 @@ def peer_of(connection: socket.socket) -> tuple[int, int | None]:
 
 
 def peer_text(connection: socket.socket) -> str:
-    """Return who is at the other end, for the record: the user id on a Unix socket, else the address.
+    """Return the other end for the record: the user id on a Unix socket, else the address.
 
-    Never raises: what the system does not tell, and a caller that is gone already, is said in its place.
+    Never raises: an unknown peer, or one that has disconnected, gives a text that reports it.
     """
     try:
         if connection.family == getattr(socket, "AF_UNIX", None):
             user = peer_of(connection)[1]
-            return f"user id {user}" if user is not None else "user id not told"
+            return f"user id {user}" if user is not None else "user id not known"
         host, port = connection.getpeername()[:2]
     except (OSError, ValueError):
         return "peer not known"
@@ -176,5 +176,5 @@ def peer_text(connection: socket.socket) -> str:
 
 
 def with_peer(name: str, peer: str) -> str:
-    """Return a client's name with what the system says of it."""
+    """Return a client's name followed by its peer."""
     return f"{name} ({peer})" if peer else name

@@ -1,7 +1,7 @@
 """The alarm list: active, acknowledged, returned but not acknowledged (ISA-18.2), three priorities, first-up marked.
 
-An alarm is raised under a name for as long as its cause stands. It leaves the list once the cause is gone *and* it has
-been acknowledged; one of priority 3 that nobody acknowledged leaves with its cause.
+An alarm has a name and lasts as long as its cause. It leaves the list once the cause is gone *and* it has been
+acknowledged; one of priority 3 leaves with its cause, acknowledged or not.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ Priority = Literal[1, 2, 3]
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """What is wrong, in words and figures. ``consequence``: what happens next; ``command``: what answers it."""
+    """The cause of an alarm in words and figures. ``consequence``: its next effect; ``command``: the command that
+    answers it.
+    """
 
     name: str
     priority: Priority
@@ -30,25 +32,25 @@ class Cause:
 
 
 class AlarmList:
-    """The alarms of a rig. ``tell`` hears of each change: kind, text, severity."""
+    """The alarms of a rig. ``tell`` gets each change: kind, text, severity."""
 
     def __init__(self, utc: Callable[[], str], tell: Callable[[str, str, str], None]) -> None:
-        """Nothing is wrong."""
+        """Begin without alarms."""
         self._utc = utc
         self._tell = tell
         self._alarms: dict[str, Alarm] = {}
         self._count = 0
 
     def __len__(self) -> int:
-        """Return how many stand in the list."""
+        """Return the number of alarms in the list."""
         return len(self._alarms)
 
     def listed(self) -> tuple[Alarm, ...]:
-        """Return the list: what nobody has acknowledged first, then by priority, then the oldest."""
+        """Return the list: unacknowledged alarms first, then by priority, then the oldest."""
         return tuple(sorted(self._alarms.values(), key=_urgency))
 
     def raise_(self, cause: Cause, t_s: float) -> None:
-        """Raise an alarm; one that stands already takes the new words and figures, silently."""
+        """Raise an alarm; an active alarm takes the new words and figures, silently."""
         old = self._alarms.get(cause.name)
         if old is not None and old.state != "returned":
             if (old.text, old.value) != (cause.text, cause.value):
@@ -74,14 +76,14 @@ class AlarmList:
             self._alarms[name] = replace(alarm, state="returned")
 
     def set(self, on: bool, cause: Cause, t_s: float) -> None:
-        """Raise or clear, as the level is."""
+        """Raise the alarm if ``on``, else clear it."""
         if on:
             self.raise_(cause, t_s)
         elif cause.name in self._alarms:
             self.clear(cause.name)
 
     def acknowledge(self, number: int, by: str) -> int:
-        """Acknowledge one alarm (all for 0); return how many there were to acknowledge."""
+        """Acknowledge one alarm (all for 0); return the number acknowledged."""
         count = 0
         for name, alarm in list(self._alarms.items()):
             if number not in (0, alarm.number) or alarm.state == "acknowledged":

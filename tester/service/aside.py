@@ -1,4 +1,4 @@
-"""What reads or writes many files goes on beside the owner's loop: clients are heard meanwhile, STOP first."""
+"""Runs slow file work in a thread while the owner keeps serving clients and STOP."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Final, TypeVar
 
 LOOK_S: Final = 0.02
-"""The owner looks after its clients this often, s, as between two ticks."""
+"""Period at which the owner serves its clients, s, as between two ticks."""
 
 Got = TypeVar("Got")
 
 
 def aside(work: Callable[[], Got], look: Callable[[], object]) -> Got:
-    """Return what ``work`` returns, done by a thread; ``look`` is called every ``LOOK_S`` until it is done.
+    """Run ``work`` in a thread and return its result; call ``look`` every ``LOOK_S`` until it is done.
 
-    ``work`` is never broken off: it may be writing. Raises what it raises.
+    ``work`` is never interrupted: it may be writing. Raises what it raises.
     """
     with ThreadPoolExecutor(1, thread_name_prefix="aside") as thread:
         done = thread.submit(work)

@@ -19,15 +19,15 @@ class LoadedWire(Protocol):
 
     @property
     def load(self) -> float:
-        """Return the share of the last second in which the bus was taken, 0..1."""
+        """Return the share of the last second in which the bus was busy, 0..1."""
         ...
 
 
 class BusWatch:
-    """Looks at the devices of one run."""
+    """Reads the devices of one run."""
 
     def __init__(self, devices: DeviceList, rig: Rig) -> None:
-        """Look only: nothing is sent by it."""
+        """Only read: sends nothing."""
         self.devices = devices
         self.rig = rig
         self._emergencies: dict[str, int] = {}
@@ -78,16 +78,16 @@ class BusWatch:
         can = self.devices.can
         load = 100.0 * can.load if isinstance(can, LoadedWire) else None
         errors = sum(drive.malformed for drive in self.devices.drives) + sum(self._emergencies.values())
-        found = [BusView("can", "can", load, errors, f"{self.rig.can.bitrate // 1000} kbit/s")]
+        views = [BusView("can", "can", load, errors, f"{self.rig.can.bitrate // 1000} kbit/s")]
         for (name, config), (_, link) in zip(self.rig.lines.items(), self.devices.lines, strict=True):
             failed = sum(
                 s.counters.timeouts + s.counters.crc_errors + s.counters.garbage + s.counters.late
                 for s in link.stations
             )
-            found.append(BusView(name, "modbus", None, failed + link.garbage, f"{config.baud} baud, {config.framing}"))
-        return tuple(found)
+            views.append(BusView(name, "modbus", None, failed + link.garbage, f"{config.baud} baud, {config.framing}"))
+        return tuple(views)
 
 
 def _age(now: float, at_s: float) -> float | None:
-    """Return the age of data in s, None for none."""
+    """Return the age of data in s, None without data."""
     return None if at_s == -inf else max(now - at_s, 0.0)

@@ -1,6 +1,6 @@
-"""A child process and a socket to it: inherited where the system can, else over loopback with a secret.
+"""A child process and a socket to it: inherited where the system allows it, else over loopback with a secret.
 
-POSIX hands the child one end of a socket pair. Windows (not tried) has it connect back and show a secret first.
+POSIX hands the child one end of a socket pair. On Windows (not tried) the child connects back and sends a secret first.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tester.base.children import module_command
 
 INHERITS = os.name == "posix"
 BACK_S = 20.0
-"""A child that is to connect back has done so by then, s [A]."""
+"""Time for a child to connect back, s [A]."""
 SECRET = "TESTER_LINK_SECRET"
 
 
@@ -29,7 +29,7 @@ def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes
                 module_command(module, f"fd:{theirs.fileno()}", *arguments),
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
-                start_new_session=True,  # Ctrl+C at the terminal is for the owner alone
+                start_new_session=True,  # Ctrl+C at the terminal is only for the owner
             )
         return process, ours
     secret = secrets.token_hex(32)
@@ -49,7 +49,7 @@ def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes
 
 
 def link_of(text: str) -> socket.socket:
-    """Return the child's end: what ``spawn`` named in the first argument. Raises OSError."""
+    """Return the child's end from the first argument, which ``spawn`` made. Raises OSError."""
     kind, _, number = text.partition(":")
     if kind == "fd":
         return socket.socket(fileno=int(number))

@@ -6,7 +6,7 @@
             if isinstance(message, Snapshot):
                 print(message.state.mode, message.state.progress.title)
 
-``Client`` is one connection. ``Link`` keeps one up: it comes back after a loss and misses no event.
+``Client`` is one connection. ``Link`` keeps a connection up: it reconnects after a loss and misses no event.
 """
 
 from __future__ import annotations
@@ -49,40 +49,40 @@ from tester.service.state import PlanView, StateView
 from tester.service.stop_call import takes_stop
 
 MAX_INCOMING = 64 * 1024 * 1024
-"""Longest message taken from the service, bytes: a hello holds ten minutes and two thousand events."""
+"""Longest message from the service, bytes: a hello holds ten minutes of trend and two thousand events."""
 CONNECT_S = 10.0
 ANSWER_S = 30.0
-"""A command that has no answer by then has failed, s; checking and planning take seconds."""
+"""A command without an answer after this time has failed, s; checking and planning take seconds."""
 AGAIN_S = 0.5
-"""A lost connection is tried again this often."""
+"""Time between two attempts to reconnect, s."""
 
 
 class NoServiceError(Exception):
-    """Nobody listens there, or not for us; the message says why."""
+    """No service listens at the address, or it rejects this client; the message gives the reason."""
 
 
 class RefusedError(Exception):
-    """The service has refused a command; the message is its reason."""
+    """The service refused a command; the message is its reason."""
 
 
 class LostError(Exception):
-    """The connection has ended; the message says why, as far as anybody said."""
+    """The connection has ended; the message gives the reason if the service sent one."""
 
 
 Gone: TypeAlias = Literal["", "ended", "died"]
-"""What became of the service: nobody knows, it was told to end, it is no longer there although nobody told it to."""
+"""How the service ended: unknown, on request, or without a request."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """Given by a ``Link`` in the place of a message: the connection is gone, and is tried again."""
+    """A ``Link`` yields this when the connection breaks; it then tries to reconnect."""
 
     reason: str
     gone: Gone = ""
 
 
 class Client:
-    """One connection. ``state``, ``plan``, ``events`` and ``trend`` are always the newest known."""
+    """One connection. ``state``, ``plan``, ``events`` and ``trend`` always hold the newest data."""
 
     def __init__(self, connection: ClientConnection, hello: Hello) -> None:
         """Use ``Client.connect``."""
@@ -100,9 +100,9 @@ class Client:
         self.received_s = clock.monotonic()
         """When the newest state came (tester.base.clock.monotonic)."""
         self.lost = ""
-        """Why the connection has ended, "" while it stands."""
+        """Why the connection has ended, "" while it is open."""
         self.ended = False
-        """The service has said that it was told to end."""
+        """The service has announced that it ends on request."""
         self._goodbye = ""
         self._ids = 0
         self._sending: set[asyncio.Task[None]] = set()
@@ -123,10 +123,10 @@ class Client:
         service: str = "",
         since: int = 0,
     ) -> Client:
-        """Connect and say who we are. Raises NoServiceError.
+        """Open a connection and introduce this client. Raises NoServiceError.
 
-        ``control``: ask to be the one that commands. ``service``, ``since``: what was seen last (``Client.service``
-        and ``last_seq``), to be given every event after it.
+        ``control``: ask for control. ``service``, ``since``: the service and the event seen last (``Client.service``
+        and ``last_seq``); the service then sends every later event.
         """
         try:
             connection = await _open(address or default_address())
@@ -144,23 +144,23 @@ class Client:
 
     @property
     def controls(self) -> bool:
-        """This client is the one that commands."""
+        """Whether this client has control."""
         return self.state.clients.controller_id == self.number
 
     @property
     def age_s(self) -> float:
-        """Seconds since the newest state came: above 2 no value is to be believed."""
+        """Seconds since the newest state arrived; above 2, distrust every value."""
         return clock.monotonic() - self.received_s
 
     @property
     def last_seq(self) -> int:
-        """The newest event's number, 0 before the first."""
+        """Number of the newest event, 0 before the first."""
         return self.events[-1].seq if self.events else 0
 
     async def command(self, action: Action, *, within_s: float = ANSWER_S) -> JsonValue:
-        """Have something done; return the answer's result. Raises RefusedError, LostError, TimeoutError."""
+        """Send a command and return the answer's result. Raises RefusedError, LostError, TimeoutError."""
         self._ids += 1
-        number = self._ids  # others may ask while this one waits
+        number = self._ids  # other commands may raise the counter while this one waits
         answer: asyncio.Future[Accepted] = asyncio.get_running_loop().create_future()
         self._answers[number] = answer
         try:
@@ -175,7 +175,7 @@ class Client:
             del self._answers[number]
 
     def attend(self) -> None:
-        """Give a sign of life, which manual mode needs every second of who controls; no answer is awaited."""
+        """Send a sign of life without waiting for the answer. Manual mode needs one a second from the controller."""
         self._ids += 1
         text = encode(Command(self._ids, Attend()))
         task = asyncio.create_task(self._send(text))
@@ -187,26 +187,25 @@ class Client:
             await self._connection.send(text, text=True)
 
     async def stop(self, *, fast: bool = False) -> None:
-        """STOP: works for every client, whoever has control."""
+        """Send STOP. It works for every client, with or without control."""
         await self.command(Stop(fast))
 
     def __aiter__(self) -> AsyncIterator[ServerMessage]:
-        """Give messages as they come: ``hello`` first, every event, of the others only the newest."""
+        """Yield messages as they arrive: ``hello`` first, every event, and the newest of each other type."""
         return self._messages()
 
     async def close(self) -> None:
-        """Hang up. The run goes on."""
+        """Close the connection. A run continues."""
         await self._connection.close()
         await self._reading
 
     async def __aenter__(self) -> Client:
-        """Return itself."""
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Hang up."""
+        """Close the connection."""
         await self.close()
 
     # -- reading ----------------------------------------------------------------------------------------------
@@ -214,7 +213,7 @@ class Client:
     async def _read(self) -> None:
         try:
             async for text in self._connection:
-                with suppress(BadMessageError):  # a message of a newer service: not ours to understand
+                with suppress(BadMessageError):  # skip the message of a newer service
                     self._take(from_server(text))
             self._end(self._goodbye or "the service has closed the connection")
         except ConnectionClosed as error:
@@ -271,31 +270,31 @@ class Client:
 
 
 class Link:
-    """A connection that comes back: ``client`` is the present one, None while there is none."""
+    """A connection that reconnects by itself: ``client`` is the present one, None while there is none."""
 
     def __init__(self, address: Address | None = None, *, name: str = "client", control: bool = False) -> None:
-        """Nothing is opened before ``messages``. ``control`` as of ``Client.connect``."""
+        """Open nothing before ``messages``. ``control`` as in ``Client.connect``."""
         self.address = address
         self.name = name
         self.control = control
         self.client: Client | None = None
 
     async def messages(self) -> AsyncIterator[ServerMessage | Lost]:
-        """Give messages for ever, a ``Lost`` where the connection breaks; no event twice, none left out.
+        """Yield messages for ever, and a ``Lost`` when the connection breaks. Each event arrives exactly once.
 
-        Each new connection begins with a ``Hello``; where its ``complete`` is False, or its ``service`` another, events
-        in between are not to be had.
+        Each new connection begins with a ``Hello``. If its ``complete`` is False, or its ``service`` differs, the
+        events in between are lost.
         """
-        service, since, told = "", 0, Lost("")
+        service, since, reported = "", 0, Lost("")
         while True:
             try:
                 self.client = await Client.connect(
                     self.address, name=self.name, control=self.control, service=service, since=since
                 )
             except NoServiceError as error:
-                lost = Lost(str(error), told.gone or await self._gone(service))
-                if lost != told:
-                    told = lost
+                lost = Lost(str(error), reported.gone or await self._gone(service))
+                if lost != reported:
+                    reported = lost
                     yield lost
                 await asyncio.sleep(AGAIN_S)
                 continue
@@ -304,20 +303,20 @@ class Link:
             try:
                 async for message in client:
                     yield message
-                since, told = client.last_seq or since, Lost(client.lost, "ended" if client.ended else "")
+                since, reported = client.last_seq or since, Lost(client.lost, "ended" if client.ended else "")
             finally:
                 self.client = None
                 await client.close()
-            yield told
+            yield reported
             await asyncio.sleep(AGAIN_S)
 
     async def _gone(self, service: str) -> Gone:
-        """Tell a service that has died from one whose gateway is being started anew: that one takes STOP."""
+        """Return "died" for a service that has died, "" for one whose gateway is restarting (it still takes STOP)."""
         there = not service or await asyncio.to_thread(takes_stop, self.address)
         return "" if there else "died"
 
     async def command(self, action: Action) -> JsonValue:
-        """As of ``Client.command``; raises LostError while there is no connection."""
+        """Send a command as ``Client.command`` does; raises LostError while there is no connection."""
         if self.client is None:
             raise LostError("not connected to the service")
         return await self.client.command(action)

@@ -1,4 +1,4 @@
-"""What clients may have done to the rig, and when it is refused."""
+"""Clients' commands for the rig: carries them out, or refuses them."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from tester.service.state_publisher import Desk
 
 
 class Orders:
-    """Carries out orders between two ticks. What takes longer (``job``) is left to the service's loop."""
+    """Carries out orders between two ticks. Longer work (``job``) is left to the service's loop."""
 
     def __init__(self, desk: Desk) -> None:
-        """Nothing is under way."""
+        """Begin with nothing under way."""
         self.desk = desk
         self.job: Order | None = None
         self.armed_by = 0
@@ -33,7 +33,7 @@ class Orders:
         desk.obey, desk.stop, desk.lost_control = self.obey, self.stop, self.lost_control
 
     def obey(self, order: Order) -> None:
-        """Carry out an order, or say why not."""
+        """Carry out an order, or refuse it with a reason."""
         action = order.action
         if isinstance(action, Stop):
             self.stop(order.by, action.fast)
@@ -59,13 +59,13 @@ class Orders:
             gateway.accept(order)
 
     def stop(self, name: str, fast: bool) -> None:
-        """STOP: whoever says it, whatever is under way."""
+        """Carry out STOP, from any client, whatever is under way."""
         desk = self.desk
         kind = "fast stop" if fast else "stop"
         desk.command(f"{kind} by {name}", "warning")
         if desk.watch is not None:
             if desk.watch.run.engine.control.state.mode is Mode.LATCHED:
-                desk.watch.run.stays_latched = False  # its cause may never go; the desk stays latched until it is
+                desk.watch.run.stays_latched = False  # its cause may never go; the desk stays latched
             desk.watch.run.request_stop(f"{kind} by {name}", fast=fast)
             desk.stop_rest(fast)
         elif self.job is not None:
@@ -73,7 +73,7 @@ class Orders:
             self.job = None
 
     def _hold(self, order: Order, action: Hold | Release) -> str:
-        """Hold or release a run; return "" or why not."""
+        """Hold or release a run; return "" or the reason for refusing."""
         watch = self.desk.watch
         if watch is None:
             return "nothing runs"
@@ -85,9 +85,10 @@ class Orders:
         return run.request_release(f"released by {order.by}")
 
     def _acknowledge(self, order: Order, action: Acknowledge) -> None:
-        """Acknowledge alarms, a latched rig, and what was found at the start. Nothing moves by it.
+        """Acknowledge alarms, a latched rig, and interrupted runs. Nothing moves.
 
-        A latched rig is acknowledged with all alarms, or by the alarm of its trip: another one's number leaves it so.
+        A latched rig is acknowledged with all alarms or with its trip's alarm; another alarm's number leaves it
+        latched.
         """
         desk, watch = self.desk, self.desk.watch
         tripped = watch.tripped if watch is not None else desk.tripped
@@ -103,7 +104,7 @@ class Orders:
         self._reply(order, refusal)
 
     def _answer(self, order: Order, action: Answer) -> str:
-        """Answer the prompt that waits; return "" or why not."""
+        """Answer the waiting prompt; return "" or the reason for refusing."""
         watch = self.desk.watch
         waiting = watch.run.engine.ctx.prompts.waiting if watch is not None else None
         if waiting is None or waiting.number != action.number:
@@ -114,7 +115,7 @@ class Orders:
         return ""
 
     def _by_hand(self, order: Order, action: Jog | Tare) -> str:
-        """Take a step in manual mode; return "" or why not."""
+        """Move one step in manual mode; return "" or the reason for refusing."""
         desk = self.desk
         if desk.hand is None or desk.watch is None or desk.watch.mode[0] != "RUN":
             return "manual mode is not armed"
@@ -122,20 +123,20 @@ class Orders:
         if isinstance(action, Tare):
             desk.command(f"tare by {order.by}")
             return desk.hand.tare(ctx)
-        names = [one.name for one in desk.watch.kind.machine.hand]
+        names = [axis.name for axis in desk.watch.kind.machine.hand]
         if action.axis not in names:
-            return f"no axis {action.axis!r} is moved by hand here: {', '.join(names)}"
+            return f"no axis {action.axis!r} for manual mode here: {', '.join(names)}"
         desk.command(f"jog {action.axis} {action.direction:+d} by {order.by}", "debug")
         return desk.hand.jog(ctx, action.axis, action.direction)
 
     def lost_control(self) -> None:
-        """Disarm manual mode: whoever armed it does not control any more."""
+        """Disarm manual mode if the client that armed it has lost control."""
         hand = self.desk.hand
         if hand is not None and self.desk.gateway.presence.controller_id != self.armed_by:
             hand.disarm()
 
     def _begin(self, order: Order) -> None:
-        """Take an order that begins something, if nothing is under way."""
+        """Accept an order that begins something, if nothing is under way."""
         refusal = self._occupied()
         if refusal:
             self.desk.gateway.refuse(order, refusal)

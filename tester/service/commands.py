@@ -1,4 +1,4 @@
-"""What a client may send: ``join``, then commands. A key that nobody knows refuses the command that has it."""
+"""Messages from a client: ``join``, then commands. An unknown key makes the service refuse the command."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pydantic import AfterValidator, ConfigDict, Field
 from tester.base.plain import plain_text
 
 VERSION = 2
-"""Of this protocol. A change that an older client cannot ignore raises it."""
+"""Version of this protocol. A change that an older client cannot ignore raises it."""
 MAX_MESSAGE = 400_000
-"""Longest message that the service takes, bytes: a recipe of the greatest size, escaped."""
+"""Longest message that the service accepts, bytes: the largest recipe, escaped."""
 
 _STRICT = ConfigDict(extra="forbid")
-"""Commands with a key that nobody knows are refused: a misspelt option must not be ignored."""
+"""Refuse commands with an unknown key: a misspelt option must not be ignored."""
 
 _PLAIN = AfterValidator(partial(plain_text, where=""))
 Name = Annotated[str, Field(max_length=200), _PLAIN]
@@ -27,9 +27,9 @@ RecipeText = Annotated[str, Field(max_length=262_144)]
 
 @dataclass(frozen=True, slots=True)
 class Join:
-    """The first message of a client. ``control``: it wants to be the controller, if nobody is.
+    """The first message of a client. ``control``: it asks for control, if no client has it.
 
-    ``service`` and ``since``: what it saw last, to be given every event after that.
+    ``service`` and ``since``: the service and the event it saw last; it gets every later event.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
@@ -47,7 +47,7 @@ class RunRecipe:
 
     ``recipe``: a file on the service's machine or the name of a shipped recipe; or ``text``, the recipe itself, which
     ``recipe`` then names. ``rig``: "" = the service's. ``speed``: rig seconds per second, None = as fast as it goes;
-    simulated rigs only. ``yes``: prompts are answered without asking. ``experiment``: free fields, stored.
+    simulated rigs only. ``yes``: answer prompts without asking. ``experiment``: free fields, stored.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
@@ -65,7 +65,7 @@ class RunRecipe:
 
 @dataclass(frozen=True, slots=True)
 class ResumeRun:
-    """Go on with an interrupted run at its first uncommitted repeat. Result as of ``run``."""
+    """Resume an interrupted run at its first uncommitted repeat. Result as of ``run``."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     run: PathText
@@ -77,7 +77,7 @@ class ResumeRun:
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """HOLD: lift, slip to zero, heat held; the current repeat is void and done again."""
+    """HOLD: lift, set slip to zero, keep heating; the current repeat is void and is repeated."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["hold"] = "hold"
@@ -85,7 +85,7 @@ class Hold:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """End HOLD and go on."""
+    """End HOLD and continue."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["release"] = "release"
@@ -93,7 +93,7 @@ class Release:
 
 @dataclass(frozen=True, slots=True)
 class Acknowledge:
-    """Acknowledge one alarm, or all (``number`` 0); a latched trip too, once its cause is gone. Nothing moves by it."""
+    """Acknowledge one alarm, or all (``number`` 0), including a latched trip once its cause is gone. Nothing moves."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     number: Annotated[int, Field(ge=0)] = 0
@@ -102,7 +102,7 @@ class Acknowledge:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """STOP: a controlled stop, or a fast one. From any client, never refused, idempotent."""
+    """STOP: a controlled stop, or a fast one. Any client may send it; it is never refused, and idempotent."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     fast: bool = False
@@ -111,7 +111,7 @@ class Stop:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Answer the prompt with this number, by its word; the answer is recorded. "no" leaves it waiting."""
+    """Answer the prompt with this number; the answer is recorded. "no" leaves the prompt waiting."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     number: int
@@ -121,7 +121,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """Arm manual mode (connects the rig first), or disarm it. Disarms by itself 60 s after the last step."""
+    """Arm manual mode (connects the rig first), or disarm it. It disarms by itself 60 s after the last step."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     on: bool = True
@@ -130,7 +130,7 @@ class Arm:
 
 @dataclass(frozen=True, slots=True)
 class Attend:
-    """A sign of life of the screen that moves the rig by hand: a second without one ends manual mode."""
+    """A sign of life from the screen that moves the rig by hand: a second without one ends manual mode."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["attend"] = "attend"
@@ -138,9 +138,9 @@ class Attend:
 
 @dataclass(frozen=True, slots=True)
 class Jog:
-    """One bounded step by hand, up or down: a key press. More than five a second are refused.
+    """Move an axis by one bounded step, up or down, for a key press. More than five a second are refused.
 
-    ``axis``: a name of the machine's table (``hello``).
+    ``axis``: a name in the machine's table (``hello``).
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
@@ -151,7 +151,7 @@ class Jog:
 
 @dataclass(frozen=True, slots=True)
 class Tare:
-    """Zero the load cell in manual mode; refused in contact or moving."""
+    """Zero the load cell in manual mode; refused in contact or in motion."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["tare"] = "tare"
@@ -159,7 +159,7 @@ class Tare:
 
 @dataclass(frozen=True, slots=True)
 class TakeControl:
-    """Take control (``take``; ``force``: also from a client that has it), or give it back."""
+    """Take control (``take``; ``force``: even from another client), or give it back."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     take: bool = True
@@ -169,7 +169,7 @@ class TakeControl:
 
 @dataclass(frozen=True, slots=True)
 class WatchFrames:
-    """Have ``frames`` messages sent to this client, or no more."""
+    """Start or stop ``frames`` messages to this client."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     on: bool = True
@@ -190,7 +190,7 @@ class CheckRecipe:
 
 @dataclass(frozen=True, slots=True)
 class ShowPlan:
-    """Plan a recipe. Result: what `tester plan --json` prints."""
+    """Plan a recipe. Result: the output of `tester plan --json`."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     recipe: PathText
@@ -210,16 +210,16 @@ class ListRecipes:
 
 @dataclass(frozen=True, slots=True)
 class ListRuns:
-    """List the stored runs. Result: ``{"runs": [...]}`` with what `tester runs --json` prints of each."""
+    """List the stored runs. Result: ``{"runs": [...]}``, each as `tester runs --json` prints it."""
 
     __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["runs"] = "runs"
 
 
 RigAction: TypeAlias = RunRecipe | ResumeRun | Hold | Release | Acknowledge | Stop | Answer | Arm | Jog | Tare
-"""What the rig's owner does; everything but ``stop`` is for the controller alone."""
+"""Commands for the rig's owner; all but ``stop`` require control."""
 Query: TypeAlias = CheckRecipe | ShowPlan | ListRecipes | ListRuns
-"""What is worked out beside the rig, by a process of its own."""
+"""Questions that a separate process answers, beside the rig."""
 Action: TypeAlias = Annotated[RigAction | TakeControl | WatchFrames | Attend | Query, Field(discriminator="command")]
 
 

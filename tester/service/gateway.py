@@ -1,8 +1,9 @@
-"""The gateway: the WebSocket side of the service. It owns no rig: it passes on, and says who may command.
+"""The gateway: the WebSocket side of the service. It forwards messages between clients and owner and decides who
+controls.
 
-One process beside the one that ticks (docs/decisions/0021), so that a slow, stalled or hostile client costs the scan
-nothing. It keeps what a new client must be told: newest state, plan, events, ten minutes of trend, all as JSON of
-which it reads the mode alone.
+It runs in a process of its own (docs/decisions/0021), so that a slow, stalled or hostile client costs the scan nothing.
+It keeps everything a new client needs - newest state, plan, events, ten minutes of trend - as JSON, of which it reads
+only the mode.
 """
 
 from __future__ import annotations
@@ -55,56 +56,58 @@ from tester.service.protocol import (
 from tester.service.queries import Queries, QueryError
 
 EVENTS_AT_FIRST = 200
-"""Events that a client which has seen none is told."""
+"""Events in the ``hello`` to a client that has seen none."""
 FELL_BEHIND = 4001
 """Close code for a client that does not read its events."""
 JOIN_WITHIN_S = 10.0
-"""A connection that has not said ``join`` by then is closed."""
+"""The gateway closes a connection without a ``join`` after this time, s."""
 QUESTIONS = 4
-"""Questions of one client that may be worked out, or wait for that."""
+"""Questions of one client that may run or wait at the same time."""
 FULL = 1013
-"""Close code for a client that finds no place (try again later)."""
+"""Close code when the service has no place left (try again later)."""
 LAST_WORDS, LAST_WORDS_S = 8, 1.0
-"""A client that is turned away is listened to for so many more messages, and for so long: one may be STOP."""
+"""The gateway reads this many more messages, for this long (s), from a client that it turns away: STOP may be among
+them.
+"""
 STRANGER = 0
 """Number of a client that has not joined."""
 NOT_JOINED = "a client that has not joined"
-"""Name of one, on record."""
+"""Name in the record of a client that has not joined."""
 GREETED_WITHIN_S = 30.0
-"""The owner's first state is there by then, s."""
+"""The owner sends its first state within this time, s."""
 AT_REST = frozenset({"OFFLINE", "INTERRUPTED"})
-"""Modes in which neither a run nor manual mode is under way."""
+"""Modes without a run and without manual mode."""
 _MODE = re.compile(rb'\{"mode":"([^"]*)"')
-"""Begin of a state as it is sent."""
+"""Start of an encoded state."""
 
 
 @dataclass(slots=True, eq=False)
 class Guest:
-    """One client: its connection, its number, and what is on its way to it."""
+    """One client: its connection, its number and its pending messages."""
 
     connection: ServerConnection
     number: int
     name: str
     peer: str
-    """Who the system says it is."""
+    """Its user or address, as the operating system reports it."""
     asked: bool = False
-    """It asked for control when it joined."""
+    """It asked for control in its ``join``."""
     outbox: Outbox = field(default_factory=Outbox)
     frames: bool = False
     leaving: asyncio.Task[None] | None = None
-    """It fell behind and is being sent away."""
+    """Closes the connection of a client that fell behind."""
     bucket: Bucket = field(default_factory=Bucket)
     questions: int = 0
-    """Those that are being worked out."""
+    """How many of its questions are being answered."""
 
 
 class Gateway:
-    """What all connections share."""
+    """State that all connections share."""
 
     def __init__(
         self, tell: Callable[[bytes], None], service: str, software: str, queries: Queries, hook: Hook
     ) -> None:
-        """``tell`` takes a line for the owner; ``service`` identifies this life of the service."""
+        """``tell`` sends a line to the owner; ``service`` identifies this life of the service."""
         self.owner = GatewayEnd(tell)
         self.strangers = Strangers()
         self.service = service
@@ -116,14 +119,14 @@ class Gateway:
         self._signs = 0
         self._ended = False
         self._lender = 0
-        """The client that had control before an idle rig's command borrowed it; it gets it back."""
+        """The client that had control before another borrowed it on an idle rig; it gets control back."""
         self._mode = ""
-        """What the rig does, by the newest state."""
+        """The rig's mode in the newest state."""
         self._next = 1
         self._state = b""
         self._plan = b"null"
         self._machine = to_json(UNKNOWN)
-        """Tables of the kind of rig; told by the owner before its first state."""
+        """Tables of the kind of rig; the owner sends them before its first state."""
         self._events: deque[tuple[int, bytes]] = deque(maxlen=EVENTS_KEPT)
         self._rows: deque[bytes] = deque(maxlen=TREND_ROWS)
         self._greeted = asyncio.Event()
@@ -131,7 +134,7 @@ class Gateway:
     # -- from the owner ---------------------------------------------------------------------------------------
 
     def take(self, line: bytes) -> None:
-        """Take one line of the owner and hand it to those it is for."""
+        """Take one line from the owner and forward it to the clients concerned."""
         kind, rest = line[:1], line[1:]
         if kind == b"s":
             self._state, _, row = rest.partition(b"\t")
@@ -171,7 +174,7 @@ class Gateway:
                     guest.outbox.newest("frames", rest)
 
     def _take_machine(self, machine: bytes) -> None:
-        """Take the tables of a kind of rig; a trend of another one's columns is none any more."""
+        """Take the tables of a kind of rig. A change drops the trend, whose columns belong to the old kind."""
         if machine == self._machine:
             return
         self._machine = machine
@@ -180,13 +183,13 @@ class Gateway:
             self._reply(guest, b'{"machine":' + machine + b',"type":"machine"}')
 
     def farewell(self) -> None:
-        """Tell everybody that the owner has ended, or died: it said goodbye, or not."""
+        """Send every client a ``goodbye``: the owner has ended, or, without its own goodbye, has died."""
         last = Goodbye("the service has ended", ended=True) if self._ended else Goodbye("the service has died")
         for guest in self.guests.values():
             guest.outbox.reply(encode(last))
 
     async def all_told(self) -> None:
-        """Wait until every client has been sent what is due to it."""
+        """Wait until every pending message is sent."""
         while any(len(guest.outbox) for guest in self.guests.values()):
             await asyncio.sleep(0.01)
 
@@ -194,8 +197,8 @@ class Gateway:
 
     async def serve(self, connection: ServerConnection) -> None:
         """Serve one client until it or the service ends."""
-        found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
-        peer = peer_text(found) if found is not None else "peer not known"
+        raw = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
+        peer = peer_text(raw) if raw is not None else "peer not known"
         try:
             joined = await self._joined(connection, peer)
         except (ConnectionClosed, TimeoutError, BadMessageError) as error:
@@ -214,10 +217,10 @@ class Gateway:
         try:
             async for text in connection:
                 if (wait_s := guest.bucket.spend(len(text))) > 0.0:
-                    await asyncio.wait({sending}, timeout=wait_s)  # meanwhile nothing more is read of it
+                    await asyncio.wait({sending}, timeout=wait_s)  # read nothing more from this client meanwhile
                 self._obey(guest, text, gone=sending.done())
         except ConnectionClosed:
-            pass  # a client that just disappears is no error of the service's
+            pass  # a client may disappear: that is no error of the service
         finally:
             del self.guests[guest.number]
             sending.cancel()
@@ -241,7 +244,7 @@ class Gateway:
         return message
 
     async def _turn_away(self, connection: ServerConnection, peer: str, reason: str, code: int = 1008) -> None:
-        """Send a client away with the reason, after it has said STOP if it wants to."""
+        """Close a client's connection with a reason, after a last chance to send STOP."""
         with suppress(ConnectionClosed):
             await connection.send(encode(Goodbye(reason)), text=True)
         with suppress(ConnectionClosed, TimeoutError):
@@ -252,7 +255,7 @@ class Gateway:
             await connection.close(code, reason[:100])
 
     def _stop_of_stranger(self, text: str | bytes, peer: str) -> bool:
-        """Pass on the STOP of a client that is none of ours, or not yet; return whether it was one."""
+        """Forward a STOP from a client that has not joined; return whether the message is a STOP."""
         stop = stop_in(text)
         if stop is None or not isinstance(stop.action, Stop):
             return False
@@ -266,10 +269,10 @@ class Gateway:
         events = list(self._events)
         first = events[0][0] if events else 1
         if known:
-            told = [event for number, event in events if number > joined.since]
+            sent = [event for number, event in events if number > joined.since]
         else:
-            told = [event for _, event in events[-EVENTS_AT_FIRST:]]
-        complete = (first <= joined.since + 1) if known else len(told) == len(events) and first == 1
+            sent = [event for _, event in events[-EVENTS_AT_FIRST:]]
+        complete = (first <= joined.since + 1) if known else len(sent) == len(events) and first == 1
         return b"".join(
             (
                 b'{"version":%d,' % VERSION,
@@ -277,13 +280,13 @@ class Gateway:
                 b',"client":%d,' % guest.number,
                 b'"control":' + (b"true" if self.controller == guest.number else b"false"),
                 b',"machine":' + self._machine + b',"state":' + self._state + b',"plan":' + self._plan,
-                b',"events":[' + b",".join(told) + b'],"complete":' + (b"true" if complete else b"false"),
+                b',"events":[' + b",".join(sent) + b'],"complete":' + (b"true" if complete else b"false"),
                 b',"trend":[' + b",".join(self._rows) + b'],"type":"hello"}',
             )
         )
 
     async def _send(self, guest: Guest) -> None:
-        """Send what is due, in order of urgency; waits while the client does not read."""
+        """Send pending messages, the most urgent first; wait while the client does not read."""
         try:
             while True:
                 await guest.connection.send(await guest.outbox.next(), text=True)
@@ -291,27 +294,27 @@ class Gateway:
             return
 
     async def _drop(self, guest: Guest) -> None:
-        """Send away a client that does not keep up: an event is never left out, so there is nothing else to do."""
+        """Disconnect a client that does not keep up. Events are never left out, so there is no gentler way."""
         await guest.connection.close(FELL_BEHIND, f"{guest.outbox.behind} messages behind: come back with since")
 
     def _reply(self, guest: Guest, message: bytes) -> None:
-        """Answer a client."""
+        """Send a client an answer."""
         guest.outbox.reply(message)
         self._keep(guest)
 
     def _keep(self, guest: Guest) -> None:
-        """Keep a client that reads what it is sent."""
+        """Disconnect a client that does not read its messages; keep any other."""
         if guest.outbox.behind and not guest.leaving:
             guest.leaving = asyncio.create_task(self._drop(guest))
 
     # -- commands ---------------------------------------------------------------------------------------------
 
     def _obey(self, guest: Guest, text: str | bytes, *, gone: bool) -> None:
-        """Do what a message says; of what a client that is gone has left behind STOP alone is heard."""
+        """Carry out a message. From a client that has disconnected (``gone``), carry out STOP only."""
         try:
             message = to_server(text)
         except BadMessageError as error:
-            stop = stop_in(text)  # whatever else is wrong with it
+            stop = stop_in(text)  # STOP counts, even in an otherwise invalid message
             if stop is None:
                 self._reply(guest, encode(Refused(_id_of(text), str(error))))
                 return
@@ -336,24 +339,25 @@ class Gateway:
             self._order(guest, message.id, action)
 
     def _order(self, guest: Guest, number: int, action: RigAction) -> None:
-        """Pass a command on to the rig's owner, if this client may give it: STOP from anybody."""
+        """Forward a command to the rig's owner if this client may give it. Every client may send STOP."""
         if not isinstance(action, Stop) and self.controller != guest.number and not self._borrows(guest):
             holder = self.guests.get(self.controller)
-            who = f"{holder.name} has control" if holder is not None else "nobody has control: take it first"
+            who = f"{holder.name} has control" if holder is not None else "no client has control: take it first"
             self._reply(guest, encode(Refused(number, who)))
             return
-        self._mode = ""  # what the order makes of it is known with the next state
+        self._mode = ""  # unknown until the next state: the order may change it
         order = Order(guest.number, guest.name, number, action, guest.peer)
         if isinstance(action, Stop):
-            if (stood_for := self.owner.stop(order)) is not None:
-                self._reply(guest, encode(Accepted(stood_for.id)))
+            if (replaced := self.owner.stop(order)) is not None:
+                self._reply(guest, encode(Accepted(replaced.id)))
         elif not self.owner.order(order):
             self._reply(guest, encode(Refused(number, "too many commands at once: wait for their answers")))
 
     def _borrows(self, guest: Guest) -> bool:
-        """Give control to a client that asked for it when it joined, for as long as it stays, from one that is idle.
+        """Lend control to a client that asked for it in its ``join``, while it stays connected; return whether it got
+        control.
 
-        Idle: no run and no manual mode is under way, so that nobody commands anything that another could disturb.
+        Only on an idle rig (no run, no manual mode), where a command cannot disturb the present controller.
         """
         if not guest.asked or self._mode not in AT_REST:
             return False
@@ -377,14 +381,14 @@ class Gateway:
         self._reply(guest, encode(Accepted(number)))
 
     def _attend(self, guest: Guest, number: int) -> None:
-        """Pass on a sign of life of the one that controls; of others it is none."""
+        """Forward a sign of life from the controller; ignore those of other clients."""
         if self.controller == guest.number:
             self._signs += 1
             self._tell_presence()
         self._reply(guest, encode(Accepted(number)))
 
     def _ask(self, guest: Guest, number: int, question: Query) -> None:
-        """Have a question worked out, some at a time."""
+        """Start answering a question, unless the client has too many already."""
         if guest.questions >= QUESTIONS:
             reason = f"{QUESTIONS} questions are being worked out already: wait for their answers"
             self._reply(guest, encode(Refused(number, reason)))
@@ -412,13 +416,13 @@ class Gateway:
 
 
 def _mode_of(state: bytes) -> str:
-    """Return the mode in a state as it is sent."""
-    found = _MODE.match(state)
-    return found.group(1).decode() if found is not None else ""
+    """Return the mode in an encoded state."""
+    match = _MODE.match(state)
+    return match.group(1).decode() if match is not None else ""
 
 
 def _id_of(text: str | bytes) -> int:
-    """Return the id of a command that is wrong otherwise, so that its refusal finds back; 0 where it has none."""
+    """Return the id of an otherwise invalid command, so that its refusal reaches the sender; 0 without an id."""
     try:
         match from_json(text):
             case {"id": int(number)}:

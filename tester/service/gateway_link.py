@@ -1,6 +1,6 @@
-"""The owner's side of the talk with clients: the gateway process, numbered events, states. It never waits.
+"""The owner's side of the link to clients: the gateway process, numbered events, states. It never waits.
 
-A gateway that dies or hangs is replaced, and told again what clients may ask for; the run does not notice.
+A gateway that dies or hangs is replaced and gets events, trend and plan again; the run is not affected.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ from tester.service.state import ClientsView, PlanView, StateView
 from tester.service.stop_lane import StopLane
 
 AGAIN_S = 1.0
-"""A gateway is started anew at most this often, s."""
+"""Shortest time between two starts of a gateway, s."""
 END_S = 5.0
-"""A gateway that has not ended by then is killed, s."""
+"""Time for a gateway to end before it is killed, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class LinkConfig:
-    """Where clients connect, and what the gateway needs for its answers. ``card``: of a TCP address."""
+    """Where clients connect, and the settings for the gateway. ``card``: file with the address, for TCP."""
 
     address: Address
     card: Path
@@ -46,18 +46,18 @@ class LinkConfig:
 
 @dataclass(slots=True)
 class GatewayLink:
-    """Says things to clients, and hears their orders."""
+    """Sends messages to clients and receives their orders."""
 
     config: LinkConfig
     service: str = field(default_factory=lambda: secrets.token_hex(8))
     began_s: float = field(default_factory=clock.monotonic)
     presence: Presence = field(default_factory=lambda: Presence("", 0, 0, False))
     sign_s: float = float("-inf")
-    """When whoever controls gave the newest sign of life (tester.base.clock.monotonic)."""
+    """Time of the controller's newest sign of life (tester.base.clock.monotonic)."""
     sequence: int = 0
     restarts: int = 0
     lane: StopLane = field(default_factory=StopLane)
-    """STOP's own way here, past the gateway."""
+    """STOP's own lane, past the gateway."""
     _end: OwnerEnd | None = None
     _process: subprocess.Popen[bytes] | None = None
     _events: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=EVENTS_KEPT))
@@ -73,27 +73,27 @@ class GatewayLink:
 
     @property
     def silent_s(self) -> float:
-        """Seconds without a sign of life of whoever controls."""
+        """Seconds since the controller's last sign of life."""
         return clock.monotonic() - self.sign_s
 
     def attended(self) -> None:
-        """Take a sign of life of whoever controls: silence counts from now on."""
+        """Record a sign of life from the controller."""
         self.sign_s = clock.monotonic()
 
     @property
     def clients(self) -> ClientsView:
-        """Who is connected."""
+        """The connected clients."""
         return ClientsView(self.presence.controller, self.presence.controller_id, self.presence.viewers)
 
     @property
     def watched(self) -> bool:
-        """Somebody is connected."""
+        """Whether any client is connected."""
         return self.presence.viewers > 0 or self.presence.controller_id != 0
 
     # -- saying -----------------------------------------------------------------------------------------------
 
     def event(self, kind: str, text: str, severity: str = "info", t_s: float = 0.0, run: str = "") -> None:
-        """Tell an event."""
+        """Send an event."""
         self.sequence += 1
         line = b"e%d " % self.sequence
         line += encode(Event(self.sequence, t_s, clock.utc_now(), kind, severity, text, run))
@@ -101,17 +101,19 @@ class GatewayLink:
         self._say(line)
 
     def state(self, view: StateView, row: tuple[float | None, ...]) -> None:
-        """Tell the state; one that has not left yet is replaced."""
-        made = to_json(row, inf_nan_mode="null")
-        self._rows.append(made)
+        """Send the state; it replaces a state still waiting."""
+        encoded = to_json(row, inf_nan_mode="null")
+        self._rows.append(encoded)
         if self._end is not None:
             try:
-                self._end.say_state(b"s" + to_json(view, inf_nan_mode="null") + b"\t" + made)
+                self._end.say_state(b"s" + to_json(view, inf_nan_mode="null") + b"\t" + encoded)
             except LinkLost as lost:
                 self._lose(lost)
 
     def machine(self, machine: MachineView) -> None:
-        """Tell the tables of the kind of rig, before its first state; a trend of another kind's columns ends."""
+        """Send the tables of the kind of rig, before its first state. Another kind's trend ends here: its columns
+        differ.
+        """
         line = b"m" + to_json(machine)
         if line != self._machine:
             self._machine = line
@@ -119,30 +121,30 @@ class GatewayLink:
             self._say(line)
 
     def plan(self, plan: PlanView | None) -> None:
-        """Tell the plan."""
+        """Send the plan."""
         self._plan = b"p" + to_json(plan, inf_nan_mode="null")
         self._say(self._plan)
 
     def frames(self, frames: Frames) -> None:
-        """Tell frames to those who watch them."""
+        """Send frames to the clients that watch them."""
         self._say(b"f" + encode(frames))
 
     def accept(self, order: Order, result: JsonValue = None) -> None:
-        """Answer an order: it was taken."""
+        """Answer an order: accepted."""
         self._say(b"a%d " % order.client + encode(Accepted(order.id, result)))
 
     def refuse(self, order: Order, reason: str) -> None:
-        """Answer an order: it was not."""
+        """Answer an order: refused, with the reason."""
         self._say(b"a%d " % order.client + encode(Refused(order.id, reason)))
 
     def notify(self, event: str, text: str, run: str, folder: str) -> None:
-        """Have the user's hook run."""
+        """Run the user's hook."""
         self._say(b"n" + to_json({"event": event, "text": text, "run": run, "folder": folder, "utc": clock.utc_now()}))
 
     # -- hearing ----------------------------------------------------------------------------------------------
 
     def hear(self) -> list[Order | Presence]:
-        """Return what clients want, a bounded piece of it; starts a gateway where there is none."""
+        """Return a bounded number of clients' messages; restart a gateway that is gone."""
         self.lane.look()
         if self._end is None:
             self._revive()
@@ -150,19 +152,19 @@ class GatewayLink:
             return []
         try:
             self._end.flush()
-            heard = self._end.hear()
+            messages = self._end.hear()
         except LinkLost as lost:
             self._lose(lost)
             return []
-        for one in heard:
-            if isinstance(one, Presence):
-                if one.signs != self.presence.signs:
+        for message in messages:
+            if isinstance(message, Presence):
+                if message.signs != self.presence.signs:
                     self.attended()
-                self.presence = one
-        return heard
+                self.presence = message
+        return messages
 
     def wait(self, seconds: float) -> None:
-        """Wait until something can be heard, or the time is over."""
+        """Wait until a message arrives, at most ``seconds``."""
         if self._end is None:
             clock.sleep_until(clock.monotonic() + seconds)
         elif not self._end.heard:
@@ -180,7 +182,7 @@ class GatewayLink:
         self.adopt(OwnerEnd(ours))
 
     def adopt(self, end: OwnerEnd) -> None:
-        """Talk through ``end`` from now on: tell the gateway behind it what it must know."""
+        """Use ``end`` from now on, and send the gateway behind it everything it needs."""
         address = self.config.address
         self._end = end
         tcp = isinstance(address, TcpAddress)
@@ -199,7 +201,7 @@ class GatewayLink:
         self._say(self._plan)
 
     def close(self) -> None:
-        """End the gateway; it says goodbye to everybody. STOP is taken until then."""
+        """End the gateway, which says goodbye to every client. STOP works until then."""
         self._say(b"b")
         if self._end is not None:
             self._end.drain(END_S)
@@ -227,7 +229,7 @@ class GatewayLink:
             self._lose(lost)
 
     def _lose(self, lost: LinkLost) -> None:
-        """Give a gateway up; the next ``hear`` starts another."""
+        """Give up a gateway; the next ``hear`` starts another."""
         if self._end is not None:
             self._end.close()
         self._end = None
@@ -235,7 +237,7 @@ class GatewayLink:
             self._process.kill()
         self.presence = Presence("", 0, 0, False)
         self._again_s = clock.monotonic() + AGAIN_S
-        self.event("service", f"the gateway is gone ({lost}) and is started anew", "warning")
+        self.event("service", f"the gateway is gone ({lost}) and restarts", "warning")
 
     def _revive(self) -> None:
         if clock.monotonic() < self._again_s:

@@ -1,4 +1,4 @@
-"""The gateway's process, `python -m tester.service.gateway_process LINK`: the link's first line is its settings."""
+"""The gateway's process, `python -m tester.service.gateway_process LINK`: the link's first line holds its settings."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from tester.service.manners import sparse_logger
 from tester.service.queries import Queries
 
 NICE = 5
-"""The process that ticks comes first, and STOP's door: the gateway may be kept busy by whoever talks to it."""
+"""Lower priority than the ticking process and STOP's door: busy clients may keep the gateway busy."""
 
 
 @dataclass(frozen=True, slots=True)
 class GatewaySettings:
-    """What the owner tells its gateway. ``path`` is a Unix socket, or with ``token`` the card of a TCP service."""
+    """The owner's settings for its gateway. ``path``: a Unix socket, or with ``token`` the card of a TCP service."""
 
     service: str
     software: str
@@ -59,7 +59,7 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
     async with listening(gateway, address) as listens:
         if isinstance(listens, TcpAddress):
             write_card(listens, path)
-        with suppress(ConnectionError):  # an owner that dies with something unread resets the link
+        with suppress(ConnectionError):  # an owner that dies with unread input resets the link
             while line := await reader.readline():
                 gateway.take(line[:-1])
         gateway.farewell()
@@ -79,7 +79,7 @@ async def serve_link(link: socket.socket) -> None:
 
 if __name__ == "__main__":
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)  # it ends with its owner, who comes to a standstill first
+        signal.signal(number, signal.SIG_IGN)  # it ends with its owner, after the rig's standstill
     if hasattr(signal, "SIGHUP"):
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
     sparse_logger("asyncio")

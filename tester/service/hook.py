@@ -1,4 +1,4 @@
-"""The notify hook: a command of the user's, run when a person should look at the rig. It never holds anything up.
+"""The notify hook: the user's command, run when a person should look at the rig. It never blocks anything.
 
 It gets one JSON object on its standard input, and the same as ``TESTER_EVENT``, ``TESTER_TEXT``, ``TESTER_RUN``,
 ``TESTER_FOLDER`` in its environment. Events: trip, hold, prompt, finished, disk.
@@ -18,22 +18,22 @@ from pydantic_core import from_json
 from tester.base.trouble import in_words
 
 WITHIN_S = 30.0
-"""A command that takes longer is ended [A]."""
+"""A command that takes longer is killed, s [A]."""
 AT_ONCE = 4
-"""More of them are left out: a hook that hangs must not pile up processes [A]."""
+"""Most commands at a time; further ones are skipped: a hook that hangs must not pile up processes [A]."""
 SHOWN = {"event", "text", "run", "folder"}
 
 
 class Hook:
-    """Runs the command. ``command``: as in a shell's line, but no shell reads it; "" = none."""
+    """Runs the command. ``command``: parsed as a shell would, but run without a shell; "" = none."""
 
     def __init__(self, command: str) -> None:
-        """Nothing runs yet."""
+        """Run nothing yet."""
         self.arguments = shlex.split(command)
         self.running = 0
 
     async def notify(self, note: bytes) -> None:
-        """Run the command with a note (a JSON object), if there is one; its failure is told on standard error."""
+        """Run the command, if there is one, with a note (a JSON object); report its failure on standard error."""
         if not self.arguments or self.running >= AT_ONCE:
             return
         self.running += 1
@@ -47,9 +47,11 @@ class Hook:
     async def _run(self, note: bytes) -> None:
         fields: JsonValue = from_json(note)
         assert isinstance(fields, dict)
-        told = {f"TESTER_{key.upper()}": str(value).replace("\0", "") for key, value in fields.items() if key in SHOWN}
+        variables = {
+            f"TESTER_{key.upper()}": str(value).replace("\0", "") for key, value in fields.items() if key in SHOWN
+        }
         process = await asyncio.create_subprocess_exec(
-            *self.arguments, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, env=os.environ | told
+            *self.arguments, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, env=os.environ | variables
         )
         try:
             async with asyncio.timeout(WITHIN_S):

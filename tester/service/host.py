@@ -1,4 +1,4 @@
-"""Put a service together and let it live: lock, address, gateway, loop."""
+"""Puts a service together and runs it: lock, address, gateway, loop."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tester.service.service import Service, ServiceOptions
 
 
 def host(options: ServiceOptions, url: str, port: int | None, notify: str) -> int:
-    """Serve until told to end; return the exit code. Raises InvalidSource for the rig file."""
+    """Serve until the process is asked to end; return the exit code. Raises InvalidSource for the rig file."""
     allow_only(options.allowed)
     try:
         where, address = _place(url, port)
@@ -50,7 +50,7 @@ def host(options: ServiceOptions, url: str, port: int | None, notify: str) -> in
 
 
 def _place(url: str, port: int | None) -> tuple[Path, Address]:
-    """Return the service's folder and where it listens."""
+    """Return the service's folder and its address."""
     if url:
         address = address_of(url)
         if not isinstance(address, UnixAddress):

@@ -1,4 +1,4 @@
-"""What is on the rig, as far as the store knows it: manual mode asks nobody to mount anything."""
+"""Finds out from the store what is on the rig: manual mode has no prompt to mount anything."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from tester.store.reader import RunReader
 from tester.store.schema import StoreError
 
 NEWEST_RUNS = 50
-"""So many runs are looked at for one on this rig that mounted something, the newest first [A]."""
+"""Number of newest runs searched for one on this rig that mounted something [A]."""
 
 
 def left_on_rig(runs: Path, rig: Rig, kind: ServedKind) -> Left | None:
-    """Return what the newest run on a rig left on it; None where there is nothing to go by."""
+    """Return what the newest run on a rig left on it; None if unknown."""
     for folder in list(run_folders(runs))[: -NEWEST_RUNS - 1 : -1]:
         with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
             if not made_on(rig, reader):

@@ -1,20 +1,20 @@
-"""The line between the process that owns the rig and the gateway that talks to clients: text lines over a socket.
+r"""The link between the process that owns the rig and the gateway that talks to clients: text lines over a socket.
 
-The owner's side never waits. What it says: a letter, then JSON; the gateway passes most of it on unread.
+The owner's side never waits. It sends a letter, then JSON; the gateway forwards most of it unread.
 
-    s STATE \\t ROW    the state and its row of the trend; only the newest counts
-    m MACHINE         the tables of the kind of rig, before the first state, and when a run is on another kind
+    s STATE \t ROW    the state and its row of the trend; only the newest counts
+    m MACHINE         the tables of the kind of rig, before the first state, and when a run uses another kind
     p PLAN            the plan, or null
     e SEQ EVENT       an event message
     a CLIENT REPLY    the answer to a client's command
     f FRAMES          a frames message
-    t ROW             a row of the trend alone: the past, told to a gateway that was started anew
-    n NOTE            something for the notify hook
-    b                 goodbye: the owner was told to end, and has; without it, it has died
-    k COUNT           so many of the gateway's lines have been looked at: it may say as many more
+    t ROW             a row of the trend alone: history for a gateway that has restarted
+    n NOTE            a note for the notify hook
+    b                 goodbye: the owner has ended on request; without it, the owner has died
+    k COUNT           the owner has read this many of the gateway's lines: the gateway may send as many more
 
-What the gateway says: one JSON object a line, an ``Order`` or a ``Presence``. No more than ``LINES_AT_ONCE`` of them
-are on their way: what waits waits in the gateway, STOP first, of presences the newest alone, of orders some a client.
+The gateway sends one JSON object a line, an ``Order`` or a ``Presence``. At most ``LINES_AT_ONCE`` of them are unread.
+Further ones wait in the gateway: STOP first, only the newest presence, and a few orders of each client.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from tester.service.address import with_peer
 from tester.service.commands import MAX_MESSAGE, RigAction, Stop
 
 MOST_QUEUED = 8_000_000
-"""Bytes that wait for a gateway which does not read; then it is given up and started anew."""
+"""Most bytes waiting for a gateway that does not read; beyond that it is given up and restarted."""
 READ_AT_ONCE = 65_536
 LINES_AT_ONCE = 8
-"""The owner looks at no more between two ticks, so that nobody can hold up a scan by talking."""
+"""Most lines that the owner reads between two ticks, so that busy clients cannot delay a scan."""
 ORDERS_WAIT = 8
-"""Orders of one client that may wait in the gateway."""
+"""Most orders of one client that wait in the gateway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,27 +48,27 @@ class Order:
     id: int
     action: Annotated[RigAction, Field(discriminator="command")]
     peer: str = ""
-    """Who the system says is at the client's end: user id or address."""
+    """The client's user id or address, as the operating system reports it."""
     type: Literal["order"] = "order"
 
     @property
     def by(self) -> str:
-        """Who gives it, for the record: the name that the client has given itself, and its peer."""
+        """The sender for the record: the name that the client gave, and its peer."""
         return with_peer(self.name, self.peer)
 
 
 @dataclass(frozen=True, slots=True)
 class Presence:
-    """Who is connected now, and whether anybody watches frames."""
+    """The connected clients, and whether any of them watches frames."""
 
     controller: str
     controller_id: int
     viewers: int
     frames: bool
     signs: int = 0
-    """Signs of life of whoever controls, counted."""
+    """Number of signs of life from the controller."""
     peer: str = ""
-    """Of whoever controls, as of an order."""
+    """The controller's peer, as in an order."""
     type: Literal["presence"] = "presence"
 
 
@@ -77,11 +77,11 @@ FROM_GATEWAY: TypeAdapter[FromGateway] = TypeAdapter(FromGateway)
 
 
 class LinkLost(Exception):  # noqa: N818 - says what happened, as BusLost does
-    """The other end is gone, or does not read any more."""
+    """The other end is gone, or has stopped reading."""
 
 
 class OwnerEnd:
-    """The owner's end: what cannot be sent at once waits; of states only the newest does."""
+    """The owner's end: it queues unsent lines, and of unsent states only the newest."""
 
     def __init__(self, end: socket.socket) -> None:
         """Take one end of a socket pair."""
@@ -91,7 +91,7 @@ class OwnerEnd:
         self._waiting_bytes = 0
         self._state = b""
         self._sent = 0
-        """Bytes of the first waiting line that are gone."""
+        """Bytes of the first waiting line that are already sent."""
         self._heard = b""
         self._lines: deque[bytes] = deque()
 
@@ -104,12 +104,12 @@ class OwnerEnd:
         self.flush()
 
     def say_state(self, line: bytes) -> None:
-        """Send a state; one that has not left yet is replaced."""
+        """Send a state; it replaces a state still waiting."""
         self._state = line + b"\n"
         self.flush()
 
     def flush(self) -> None:
-        """Send what the socket takes. Raises LinkLost."""
+        """Send as much as the socket accepts. Raises LinkLost."""
         while True:
             if not self._waiting:
                 if not self._state:
@@ -131,22 +131,22 @@ class OwnerEnd:
             self._sent = 0
 
     def hear(self) -> list[Order | Presence]:
-        """Return what the gateway said, a bounded piece of it, without waiting. Raises LinkLost."""
+        """Return a bounded number of the gateway's messages, without waiting. Raises LinkLost."""
         if len(self._lines) < LINES_AT_ONCE:
             self._read()
         count = min(len(self._lines), LINES_AT_ONCE)
         if not count:
             return []
         try:
-            heard = [FROM_GATEWAY.validate_json(self._lines.popleft()) for _ in range(count)]
+            messages = [FROM_GATEWAY.validate_json(self._lines.popleft()) for _ in range(count)]
         except ValidationError as error:
-            raise LinkLost("the gateway says what is none of the link's") from error
+            raise LinkLost("the gateway sent an unknown message") from error
         self.say(b"k%d" % count)
-        return heard
+        return messages
 
     @property
     def heard(self) -> bool:
-        """Something read has not been looked at yet."""
+        """Whether a line has arrived that ``hear`` has not returned."""
         return bool(self._lines)
 
     def _read(self) -> None:
@@ -166,36 +166,37 @@ class OwnerEnd:
             raise LinkLost("the gateway's line does not end")
 
     def drain(self, seconds: float) -> None:
-        """Send what waits, and that nothing more will come; give up after a time (s).
+        """Send the waiting lines and close the sending side; give up after ``seconds``.
 
-        Not closed yet: with something of the gateway's unread that would reset the link, and lose what was sent.
+        The socket stays open: closing it with unread input would reset the link and lose the lines just sent.
         """
         self.socket.settimeout(seconds)
         try:
             self.flush()
             self.socket.shutdown(socket.SHUT_WR)
-        except (LinkLost, OSError):  # TimeoutError is one
+        except (LinkLost, OSError):  # OSError includes TimeoutError
             return
 
     def close(self) -> None:
-        """Let go of the socket."""
+        """Close the socket."""
         self.socket.close()
 
 
 class GatewayEnd:
-    """The gateway's end: at most ``LINES_AT_ONCE`` lines are before the owner, and little can wait behind them."""
+    """The gateway's end: at most ``LINES_AT_ONCE`` lines are unread by the owner, and only a few can wait behind them.
+    """
 
     def __init__(self, write: Callable[[bytes], None]) -> None:
-        """``write``: takes a line for the owner."""
+        """``write`` sends a line to the owner."""
         self._write = write
         self._may = LINES_AT_ONCE
         self._stops: dict[int, Order] = {}
-        """By client: the newest, or the newest fast one."""
+        """By client: the newest STOP, or the newest fast one."""
         self._presence: Presence | None = None
         self._orders: deque[Order] = deque()
 
     def stop(self, order: Order) -> Order | None:
-        """Pass a STOP on, before all else; return the one of this client's that another one stands for now, if any."""
+        """Forward a STOP before everything else; return the waiting STOP of this client that it replaces, if any."""
         before = self._stops.get(order.client)
         if before is not None and _is_fast(before) and not _is_fast(order):
             return order
@@ -204,36 +205,36 @@ class GatewayEnd:
         return before
 
     def order(self, order: Order) -> bool:
-        """Pass an order on; False where too many of this client's wait already."""
-        if sum(one.client == order.client for one in self._orders) >= ORDERS_WAIT:
+        """Forward an order; return False when too many of this client's orders wait."""
+        if sum(queued.client == order.client for queued in self._orders) >= ORDERS_WAIT:
             return False
         self._orders.append(order)
         self._flush()
         return True
 
     def presence(self, presence: Presence) -> None:
-        """Tell who is there; a telling that has not left yet is replaced."""
+        """Send who is connected; it replaces a presence still waiting."""
         self._presence = presence
         self._flush()
 
     def looked_at(self, count: int) -> None:
-        """Take word that the owner has looked at so many lines."""
+        """Note that the owner has read ``count`` more lines."""
         self._may += count
         self._flush()
 
     def _flush(self) -> None:
         while self._may > 0:
-            one: Order | Presence
+            message: Order | Presence
             if self._stops:
-                one = self._stops.pop(next(iter(self._stops)))
+                message = self._stops.pop(next(iter(self._stops)))
             elif self._presence is not None:
-                one, self._presence = self._presence, None
+                message, self._presence = self._presence, None
             elif self._orders:
-                one = self._orders.popleft()
+                message = self._orders.popleft()
             else:
                 return
             self._may -= 1
-            self._write(FROM_GATEWAY.dump_json(one))
+            self._write(FROM_GATEWAY.dump_json(message))
 
 
 def _is_fast(order: Order) -> bool:

@@ -1,4 +1,4 @@
-"""Open the door: a Unix socket for one user, or loopback TCP for whoever has the token."""
+"""Listens for clients: a Unix socket for one user, or loopback TCP for clients with the token."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from tester.service.gateway import Gateway
 from tester.service.manners import sparse_logger
 
 BACKLOG_BYTES = 65_536
-"""A client that leaves more than this unread waits for its next message."""
+"""A client that leaves more than this unread waits for its next message, bytes."""
 LOG = "tester.gateway"
 CLOSE_S = 2.0
-"""A client has this long to say goodbye."""
+"""Time for a client to say goodbye, s."""
 
 
 class Door:
-    """Decides who may come in, before any message is read."""
+    """Decides who may connect, before any message is read."""
 
     def __init__(self, uid: int | None, token: str) -> None:
-        """``uid``: the only user on a Unix socket; ``token``: what a TCP client must show."""
+        """``uid``: the only user on a Unix socket; ``token``: the token required on TCP."""
         self.uid = uid
         self.token = token
 
@@ -41,10 +41,10 @@ class Door:
             if not hmac.compare_digest(shown.encode(), f"Bearer {self.token}".encode()):
                 return connection.respond(HTTPStatus.UNAUTHORIZED, "a token is needed\n")
             return None
-        found = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
+        raw = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
         try:
-            uid = peer_of(found)[1] if found is not None else None
-        except OSError:  # gone already
+            uid = peer_of(raw)[1] if raw is not None else None
+        except OSError:  # the client has disconnected
             return connection.respond(HTTPStatus.FORBIDDEN, "\n")
         if uid is not None and uid != self.uid:
             return connection.respond(HTTPStatus.FORBIDDEN, "this service belongs to another user\n")
@@ -53,9 +53,9 @@ class Door:
 
 @asynccontextmanager
 async def listening(gateway: Gateway, address: Address, uid: int | None = None) -> AsyncGenerator[Address]:
-    """Serve clients at an address until the block ends; gives the address with its port.
+    """Serve clients at an address until the block ends; yields the address with its port.
 
-    ``uid``: who may come in through a Unix socket, by default the user of this process.
+    ``uid``: the user allowed on a Unix socket, by default the user of this process.
     """
     if isinstance(address, UnixAddress):
         unlink_socket(address.path)
@@ -83,10 +83,10 @@ async def listening(gateway: Gateway, address: Address, uid: int | None = None) 
 
 
 def _counted(gateway: Gateway) -> type[ServerConnection]:
-    """Return what a connection is made of: the gateway knows of it from its first byte on."""
+    """Return a connection class that reports each connection to the gateway from its first byte on."""
 
     class CountedConnection(ServerConnection):
-        """A connection that cannot be one of any number of strangers."""
+        """A connection that counts as a stranger until it joins, so that their number is bounded."""
 
         def connection_made(self, transport: asyncio.BaseTransport) -> None:
             gateway.strangers.came(self, cast("asyncio.Transport", transport))

@@ -1,4 +1,4 @@
-"""What the gateway allows its clients: a rate, a number of connections, lines in the log."""
+"""Limits for the gateway's clients: their rate of messages, their number, their lines in the log."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ from websockets.asyncio.server import ServerConnection
 from tester.base import clock
 
 MOST_CLIENTS = 32
-"""Clients that have joined, at most."""
+"""Most clients that have joined."""
 MOST_STRANGERS = 64
-"""Connections that have not joined yet, at most: one more, and the oldest of them is let go of."""
+"""Most connections that have not joined yet; beyond that, the oldest is closed."""
 MESSAGES_PER_S = 50.0
-"""What a client may say for long [A]: a person with a key held down makes 30."""
+"""Lasting rate of a client's messages [A]: a person with a key held down makes 30."""
 MESSAGES_AT_ONCE = 100.0
-"""... and at once: a screen that opens asks for every recipe's check."""
+"""Most messages in a burst: a screen that opens asks for every recipe's check."""
 BYTES_PER_MESSAGE = 8192
 """A longer message counts as several."""
 LINES_PER_MINUTE = 10
-"""Lines of one kind of trouble that the log gets; the rest is counted."""
+"""Most lines in the log for one kind of trouble; further ones are counted."""
 
 
 class Bucket:
-    """A client's allowance: it fills with time; who has spent it is made to wait."""
+    """A client's allowance of messages. It refills with time; a client that has spent it waits."""
 
     def __init__(self, now: Callable[[], float] = clock.monotonic) -> None:
-        """Full. ``now``: seconds."""
+        """Begin full. ``now`` returns seconds."""
         self._now = now
         self._left = MESSAGES_AT_ONCE
         self._at_s = now()
 
     def spend(self, size: int) -> float:
-        """Pay for a message of so many bytes; return how long to wait before the next is read, s."""
+        """Charge a message of ``size`` bytes; return how long to wait before reading the next, s."""
         now = self._now()
         self._left = min(self._left + (now - self._at_s) * MESSAGES_PER_S, MESSAGES_AT_ONCE)
         self._at_s = now
@@ -44,10 +44,10 @@ class Bucket:
 
 
 class Strangers:
-    """Connections that have not said yet who they are, oldest first."""
+    """Connections that have not joined yet, oldest first."""
 
     def __init__(self) -> None:
-        """Nobody is there."""
+        """Begin empty."""
         self._there: dict[ServerConnection, asyncio.Transport] = {}
 
     def __len__(self) -> int:
@@ -55,24 +55,24 @@ class Strangers:
         return len(self._there)
 
     def came(self, connection: ServerConnection, transport: asyncio.Transport) -> None:
-        """Take notice of one; where they are too many the oldest has to go."""
+        """Add a connection; close the oldest if there are too many."""
         self._there[connection] = transport
         if len(self._there) > MOST_STRANGERS:
             oldest = next(iter(self._there))
             self._there.pop(oldest).abort()
 
     def known(self, connection: ServerConnection) -> None:
-        """It has joined, or is gone."""
+        """Remove a connection that has joined or closed."""
         self._there.pop(connection, None)
 
 
 class SparseLog(logging.Handler):
-    """Writes a line for trouble, without its trace, and no more than some a minute."""
+    """Writes one line for each error, without its trace, and a limited number a minute."""
 
     def __init__(
         self, write: Callable[[str], object] | None = None, now: Callable[[], float] = clock.monotonic
     ) -> None:
-        """``write``: takes a line, by default standard error; ``now``: seconds."""
+        """``write`` writes a line, by default to standard error; ``now`` returns seconds."""
         super().__init__(logging.WARNING)
         self._write = write or sys.stderr.write
         self._now = now
@@ -80,7 +80,7 @@ class SparseLog(logging.Handler):
         self._lines = self._left_out = 0
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write it, or count it."""
+        """Write the record, or count it."""
         now = self._now()
         if now - self._since_s >= 60.0:
             if self._left_out:

@@ -1,4 +1,4 @@
-"""The record of manual mode: a journal of its own for every stay in it."""
+"""The record of manual mode: each stay has its own journal."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tester.store.writer import RunWriter
 def open_record(runs: Path, rig: Rig, operator: str, accept_risk: str = "") -> RunWriter:
     """Return the journal of one stay in manual mode: a record of its own, without samples, in ``runs/.manual``.
 
-    It is no run: it holds commands, modes, trips and tares, and no listing of runs shows it. Raises OSError,
+    It is not a run: it holds commands, modes, trips and tares, and no list of runs shows it. Raises OSError,
     sqlite3.Error, StoreError.
     """
     folder = make_folder(runs / MANUAL_RUNS, NAME)

@@ -1,8 +1,8 @@
-"""A recipe is planned by a process of its own: the owner goes on hearing its clients, and a STOP ends the planning.
+"""Plans a recipe in a process of its own: the owner keeps serving its clients, and a STOP ends the planning.
 
-``python -m tester.service.planning LINK``: the link's first line is a ``Task``; back come pickles, each behind its
-length, of one pickler: the plan's steps in small pieces, then what refers to them. So no piece keeps the owner for
-long, however many conditions there are.
+``python -m tester.service.planning LINK``: the link's first line is a ``Task``. The answer is a series of pickles from
+one pickler, each preceded by its length: the plan's steps in small pieces, then the object that refers to them. So no
+piece keeps the owner for long, however many conditions there are.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from tester.run.preparing import Prepared, prepared
 from tester.service.child_socket import link_of, spawn
 
 STEPS_AT_ONCE = 200
-"""Steps of one piece: some milliseconds of the owner's time."""
+"""Steps in a piece: some milliseconds of the owner's time."""
 LOOK_S = 0.02
-"""The owner looks after its clients this often, s, as between two ticks."""
+"""Period at which the owner serves its clients, s, as between two ticks."""
 NICE = 5
-"""Other rigs of this machine come first."""
+"""Lower priority: other rigs on this machine come first."""
 LENGTH = struct.Struct("<I")
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """What is to be planned, as the command line has it."""
+    """A recipe to plan, with the options of the command line."""
 
     recipe: str
     rig: str
@@ -50,9 +50,9 @@ TASK: TypeAdapter[Task] = TypeAdapter(Task)
 
 
 def planned(task: Task, meanwhile: Callable[[], str]) -> Prepared:
-    """Return what a recipe is on a rig. Raises CannotStartError for what is wrong with it.
+    """Return a recipe planned for a rig. Raises CannotStartError if the recipe or rig is wrong.
 
-    ``meanwhile`` is called every ``LOOK_S``; it returns why the planning is to end, "" to go on.
+    ``meanwhile`` is called every ``LOOK_S``; it returns why planning must end, or "".
     """
     process, link = spawn("tester.service.planning", ())
     try:
@@ -65,14 +65,16 @@ def planned(task: Task, meanwhile: Callable[[], str]) -> Prepared:
 
 
 class _collector_off:  # noqa: N801 - reads as a statement
-    """Millions of objects come, none goes: looking for garbage among them would keep STOP waiting for a second."""
+    """Turns the garbage collector off: planning makes millions of objects and drops none, so a collection would only
+    delay STOP, by up to a second.
+    """
 
     def __enter__(self) -> None:
         """Stop automatic collection."""
         gc.disable()
 
     def __exit__(self, *_: object) -> None:
-        """Leave what has come out of every later collection."""
+        """Exclude the new objects from later collections, and resume collection."""
         gc.freeze()
         gc.enable()
 
@@ -81,7 +83,7 @@ def _received(link: socket.socket, meanwhile: Callable[[], str]) -> Prepared:
     link.setblocking(False)
     pieces = _Pieces()
     unpickler = pickle.Unpickler(pieces)  # noqa: S301 - from our own child, over a pair of sockets
-    heard = bytearray()
+    received = bytearray()
     while True:
         why = meanwhile()
         if why:
@@ -91,49 +93,49 @@ def _received(link: socket.socket, meanwhile: Callable[[], str]) -> Prepared:
         data = link.recv(1 << 20)
         if not data:
             raise CannotStartError("the recipe's planning has broken off")
-        heard += data
-        while (piece := _piece(heard)) is not None:
+        received += data
+        while (piece := _piece(received)) is not None:
             pieces.feed(piece)
-            found: object = unpickler.load()
-            if isinstance(found, Prepared):
-                return found
-            if isinstance(found, str):
-                raise CannotStartError(found)
+            item: object = unpickler.load()
+            if isinstance(item, Prepared):
+                return item
+            if isinstance(item, str):
+                raise CannotStartError(item)
             why = meanwhile()
             if why:
                 raise CannotStartError(why)
 
 
-def _piece(heard: bytearray) -> bytes | None:
-    """Take the next pickle from what was heard; None while it is not whole."""
-    if len(heard) < LENGTH.size:
+def _piece(received: bytearray) -> bytes | None:
+    """Take the next pickle from the received bytes; return None while it is incomplete."""
+    if len(received) < LENGTH.size:
         return None
-    (length,) = LENGTH.unpack_from(heard)
+    (length,) = LENGTH.unpack_from(received)
     end = LENGTH.size + int(length)
-    if len(heard) < end:
+    if len(received) < end:
         return None
-    piece = bytes(heard[LENGTH.size : end])
-    del heard[:end]
+    piece = bytes(received[LENGTH.size : end])
+    del received[:end]
     return piece
 
 
 class _Pieces:
-    """A file whose content comes piece by piece."""
+    """A file object over pieces that arrive one at a time."""
 
     def __init__(self) -> None:
-        """Empty."""
+        """Begin empty."""
         self._piece = io.BytesIO()
 
     def feed(self, piece: bytes) -> None:
-        """Go on with this."""
+        """Continue with the next piece."""
         self._piece = io.BytesIO(piece)
 
     def read(self, count: int = -1, /) -> bytes:
-        """Read as files do."""
+        """Return up to ``count`` bytes, as a file does."""
         return self._piece.read(count)
 
     def readline(self) -> bytes:
-        """Read as files do."""
+        """Return a line, as a file does."""
         return self._piece.readline()
 
 
@@ -141,7 +143,7 @@ class _Pieces:
 
 
 def plan_for(link: socket.socket) -> None:
-    """Plan what the owner at the other end of ``link`` wants, and send it."""
+    """Plan the recipe for the owner at the other end of ``link``, and send the result."""
     with link.makefile("rb", buffering=0) as stream:
         task = TASK.validate_json(stream.readline())
     buffer = io.BytesIO()
@@ -156,14 +158,14 @@ def plan_for(link: socket.socket) -> None:
 
     gc.disable()
     try:
-        found = prepared(task.recipe, task.rig, task.overrides, task.accept_risk)
+        plan = prepared(task.recipe, task.rig, task.overrides, task.accept_risk)
     except (InvalidSource, UnknownRecipe, CannotStartError, OSError) as error:
         send(str(error) or type(error).__name__)
         return
-    for pieces in (found.work.plan.steps, found.expected.steps):
+    for pieces in (plan.work.plan.steps, plan.expected.steps):
         for first in range(0, len(pieces), STEPS_AT_ONCE):
             send(list(pieces[first : first + STEPS_AT_ONCE]))
-    send(found)
+    send(plan)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,7 @@
-"""The pre-flight list: what a person looks at before motion begins, as far as it is known without the rig.
+"""The pre-flight list: the checks before motion begins, as far as they need no connection to the rig.
 
-What the rig itself says (guard, safety chain, what is mounted) is added while it is connected (``RunWatch.preflight``);
-the rest is shown before a drive is armed. Nothing here stops a start: what must, the session, the arming and the
-interlocks do.
+The rig's own checks (guard, safety chain, mounted specimen) are added while it is connected (``RunWatch.preflight``);
+these are shown before a drive is armed. None of them prevents a start: the session, the arming and the interlocks do.
 """
 
 from __future__ import annotations
@@ -25,12 +24,12 @@ from tester.store.schema import StoreError
 from tester.store.status import RunStatus
 
 SOON = timedelta(days=30)
-"""A certificate that ends within this is named with its date [A]: a laboratory wants weeks for a calibration."""
+"""A certificate that ends within this time is shown with its date [A]: a laboratory wants weeks for a calibration."""
 
 
 @dataclass(frozen=True, slots=True)
 class Past:
-    """What the newest run in the store left: how it ended, and what is on its rig."""
+    """The outcome of the newest stored run, and what it left on its rig."""
 
     status: str
     reason: str
@@ -38,9 +37,9 @@ class Past:
 
 
 def past_of(runs: Path, kind: ServedKind) -> Past | None:
-    """Return what the newest readable run below a folder left, None where there is none.
+    """Return what the newest readable run in a folder left, None without any.
 
-    Runs on rigs of another kind are passed over: nothing of them is on this one.
+    Runs on rigs of another kind are skipped: nothing of theirs is on this rig.
     """
     for folder in reversed(list(run_folders(runs))):
         with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
@@ -60,8 +59,11 @@ def known_checks(
     now_utc: str,
     history: History | None = None,
 ) -> tuple[Check, ...]:
-    """Return the list without the rig's own part. ``latched``: why nothing may start; ``now_utc``: the wall clock;
-    ``history``: what the runs make known of the rig, None before they were looked at."""
+    """Return the list without the rig's own part.
+
+    ``latched``: why nothing may start; ``now_utc``: the wall clock; ``history``: what stored runs show about the rig,
+    None before they are read.
+    """
     return (
         disk_check(disk),
         alarms_check(alarms),
@@ -74,22 +76,22 @@ def known_checks(
 def disk_check(disk: DiskView) -> Check:
     """Return whether there is room to record a run."""
     if disk.free is None:
-        return Check("disk space", None, "the disk does not say how much is free")
+        return Check("disk space", None, "the disk does not report its free space")
     return Check("disk space", not disk.low, f"{disk.free / 1e9:.1f} GB free")
 
 
 def alarms_check(alarms: Iterable[Alarm]) -> Check:
-    """Return whether alarms stand whose cause has not gone, or that nobody has acknowledged."""
-    standing = [alarm.name for alarm in alarms]
-    return Check("alarms", not standing, f"{len(standing)} standing: {', '.join(standing)}" if standing else "none")
+    """Return whether alarms are active or unacknowledged."""
+    names = [alarm.name for alarm in alarms]
+    return Check("alarms", not names, f"{len(names)} in the list: {', '.join(names)}" if names else "none")
 
 
 def last_run_check(past: Past | None, latched: str) -> Check:
-    """Return how the last run ended; one that tripped is wrong until it is acknowledged."""
+    """Return how the last run ended; a trip is wrong until it is acknowledged."""
     if past is None:
         return Check("last run", None if not latched else False, latched or "none is stored")
     if past.status == RunStatus.INTERRUPTED:
-        return Check("last run", None, "was cut off: r goes on with it")
+        return Check("last run", None, "was cut off: r resumes it")
     text = past.status + (f": {past.reason}" if past.reason else "")
     if latched:
         return Check("last run", False, f"{text}; not acknowledged")
@@ -97,7 +99,7 @@ def last_run_check(past: Past | None, latched: str) -> Check:
 
 
 def calibration_check(calibration: CalibrationConfig, now_utc: str, *, simulated: bool) -> Check:
-    """Return whether every certificate that the rig file names is in date; those nobody has entered are named."""
+    """Return whether every certificate in the rig file is in date; missing entries are listed."""
     if simulated:
         return Check("calibration", True, "simulated sensors need none")
     today = date.fromisoformat(now_utc[:10])
@@ -112,7 +114,7 @@ def calibration_check(calibration: CalibrationConfig, now_utc: str, *, simulated
             over.append(f"{name} ended {end}")
         elif end - today <= SOON:
             soon.append(f"{name} ends {end}")
-    said = [*over, *soon, *([f"not in the rig file: {', '.join(unknown)}"] if unknown else [])]
-    if not said:
-        said = [f"in date until {min(end for end in ends.values() if end is not None)}"]
-    return Check("calibration", False if over else None if unknown else True, "; ".join(said))
+    texts = [*over, *soon, *([f"not in the rig file: {', '.join(unknown)}"] if unknown else [])]
+    if not texts:
+        texts = [f"in date until {min(end for end in ends.values() if end is not None)}"]
+    return Check("calibration", False if over else None if unknown else True, "; ".join(texts))

@@ -1,4 +1,4 @@
-"""How far a run is, as clients are told: its steps with estimated and measured durations."""
+"""A run's steps with estimated and measured durations, for clients."""
 
 from __future__ import annotations
 
@@ -11,16 +11,19 @@ from tester.machine.time_left import STANDSTILL, Earlier, PartTime, TimeLeft
 from tester.service.state import PlanStep, PlanView, StepState
 
 LISTED = 400
-"""Steps that a plan message lists at most, around the present one: a plan may have 100,000."""
+"""Most steps in a plan message, around the present one: a plan may have 100,000."""
 BEFORE = 100
-"""... of which this many lie before the present one."""
+"""Most of them before the present one."""
 
 
 class PlanTrack(TimeLeft):
-    """A run's steps beside the clock, to be shown. Times are rig seconds."""
+    """A run's steps beside the clock, for display. Times are rig seconds."""
 
     def __init__(self, name: str, parts: Sequence[PartTime], kind: ServedKind, earlier: Earlier | None = None) -> None:
-        """Begin before the first step. ``name``: the plan's; ``kind``: the rig's, which has the words for a step."""
+        """Begin before the first step.
+
+        ``name``: the plan's; ``kind``: the rig's, which has the words for a step.
+        """
         super().__init__(parts, earlier)
         self.name = name
         self.kind = kind
@@ -32,10 +35,10 @@ class PlanTrack(TimeLeft):
         behind = min(first + LISTED, len(self.steps))
         listed = tuple(
             PlanStep(
-                i + 1, STANDSTILL if one is None else one.kind, self._title(one), self._state(i), self.estimated[i],
+                i + 1, STANDSTILL if step is None else step.kind, self._title(step), self._state(i), self.estimated[i],
                 self.measured.get(i), float(self.ahead[i]),
             )
-            for i, one in enumerate(self.steps[first:behind], first)
+            for i, step in enumerate(self.steps[first:behind], first)
         )  # fmt: skip
         beyond_s = float(self.ahead[behind:].sum())
         return PlanView(self.name, len(self.steps), first + 1, listed, sum(self.estimated), beyond_s)

@@ -23,12 +23,12 @@ SNAPSHOT_S = 0.25
 TREND_ROWS = 2400
 """Ten minutes of snapshots."""
 EVENTS_KEPT = 2000
-"""Events that a client which comes back can still be given."""
+"""Number of events kept for clients that reconnect."""
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happened. ``seq`` counts from 1 in one life of the service, without gaps.
+    """An event. ``seq`` counts from 1 in one life of the service, without gaps.
 
     ``severity``: debug, info, warning, alarm, trip. ``kind``: mode, trip, alarm, step, condition, repeat, prompt,
     command, run, tare, wear, emergency, heat, rest, control ...
@@ -46,12 +46,12 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """The first message: everything as it is now.
+    """The first message: the present state of everything.
 
-    ``service`` identifies this life of the service: ``since`` counts only with the same one. ``events``: those after
-    ``since``, or the last 200; ``complete`` is False where some of them are no longer kept. ``client``: the number
-    this client has here; ``control``: it is the controller. ``machine``: the tables of the kind of rig; ``trend``: rows
-    of its columns, oldest first; None is a value nobody had.
+    ``service`` identifies this life of the service: ``since`` counts only within it. ``events``: those after ``since``,
+    or the last 200; ``complete`` is False when some of them are no longer kept. ``client``: this client's number;
+    ``control``: it is the controller. ``machine``: the tables of the kind of rig; ``trend``: rows of its columns,
+    oldest first; None is a missing value.
     """
 
     version: int
@@ -70,7 +70,7 @@ class Hello:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """The state, four times a second; a slow client gets the newest and misses those in between.
+    """The state, four times a second; a slow client gets only the newest.
 
     ``row``: this moment's row of the trend.
     """
@@ -82,7 +82,7 @@ class Snapshot:
 
 @dataclass(frozen=True, slots=True)
 class MachineMessage:
-    """The tables of another kind of rig: a run is on it. The trend begins anew."""
+    """The tables of another kind of rig, which the run uses. The trend starts again."""
 
     machine: MachineView
     type: Literal["machine"] = "machine"
@@ -90,7 +90,7 @@ class MachineMessage:
 
 @dataclass(frozen=True, slots=True)
 class PlanMessage:
-    """The plan, at the start of a run and whenever a step begins. ``plan`` None: there is none any more."""
+    """The plan, at the start of a run and whenever a step begins. ``plan`` None: there is no plan."""
 
     plan: PlanView | None
     type: Literal["plan"] = "plan"
@@ -98,7 +98,7 @@ class PlanMessage:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One frame on a bus: rig seconds, bus, direction (sent or received by the PC), CAN id or unit, bytes in hex."""
+    """One frame on a bus: rig seconds, bus, direction (sent by the PC or not), CAN id or unit, bytes in hex."""
 
     t_s: float
     bus: str
@@ -109,7 +109,7 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Frames:
-    """Frames since the last such message. ``dropped``: how many there were besides; a log for people, not a record."""
+    """Frames since the last such message. ``dropped``: how many more there were; a log for people, not a record."""
 
     frames: tuple[Frame, ...]
     dropped: int
@@ -118,7 +118,7 @@ class Frames:
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """A command was taken; ``result`` is what it returns (docs/protocol.md, per command)."""
+    """The service has accepted a command; ``result`` is its result (docs/protocol.md, per command)."""
 
     id: int
     result: JsonValue = None
@@ -127,7 +127,7 @@ class Accepted:
 
 @dataclass(frozen=True, slots=True)
 class Refused:
-    """A command was not taken, and why. Nothing has changed."""
+    """The service has refused a command, with the reason. Nothing has changed."""
 
     id: int
     reason: str
@@ -136,7 +136,7 @@ class Refused:
 
 @dataclass(frozen=True, slots=True)
 class Goodbye:
-    """The last message: why the service closes the connection. ``ended``: it was told to end, and has left in order."""
+    """The last message: why the service closes the connection. ``ended``: the service ended on request, in order."""
 
     reason: str
     ended: bool = False
@@ -155,7 +155,7 @@ CLIENT: TypeAdapter[ClientMessage] = TypeAdapter(ClientMessage)
 
 
 class BadMessageError(Exception):
-    """A message that is none of this protocol; the text says what and where."""
+    """A message does not follow this protocol; the text gives place and reason."""
 
 
 def to_server(text: str | bytes) -> Join | Command:
@@ -167,9 +167,9 @@ def to_server(text: str | bytes) -> Join | Command:
 
 
 def stop_in(text: str | bytes) -> Command | None:
-    """Return the STOP that a message means, of whatever version and with whatever else in it; None: it means none.
+    """Return the STOP in a message of any version, whatever else it holds; None without one.
 
-    STOP is never refused: what else is wrong with the message is no reason to let a machine run on.
+    STOP is never refused: another error in the message is no reason to let a machine run on.
     """
     match _json(text):
         case {"action": {"command": "stop", **options}, **rest}:
@@ -180,9 +180,9 @@ def stop_in(text: str | bytes) -> Command | None:
 
 
 def foreign_join(text: str | bytes) -> str:
-    """Return why a client of another version is refused, and what to do; "" for a message that is no such join.
+    """Return why a client of another version is refused, and what to do; "" for any other message.
 
-    A join that names no version is one of version 1.
+    A join without a version is one of version 1.
     """
     match _json(text):
         case {"type": "join", **rest} if (version := rest.get("version", 1)) != VERSION:
@@ -190,7 +190,7 @@ def foreign_join(text: str | bytes) -> str:
             return (
                 f"this client speaks version {version!r:.20} of the protocol, the service version {VERSION}: install "
                 f"the same version of friction-tester at both ends (here the {'service' if newer else 'client'} is the "
-                "older one; docs/protocol.md says what has changed). STOP is taken all the same"
+                "older one; docs/protocol.md lists the changes). STOP works all the same"
             )
         case _:
             return ""
@@ -198,14 +198,14 @@ def foreign_join(text: str | bytes) -> str:
 
 def _json(text: str | bytes) -> JsonValue:
     try:
-        found: JsonValue = from_json(text)
+        value: JsonValue = from_json(text)
     except ValueError:
         return None
-    return found
+    return value
 
 
 def from_server(text: str | bytes) -> ServerMessage:
-    """Return a message of the service; keys that are not known are ignored. Raises BadMessageError."""
+    """Return a message of the service, ignoring unknown keys. Raises BadMessageError."""
     try:
         return SERVER.validate_json(text)
     except ValidationError as error:
@@ -213,14 +213,14 @@ def from_server(text: str | bytes) -> ServerMessage:
 
 
 def encode(message: Join | Command | ServerMessage) -> bytes:
-    """Return a message as JSON in UTF-8; what is not a finite number becomes null."""
+    """Return a message as JSON in UTF-8; numbers that are not finite become null."""
     if isinstance(message, Join | Command):
         return CLIENT.dump_json(message)
     return SERVER.dump_json(message)
 
 
 def schema() -> dict[str, JsonValue]:
-    """Return the JSON Schema of both directions, as docs/protocol.schema.json holds it."""
+    """Return the JSON Schema of both directions, the content of docs/protocol.schema.json."""
     ways, shared = TypeAdapter.json_schemas([("server", "validation", SERVER), ("client", "validation", CLIENT)])
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -233,8 +233,8 @@ def schema() -> dict[str, JsonValue]:
 
 
 def _words(error: ValidationError) -> str:
-    """Say what is wrong with a message, where, in one line; what was sent is not repeated."""
+    """Return the first error of a message and its place in one line, without repeating the message."""
     first = error.errors(include_url=False, include_input=False, include_context=False)[0]
     at = ".".join(str(piece) for piece in first["loc"])
-    said = str(first["msg"]).removeprefix("Value error, ")
-    return f"{at}: {said}" if at else said
+    reason = str(first["msg"]).removeprefix("Value error, ")
+    return f"{at}: {reason}" if at else reason

@@ -1,6 +1,6 @@
-"""Questions that take computing (check, plan, lists) are answered by a short-lived process each, beside the scan.
+"""Answers questions that take computing (check, plan, lists) with a short-lived process each, beside the scan.
 
-That process is the command of the same name with ``--json``: one answer, wherever one asks.
+That process is the command of the same name with ``--json``, so a question has one answer everywhere.
 """
 
 from __future__ import annotations
@@ -23,23 +23,25 @@ from tester.base.exits import EXIT_INVALID
 from tester.service.commands import CheckRecipe, ListRecipes, ListRuns, Query, ShowPlan
 
 AT_ONCE = 2
-"""More questions wait their turn."""
+"""Questions answered at the same time; more wait."""
 WITHIN_S = 120.0
-"""A plan of 100,000 conditions takes some seconds; what takes longer is given up, s [A]."""
+"""Time limit of an answer, s [A]: a plan of 100,000 conditions takes some seconds."""
 MOST = 32_000_000
 """Longest answer, bytes."""
 NICE = 10
-"""The scan comes first."""
+"""Lower priority: the scan comes first."""
 
 
 class QueryError(Exception):
-    """A question that has no answer; the message says why."""
+    """A question without an answer; the message gives the reason."""
 
 
 @dataclass(slots=True)
 class Queries:
-    """Answers questions. ``runs``: folder of the stored runs; ``rig``: the rig file used where none is named,
-    with the risks that its service accepted."""
+    """Answers questions.
+
+    ``runs``: folder of the stored runs; ``rig``: the default rig file, with the risks that its service accepted.
+    """
 
     runs: Path
     rig: str = "sim"
@@ -48,7 +50,7 @@ class Queries:
     _tasks: set[asyncio.Task[None]] = field(default_factory=set[asyncio.Task[None]])
 
     def start(self, work: Coroutine[None, None, None]) -> None:
-        """Work on something without waiting for it."""
+        """Start a task without waiting for it."""
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
@@ -78,18 +80,18 @@ class Queries:
 
 def _recipes() -> JsonValue:
     """Return the shipped recipes and the files in ``recipes`` below the service's folder."""
-    found: list[JsonValue] = []
+    entries: list[JsonValue] = []
     for name in recipes.names():
-        found.append({"name": name, "path": name, "shipped": True})
+        entries.append({"name": name, "path": name, "shipped": True})
     here = Path("recipes")
     if here.is_dir() and here.resolve() != recipes.FOLDER.resolve():
         for file in sorted(here.glob("*.yaml")):
-            found.append({"name": file.stem, "path": str(file), "shipped": False})
-    return found
+            entries.append({"name": file.stem, "path": str(file), "shipped": False})
+    return entries
 
 
 async def _ask(arguments: list[str]) -> JsonValue:
-    """Return what `tester ARGUMENTS` prints as JSON; raises QueryError with what it says is wrong."""
+    """Return the JSON output of `tester ARGUMENTS`; raises QueryError with its error message."""
     process = await asyncio.create_subprocess_exec(
         *tester_command(*arguments),
         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -103,7 +105,7 @@ async def _ask(arguments: list[str]) -> JsonValue:
     except TimeoutError:
         raise QueryError(f"no answer within {WITHIN_S:g} s") from None
     finally:
-        if process.returncode is None:  # given up, or nobody is left to be told
+        if process.returncode is None:  # timed out, or the client is gone
             with suppress(ProcessLookupError):
                 process.kill()
             await process.wait()

@@ -1,4 +1,4 @@
-"""A run in the service: the session that `tester run` carries out too, with clients where that has a terminal."""
+"""A run in the service: the same session as `tester run`, with clients in place of a terminal."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from tester.store.space import expected_bytes
 Got = TypeVar("Got")
 
 RECENT_S = 1.0
-"""Lateness is told over one to two of these, s: longer than the period of states, so that none is missed."""
+"""Lateness covers one to two of these periods, s: longer than the period of states, so that no late scan is missed."""
 
 
 class ServiceSession(Session):
-    """A session whose runs the desk looks after. ``begun_``: called once, with what is known of the run."""
+    """A session with its runs attached to the desk. ``begun`` is called once, with the view of the run."""
 
     def __init__(
         self,
@@ -43,8 +43,10 @@ class ServiceSession(Session):
         begun: Callable[[RunView], None],
         meanwhile: Callable[[], str],
     ) -> None:
-        """``on_signal``: called when the process is asked to end; ``meanwhile``: while the recipe is planned, it
-        returns why it is to be given up, or ""."""
+        """``on_signal`` is called when the process is asked to end, ``meanwhile`` during planning.
+
+        ``meanwhile`` returns why planning must stop, or "".
+        """
         super().__init__(options, screen)
         self.desk = screen.desk
         self.view = screen.view
@@ -56,14 +58,14 @@ class ServiceSession(Session):
         self._punctual = Punctuality()
 
     def prepare(self) -> Prepared:
-        """Have the recipe planned by a process of its own, and go on looking after clients; STOP ends it."""
+        """Plan the recipe in a process of its own while serving clients; STOP ends it."""
         o = self.options
-        found = planned(Task(o.recipe, o.rig, o.overrides, o.accept_risk), self._meanwhile)
-        self._expected = found.expected
-        return found
+        plan = planned(Task(o.recipe, o.rig, o.overrides, o.accept_risk), self._meanwhile)
+        self._expected = plan.expected
+        return plan
 
     def aside(self, work: Callable[[], Got]) -> Got:
-        """Do it by a thread, and go on looking after clients; what STOP has given up begins nothing afterwards."""
+        """Run ``work`` in a thread while serving clients. After a STOP, nothing begins."""
         given_up: list[str] = []
 
         def look() -> None:
@@ -77,7 +79,7 @@ class ServiceSession(Session):
         return got
 
     def begun(self, run: Run) -> None:
-        """Look after a part's run; the first one begins the whole."""
+        """Attach a part's run to the desk; the first part begins the whole run."""
         super().begun(run)
         track = self.track
         assert isinstance(track, PlanTrack)
@@ -91,28 +93,28 @@ class ServiceSession(Session):
         run.stays_latched = True
         self.desk.attach(run, track, self.view)
         self.desk.stop_rest = self._stop_rest
-        self.desk.stop_first()  # one that came while it was prepared
+        self.desk.stop_first()  # a STOP that arrived during preparation
         if first:
             self._tell_begun(self.view)
 
     def rested(self) -> None:
-        """STOP does not wait for the record of this part, nor for the next part to connect."""
+        """Let STOP be confirmed at once: it need not wait for this part's record or the next part's connection."""
         self.desk.gateway.lane.end_ticking()
 
     def poll(self, now_s: float, run: Run) -> None:
-        """Let the desk look, and clients speak."""
+        """Update the desk, and let it serve clients."""
         self.desk.tick = self._punctual.look(self.statistics, clock.monotonic())
         self.desk.specimen(run)
         self.desk.poll(now_s)
 
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
-        """Estimate the plan before anything moves, then go on as ever."""
+        """Estimate the plan before anything moves, then record as usual."""
         expected = self._expected = self._expected or recipe_part(work.rig).estimate(work.plan, work.rig)
         self.desk.needed = round(expected_bytes(work.plan, expected))
         return super()._record(job, work, begin)
 
     def tracked(self, work: Work) -> PlanTrack:
-        """Return what counts the steps of a run, with the words that clients see."""
+        """Return the counter of a run's steps, with the words that clients see."""
         parts = parts_time(work, self._expected)
         return PlanTrack(work.plan.name, parts, served_kind(work.rig), earlier_of(work.point))
 
@@ -123,7 +125,7 @@ class ServiceSession(Session):
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         self._tell_signal()
         if self.run_ is not None:
-            self.run_.stays_latched = False  # nobody will be there to acknowledge
+            self.run_.stays_latched = False  # no client will be there to acknowledge
         super()._on_signal(number, _frame)
 
 
@@ -138,7 +140,7 @@ class Punctuality:
     """When the present second began (tester.base.clock.monotonic)."""
 
     def look(self, statistics: TickStatistics, wall_s: float) -> TickView:
-        """Take what the ticker has noted since the last look, and begin its worst anew."""
+        """Return the present view from the ticker's statistics, and reset their worst lateness."""
         if wall_s - self._turn_s >= RECENT_S:
             self._before_s = self._now_s if wall_s - self._turn_s < 2.0 * RECENT_S else 0.0
             self._now_s, self._turn_s = 0.0, wall_s
@@ -150,12 +152,12 @@ class Punctuality:
 
 
 class RunScreen:
-    """Tells the desk what a session says."""
+    """Forwards a session's output to the desk."""
 
     can_ask = True
 
     def __init__(self, desk: Desk, view: RunView, *, answer_yes: bool) -> None:
-        """``view``: what is known of the run before it begins."""
+        """``view``: the view of the run before it begins."""
         self.desk = desk
         self.view = view
         self.answer_yes = answer_yes
@@ -164,30 +166,30 @@ class RunScreen:
         self.messages: list[str] = []
 
     def begin(self, name: str) -> None:
-        """Take the recipe's name."""
+        """Store the recipe's name."""
         self.name = name
 
     def show(self, now_s: float, run: RunProgress, at: RunPosition) -> None:
-        """Nothing: the desk looks at the run itself."""
+        """Do nothing: the desk reads the run itself."""
 
     def attend(self, prompts: Prompts) -> None:
-        """Nothing: clients answer by command."""
+        """Do nothing: clients answer by command."""
 
     def end(self) -> None:
-        """The last state is shown before the tables are written; nothing ticks from now on."""
+        """Publish the last state before the tables are written; nothing ticks from now on."""
         self.desk.show()
         self.desk.gateway.lane.end_ticking()
 
     def message(self, text: str) -> None:
-        """Tell every client."""
+        """Send every client a message."""
         self.messages.append(text)
         self.desk.tell("message", text)
 
     def emit(self, record: dict[str, object]) -> None:
-        """Take the figures of the end."""
+        """Keep the missing conditions from the record of the end."""
         missing = record.get("missing")
         if record.get("event") == "end" and isinstance(missing, list):
-            self.missing = [str(one) for one in cast("list[object]", missing)]
+            self.missing = [str(name) for name in cast("list[object]", missing)]
 
     def result(self, line: str) -> None:
-        """Nothing: clients know the folder."""
+        """Do nothing: clients know the folder."""

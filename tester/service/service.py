@@ -1,4 +1,4 @@
-"""The service: the process that owns the rig. One thread ticks, and between two ticks it hears and tells clients."""
+"""The service: the process that owns the rig. One thread ticks, and serves clients between two ticks."""
 
 from __future__ import annotations
 
@@ -55,30 +55,30 @@ from tester.store.writer import RunWriter
 Got = TypeVar("Got")
 
 RECIPES = ".recipes"
-"""Folder beside the runs for recipes that came as text, named by their content."""
+"""Folder beside the runs for recipes sent as text; a file's name is the hash of its content."""
 NEWEST_RUNS = 200
-"""So many runs are looked at for one that was cut off, the newest first."""
+"""Number of newest runs searched for interrupted ones."""
 LOOK_EVERY_S = 10.0
-"""While nothing is under way, runs that were cut off are looked at again this often, s."""
+"""While idle, the service checks the interrupted runs this often, s."""
 SILENT_S = 1.0
-"""Manual mode ends when the screen that moves the rig has given no sign of life for so long, s."""
+"""Manual mode ends when its screen gives no sign of life for this long, s."""
 MANUAL_LAPSE = 1.0
-"""A person moves a simulated rig in real time."""
+"""Speed of a simulated rig in manual mode: real time."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
-"""What keeps a run from beginning."""
+"""Errors that prevent a run from beginning."""
 
 
 @dataclass(frozen=True, slots=True)
 class ServiceOptions:
-    """What `tester serve` was told."""
+    """Options of `tester serve`."""
 
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
     runs: Path = Path("runs")
     accept_risk: str = ""
-    """Why safety keys of this rig may be looser than they should be."""
+    """Reason for accepting safety keys of this rig that are looser than they should be."""
     allowed: tuple[str, ...] = ()
-    """Names of the extensions that may be loaded, beside those of ``TESTER_ALLOW``."""
+    """Names of extensions that may be loaded, in addition to those in ``TESTER_ALLOW``."""
 
 
 class Service:
@@ -95,14 +95,14 @@ class Service:
     # -- the loop ---------------------------------------------------------------------------------------------
 
     def serve(self) -> None:
-        """Serve until the process is told to end (TERM, INT), and leave at standstill."""
+        """Serve until the process gets TERM or INT, then bring the rig to a standstill."""
         desk = self.desk
         with Signals(self.end):
-            desk.latch_again()  # before anybody is heard
+            desk.latch_again()  # before the first order
             desk.interrupted = self._aside(lambda: tuple(interrupted_runs(self.options.runs)))
             self._look_back()
             for name in desk.interrupted:
-                desk.tell("run", f"{name} was cut off: `tester resume {name}` goes on with it", "warning")
+                desk.tell("run", f"{name} was cut off: `tester resume {name}` resumes it", "warning")
             while not self.orders.ending:
                 desk.poll(0.0)
                 if self.orders.job is not None:
@@ -118,30 +118,30 @@ class Service:
         desk.show()
 
     def _look_back(self) -> None:
-        """Look at what the runs have left."""
+        """Read what stored runs left on the rig and show about it."""
         runs, rig, kind = self.options.runs, self.rig, self.desk.kind
         self.desk.past = self._aside(lambda: past_of(runs, kind))
         self.desk.history = self._aside(lambda: run_parts(rig).history(runs, rig))
 
     def _look_again(self) -> None:
-        """Forget the runs that are cut off no longer: resumed here, or by a command."""
+        """Drop runs that are no longer interrupted: resumed here, or by a command."""
         self._look_due_s = clock.monotonic() + LOOK_EVERY_S
         runs = self.options.runs
         names = self.desk.interrupted
         self.desk.interrupted = self._aside(lambda: tuple(name for name in names if is_interrupted(runs / name)))
 
     def _aside(self, work: Callable[[], Got]) -> Got:
-        """Look into the store while nothing is under way, and go on hearing clients."""
+        """Read the store in a thread while nothing is under way, and keep serving clients."""
         return aside(work, lambda: self.desk.poll(0.0))
 
     def end(self) -> None:
-        """End as soon as nothing is under way any more."""
+        """End as soon as nothing is under way."""
         self.orders.ending = True
 
     # -- what begins ------------------------------------------------------------------------------------------
 
     def _carry_out(self, order: Order) -> None:
-        """Carry out what an order begins, to its end."""
+        """Carry out an order from its beginning to its end."""
         action = order.action
         self.desk.run = None
         if isinstance(action, Arm):
@@ -178,7 +178,7 @@ class Service:
         self._session(order, options, action.yes, "", lambda session: session.resume(folder, action.reason))
 
     def _spooled(self, action: RunRecipe) -> str:
-        """Write a recipe that came as text where the session can read it, and a resumed run finds it unchanged."""
+        """Write a recipe sent as text to a file, where the session can read it and a resumed run finds it unchanged."""
         if not action.text:
             return ""
         digest = sha256(action.text.encode()).hexdigest()[:16]
@@ -190,7 +190,7 @@ class Service:
     def _session(
         self, order: Order, options: SessionOptions, yes: bool, notes: str, work: Callable[[ServiceSession], int]
     ) -> None:
-        """Carry out a session from its beginning to its tables."""
+        """Run a session from its beginning to its tables."""
         desk = self.desk
         view = RunView("", "", "", "", "", options.operator, options.seed, self.rig.simulated, options.lapse, "",
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
@@ -215,7 +215,7 @@ class Service:
         except REFUSED as error:
             problem = in_words(error)
         if not session.view.name:
-            if self.orders.job is order:  # else STOP has refused it already
+            if self.orders.job is order:  # otherwise STOP has refused it already
                 desk.gateway.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
             desk.detach(None)
             return
@@ -226,7 +226,7 @@ class Service:
         desk.ended(replace(known, outcome=status.value, reason=reason, exit=code, missing=missing), outcome)
 
     def _manual(self, order: Order) -> None:
-        """Connect the rig and let the client that asked move it."""
+        """Connect the rig and let the client that armed it move it."""
         desk, rig, kind = self.desk, self.rig, self.desk.kind
         view = RunView(NAME, "", "", "", "", order.name, None, rig.simulated, 1.0, clock.utc_now(),
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
@@ -249,14 +249,14 @@ class Service:
                     record.finish(Outcome.UNREACHABLE.value, str(error), 0.0)
                     desk.gateway.refuse(order, str(error))
                     return
-                made = kind.by_hand(rig, ports, attendant, record, left, history)
-                run, hand = made.run, made.executor
+                session = kind.by_hand(rig, ports, attendant, record, left, history)
+                run, hand = session.run, session.executor
                 track = PlanTrack(hand.plan.name, [part_time(rig, hand.plan)], kind)
                 track.begin_part(hand.plan)
-                with collector_at_rest():  # already: from here to the first tick nothing takes long
+                with collector_at_rest():  # before the first tick: no long pause from here on
                     desk.attach(run, track, view, hand)
-                    self.orders.lost_control()  # somebody may have taken it since the order
-                    record.event(0.0, kind.machine.specimen, made.mounted)
+                    self.orders.lost_control()  # another client may have taken control since the order
+                    record.event(0.0, kind.machine.specimen, session.mounted)
                     desk.gateway.accept(order)
                     desk.command(f"arm by {order.by}")
                     with closing(ports), left_safe(run):
@@ -268,9 +268,9 @@ class Service:
     def _by_hand(
         self, run: Run, hand: ManualExecutor, world: TickedWorld | None, pace: Pace | None, record: RunWriter
     ) -> float:
-        """Tick manual mode to its end; return the seconds it took."""
+        """Tick manual mode to its end; return its duration, s."""
         gateway = self.desk.gateway
-        gateway.attended()  # whoever armed is there
+        gateway.attended()  # the client that armed counts as present
 
         def poll(now_s: float) -> None:
             hand.expire(now_s)
@@ -279,7 +279,7 @@ class Service:
             if record.failed:
                 run.request_stop(f"manual mode can no longer be recorded: {record.failed}")
             self.desk.poll(now_s)
-            # Only now: signs that came while this process itself was held up have been heard.
+            # After the poll: it reads signs of life that arrived while this process was busy.
             if gateway.silent_s > SILENT_S and not hand.finished:
                 self.desk.tell("mode", f"manual mode ends: no sign of its screen for {SILENT_S:g} s", "warning")
                 hand.disarm()
@@ -290,15 +290,15 @@ class Service:
 
 
 class Signals:
-    """TERM, INT and QUIT end the service, HUP and what would suspend it are ignored, while the block lasts."""
+    """While the block lasts, TERM, INT and QUIT end the service; HUP and suspend signals are ignored."""
 
     def __init__(self, end: Callable[[], None]) -> None:
-        """``end``: what to call."""
+        """``end`` is called on a signal."""
         self._end = end
         self._before: dict[int, signal.Handlers | Callable[[int, FrameType | None], object] | int | None] = {}
 
     def __enter__(self) -> None:
-        """Take over."""
+        """Install the handlers."""
         for number in (int(signal.SIGINT), int(signal.SIGTERM), QUIT):
             if number:
                 self._before[number] = signal.signal(number, self._on_signal)
@@ -307,7 +307,7 @@ class Signals:
                 self._before[number] = signal.signal(number, signal.SIG_IGN)
 
     def __exit__(self, *_: object) -> None:
-        """Give back."""
+        """Restore the earlier handlers."""
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
@@ -316,7 +316,7 @@ class Signals:
 
 
 def interrupted_runs(runs: Path) -> Iterator[str]:
-    """Yield the runs in a folder that were cut off: open, and nobody at work on them."""
+    """Yield the names of interrupted runs in a folder: open, without a process at work on them."""
     folders = sorted(runs.iterdir(), reverse=True)[:NEWEST_RUNS] if runs.is_dir() else []
     for folder in reversed(folders):
         if is_interrupted(folder):
@@ -324,7 +324,7 @@ def interrupted_runs(runs: Path) -> Iterator[str]:
 
 
 def is_interrupted(folder: Path) -> bool:
-    """Return whether a folder holds a run that was cut off."""
+    """Return whether a folder holds an interrupted run."""
     if not (folder / DATABASE).is_file() or under_way(folder) is not None:
         return False
     with suppress(StoreError), RunReader(folder) as reader:

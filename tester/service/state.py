@@ -1,8 +1,8 @@
-"""The state view: everything a screen shows, as plain values. One object goes out four times a second.
+"""The state view: everything a screen shows, as plain values. The service sends one object four times a second.
 
-Units are in the names, or in ``unit`` beside a value. What is unknown is None, never NaN and never an old value:
-``age_s`` and ``quality`` say how far a value can be believed. Texts come from recipes, people and devices: whoever
-shows one takes it as it is, never as markup.
+Names contain the unit, or ``unit`` beside a value does. An unknown value is None, never NaN and never an old value:
+``age_s`` and ``quality`` show how far to trust a value. Texts come from recipes, people and devices: show them as they
+are, never as markup.
 """
 
 from __future__ import annotations
@@ -27,8 +27,9 @@ MODES = (
     "E-STOP",
     "MANUAL",
 )
-"""Values of ``StateView.mode``; a client shows one it does not know as it is. OFFLINE: no rig is connected, a run
-connects it. INTERRUPTED: the same, and the store holds a run that was cut off; shown until somebody acknowledges it."""
+"""Values of ``StateView.mode``; a client shows an unknown mode as it is. OFFLINE: no rig is connected, a run connects
+it. INTERRUPTED: the same, and the store holds an interrupted run; shown until its acknowledgement.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +37,10 @@ class ProgressView:
     """Where the run is. ``share``: of the whole rig time, 0..1, corrected by the durations measured so far.
 
     ``step`` counts through ``PlanView.steps``. ``over`` of the run's ``conditions`` are over, with a value or without,
-    in earlier stretches of a resumed run too. ``left_s``: whole rig seconds of work to the end, None once a trip or a
-    stop has given the run up; the sum of ``step_left_s``, of the present step, and of what the plan's list shows of
-    the later ones. Neither it nor the share moves in a hold. ``finish_utc``: the wall clock then at the run's speed,
-    "" at full speed.
+    in earlier stretches of a resumed run as well. ``left_s``: whole rig seconds of work to the end, None once a trip or
+    a stop has given the run up; the sum of ``step_left_s``, for the present step, and of the later steps in the plan's
+    list. Neither it nor the share moves in a hold. ``finish_utc``: the wall clock then at the run's speed, "" at full
+    speed.
     """
 
     step: int = 0
@@ -61,15 +62,15 @@ class ProgressView:
 
 
 AlarmState = Literal["active", "acknowledged", "returned"]
-"""Cause there and not acknowledged; cause there, acknowledged; cause gone, not acknowledged (ISA-18.2)."""
+"""Cause present, not acknowledged; cause present, acknowledged; cause gone, not acknowledged (ISA-18.2)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
     """One alarm. ``priority`` 1 (trip) to 3. ``first_up``: the first of those that stopped the run.
 
-    ``value``, ``limit``: what was seen and what is allowed, None where it is no number. ``consequence`` says
-    what happens next, ``command`` which command answers it ("ack", "release", "").
+    ``value``, ``limit``: the measured and the allowed value, None when not a number. ``consequence``: the next effect;
+    ``command``: the command that answers the alarm ("ack", "release", "").
     """
 
     number: int
@@ -89,7 +90,7 @@ class Alarm:
 
 @dataclass(frozen=True, slots=True)
 class PromptView:
-    """A question that waits for a person; answered with the command ``answer``."""
+    """A question that waits for a person; the command ``answer`` answers it."""
 
     number: int
     text: str
@@ -99,7 +100,7 @@ class PromptView:
 
 @dataclass(frozen=True, slots=True)
 class DeviceView:
-    """One device on a bus. ``kind``: drive, or what a device on a line is. ``state``: the drive's CiA 402 state.
+    """One device on a bus. ``kind``: drive, or the type of a device on a line. ``state``: the drive's CiA 402 state.
 
     ``age_s``: of its newest data. Errors are counted since the run began: time-outs, CRC, exceptions, emergencies.
     """
@@ -119,7 +120,7 @@ class DeviceView:
 
 @dataclass(frozen=True, slots=True)
 class BusView:
-    """One bus: ``load_percent`` None where nobody can know it (a serial line of a real rig)."""
+    """One bus: ``load_percent`` is None when it cannot be known (a serial line of a real rig)."""
 
     name: str
     kind: Literal["can", "modbus"]
@@ -132,7 +133,7 @@ class BusView:
 class DiskView:
     """Space where runs are stored, in bytes. ``needed``: the estimate of the run under way, 0 without one.
 
-    ``free`` is None where the disk does not say.
+    ``free`` is None when the disk does not report it.
     """
 
     free: int | None
@@ -142,8 +143,8 @@ class DiskView:
 
 @dataclass(frozen=True, slots=True)
 class RunView:
-    """The run under way, or the last one. ``outcome``: running, done, incomplete, stopped, tripped, failed,
-    rig unreachable. ``exit``: the exit code that `tester run` would give, None while it runs.
+    """The run under way, or the last one. ``outcome``: running, done, incomplete, stopped, tripped, failed, rig
+    unreachable. ``exit``: the exit code of the same `tester run`, None while it runs.
 
     ``speed``: rig seconds per second, None = as fast as it goes. ``missing``: conditions without a value, in words.
     """
@@ -187,7 +188,7 @@ class TickView:
 
 @dataclass(frozen=True, slots=True)
 class ClientsView:
-    """Who is connected. ``controller``: the name of the client that controls, "" if none; ``controller_id`` its id."""
+    """The connected clients. ``controller``: name of the client in control, "" if none; ``controller_id``: its id."""
 
     controller: str
     controller_id: int
@@ -198,9 +199,9 @@ class ClientsView:
 class StateView:
     """The whole state. ``t_s``: rig seconds of the run; ``wall_s``: seconds since the service started.
 
-    ``mode_text`` says why the rig is in its mode. ``interrupted``: runs in the store that were cut off and can be
-    resumed, by name. ``preflight``: what a person should look at before starting. ``risk``: the rig's safety keys that
-    are looser than they should be, in words; "" where none is.
+    ``mode_text`` is the reason for the mode. ``interrupted``: names of the stored runs that can be resumed.
+    ``preflight``: the list to check before starting. ``risk``: the rig's safety keys that are looser than they should
+    be, in words; "" without any.
     """
 
     mode: str
@@ -231,7 +232,7 @@ class StateView:
     risk: str = ""
 
     def value(self, key: str) -> Value | None:
-        """Return the value with this key, None where the rig has none."""
+        """Return the value with this key, None if the rig has none."""
         return next((value for value in self.values if value.key == key), None)
 
 
@@ -240,10 +241,10 @@ StepState = Literal["done", "now", "later"]
 
 @dataclass(frozen=True, slots=True)
 class PlanStep:
-    """One step: its number from 1, seconds as estimated before the run, once it is done the measured ones.
+    """One step: its number from 1, seconds as estimated before the run, and the measured ones once it is done.
 
-    ``expected_s``: what it is expected to take by what the run has shown so far, whole seconds. The kind
-    ``standstill`` is no step of the plan: the way to standstill behind each part.
+    ``expected_s``: its expected duration from the run so far, whole seconds. The kind ``standstill`` is no step of the
+    plan: it is the way to standstill after each part.
     """
 
     number: int
@@ -259,7 +260,7 @@ class PlanStep:
 class PlanView:
     """The steps around the present one. ``first``: number of the first listed; ``total``: how many there are.
 
-    ``beyond_s``: what the steps behind the last listed are expected to take, whole seconds.
+    ``beyond_s``: expected duration of the steps after the last listed, whole seconds.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The desk between rig and clients: what is known goes out, what clients want comes in, between two ticks."""
+"""The desk between rig and clients: between two ticks it sends the state and carries out orders."""
 
 from __future__ import annotations
 
@@ -29,63 +29,66 @@ from tester.store.schema import StoreError
 from tester.store.space import MARGIN, FreeRoom
 
 UNWATCHED_S = 1.0
-"""Period of states while nobody is connected, s: the gateway's trend goes on, at a rate that costs nothing."""
+"""Period of states without any client, s: the gateway's trend continues at a rate that costs nothing."""
 SOONEST_S = 0.05
-"""What a client has done is not shown sooner than this after what was shown last, s: nobody makes states by talking."""
+"""Shortest time between two states, s: clients that send many commands cannot raise the rate."""
 DISK_EVERY_S = 10.0
 DISK_FIRST_S = 1.0
-"""The first answer about the disk is waited for so long: the service is only beginning, s."""
+"""How long the starting service waits for the first answer about the disk, s."""
 LOW_BYTES = 500_000_000
-"""Less than this is low whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
+"""Less than this counts as low, whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
 NOTIFIED = frozenset({"trip"})
-"""Kinds of events of which the notify hook is told; hold, prompt, finished, disk come from elsewhere."""
+"""Kinds of events that run the notify hook; hold, prompt, finished and disk come from elsewhere."""
 
 
 def nobody_obeys(order: Order) -> None:
-    """Leave an order undone: nobody has taken the desk yet."""
+    """Default handler: ignore an order."""
 
 
 def nothing_stops(name: str, fast: bool) -> None:
-    """Let STOP pass: nobody has taken the desk yet."""
+    """Default handler: ignore STOP."""
 
 
-def nobody_minds() -> None:
-    """Do nothing about a change of control."""
+def ignore_control_change() -> None:
+    """Default handler: ignore a change of controller."""
 
 
 def nothing_rests(fast: bool) -> None:
-    """Do nothing: the run is all there is."""
+    """Default handler: no later part of the run needs stopping."""
 
 
 @dataclass(slots=True)
 class Desk:
-    """What is known now. ``obey`` is called with every order, ``lost_control`` when another client controls; ``watch``
-    is the run under way."""
+    """The present state of rig and run. ``obey`` takes every order; ``lost_control`` is called when the controller
+    changes.
+
+    ``watch`` looks at the run under way.
+    """
 
     gateway: GatewayLink
     rig: Rig
     runs: Path
     obey: Callable[[Order], None] = field(default=nobody_obeys)
     stop: Callable[[str, bool], None] = field(default=nothing_stops)
-    """Called with who wants STOP, and whether a fast one."""
-    lost_control: Callable[[], None] = field(default=nobody_minds)
+    """Called on STOP with the client's name and whether the stop is fast."""
+    lost_control: Callable[[], None] = field(default=ignore_control_change)
     stop_rest: Callable[[bool], None] = field(default=nothing_rests)
-    """Called with STOP (fast or not) for what the run under way has not begun yet."""
+    """Called on STOP (fast or not) to stop the parts of the run that have not begun."""
     watch: RunWatch | None = None
     hand: ManualExecutor | None = None
     run: RunView | None = None
     tick: TickView = field(default_factory=lambda: TickView(0.0, 0.0, 0))
     latched: str = ""
-    """Why nothing may start before somebody has acknowledged."""
+    """Why nothing may start before an acknowledgement."""
     tripped: str = ""
-    """Name of the alarm of that trip."""
+    """Name of that trip's alarm."""
     interrupted: tuple[str, ...] = ()
     past: Past | None = None
-    """What the newest run in the store left; looked at while no run ticks."""
+    """The specimen and outcome that the newest stored run left; read while no run ticks."""
     history: History | None = None
-    """What the runs make known of the rig; looked at then, too."""
+    """What stored runs show about the rig; read at the same time as ``past``."""
     needed: int = 0
-    """Bytes that the run is expected to take."""
+    """Bytes that the run will probably take."""
     now_s: float = 0.0
     """Rig time of the run."""
     _due_s: float = float("-inf")
@@ -94,7 +97,7 @@ class Desk:
     _mode_since_s: float = 0.0
     _asked: int = 0
     _revision: int = 0
-    """Of the list of steps that clients have."""
+    """Revision of the list of steps that clients have."""
     _controller: int = 0
     _low: bool = False
     _disk_due_s: float = float("-inf")
@@ -103,11 +106,11 @@ class Desk:
     _alone: str = ""
     _risk: str = ""
     kind: ServedKind = field(init=False)
-    """Of the service's own rig."""
+    """Kind of the service's own rig."""
     alarms: AlarmList = field(init=False)
 
     def __post_init__(self) -> None:
-        """Begin with no alarm."""
+        """Begin without alarms."""
         self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
         self.kind = served_kind(self.rig)
         self.gateway.machine(self.kind.machine)
@@ -121,7 +124,7 @@ class Desk:
     # -- runs -------------------------------------------------------------------------------------------------
 
     def attach(self, run: Run, track: PlanTrack, view: RunView, hand: ManualExecutor | None = None) -> None:
-        """Look after a run from now on."""
+        """Start watching a run."""
         kind = served_kind(run.engine.ctx.rig)
         self.gateway.machine(kind.machine)
         self.watch, self.hand, self.run = RunWatch(run, track, kind), hand, view
@@ -136,7 +139,7 @@ class Desk:
             self._show_steps(self.watch)
 
     def specimen(self, run: Run) -> None:
-        """Note which compound is on the rig."""
+        """Record which compound is on the rig."""
         watch, view = self.watch, self.run
         number, compound = watch.panel.mounted() if watch is not None else (0, "")
         if view is not None and number and view.compound != compound:
@@ -144,7 +147,7 @@ class Desk:
             self.run = replace(view, compound=compound, note=note)
 
     def detach(self, view: RunView | None) -> None:
-        """The run is over."""
+        """Stop watching the run; ``view`` is its last view."""
         self.gateway.lane.end_ticking()
         if self.watch is not None:
             self.watch.run.engine.ctx.journal.heard = None
@@ -157,7 +160,7 @@ class Desk:
         self._due_s = float("-inf")
 
     def ended(self, view: RunView, outcome: Outcome) -> None:
-        """The run is over: tell how, and latch after a trip."""
+        """Report how the run ended, and latch after a trip."""
         text = f"{view.name}: {view.outcome}" + (f": {view.reason}" if view.reason else "")
         self.run = view
         self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
@@ -168,24 +171,24 @@ class Desk:
         self.detach(view)
 
     def _latch(self, reason: str, watch: RunWatch) -> None:
-        """Let nothing begin before somebody has acknowledged."""
+        """Block every start until an acknowledgement."""
         watch.watch_trip(self.alarms, self.now_s)
-        if not watch.tripped and not watch.latched:  # the wire is gone: control has had nothing to decide
+        if not watch.tripped and not watch.latched:  # the wire is gone, so control never tripped
             watch.tripped = "rig lost"
             self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
         self.latched, self.tripped = reason, watch.tripped
 
     def latch_again(self) -> None:
-        """Latch a hardware rig after a restart, where a trip on it has not been acknowledged."""
-        found = open_trips(self.runs, self.rig)
-        if found:
-            first = found[0].trip
-            self.latched, self.tripped = f"{found[0]}; not acknowledged", first.interlock
+        """Latch a hardware rig after a restart if the store holds an unacknowledged trip."""
+        trips = open_trips(self.runs, self.rig)
+        if trips:
+            first = trips[0].trip
+            self.latched, self.tripped = f"{trips[0]}; not acknowledged", first.interlock
             consequence = "nothing begins before it is acknowledged"
             self.alarms.raise_(Cause(first.interlock, 1, f"{first.text}; not acknowledged", consequence), self.now_s)
 
     def unlatch(self, by: str) -> None:
-        """Take an acknowledgement: the next run may begin. It goes on record with the trips that it is for."""
+        """Take an acknowledgement: the next run may begin. It is recorded with the trips it covers."""
         if self.latched:
             self.tell("mode", f"acknowledged by {by}")
             self.alarms.clear(self.tripped)
@@ -196,7 +199,7 @@ class Desk:
         self.latched, self.tripped, self.interrupted = "", "", ()
 
     def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:
-        """Pass on what the run records."""
+        """Forward what the run records to the clients."""
         if kind == "emergency" and self.watch is not None:
             self.watch.buses.count_emergency(text)
         self.tell(kind, text, severity, t_s)
@@ -204,19 +207,19 @@ class Desk:
             self.notify(kind, text)
 
     def tell(self, kind: str, text: str, severity: str = "info", t_s: float | None = None) -> None:
-        """Tell every client."""
+        """Send every client an event."""
         self.gateway.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
 
     def command(self, text: str, severity: str = "info", kind: str = "command") -> None:
-        """Tell what a client has commanded, and by whom; while a run is under way, in its record too."""
+        """Report a client's command with its sender; while a run is under way, record it as well."""
         if self.watch is None:
             self.tell(kind, text, severity)
         else:
             ctx = self.watch.run.engine.ctx
-            ctx.journal.event(ctx.now, kind, text, severity)  # which tells it
+            ctx.journal.event(ctx.now, kind, text, severity)  # the journal calls ``heard``, which sends it
 
     def notify(self, event: str, text: str) -> None:
-        """Have the user's hook run."""
+        """Run the user's hook."""
         run = self.run
         self.gateway.notify(event, text, run.name if run else "", run.folder if run else "")
 
@@ -226,13 +229,13 @@ class Desk:
     # -- between two ticks ------------------------------------------------------------------------------------
 
     def poll(self, now_s: float) -> None:
-        """Hear what clients want, and show the state when its time has come. ``now_s``: rig time."""
+        """Carry out clients' orders, and publish the state when it is due. ``now_s``: rig time."""
         self.now_s = now_s
         self.stop_first()
-        for heard in self.gateway.hear():
-            if isinstance(heard, Order):
-                self.obey(heard)
-            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # what has changed is seen soon
+        for message in self.gateway.hear():
+            if isinstance(message, Order):
+                self.obey(message)
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # show the change soon
         self._notice_control()
         wall_s = clock.monotonic()
         if wall_s >= self._due_s:
@@ -243,14 +246,14 @@ class Desk:
             self.show()
 
     def stop_first(self) -> None:
-        """Carry out what came through STOP's own lane; the rest waits."""
+        """Carry out STOPs from their own lane before everything else."""
         for wish in self.gateway.lane.taken():
             self.stop(wish.name, wish.fast)
             self.gateway.lane.answer(wish)
             self._due_s = min(self._due_s, self._shown_s + SOONEST_S)
 
     def wait(self) -> None:
-        """Wait, while no run ticks, until there is something to do."""
+        """Wait, while no run ticks, until a message arrives or a state is due."""
         self.gateway.wait(max(self._due_s - clock.monotonic(), 0.0))
 
     def _notice_control(self) -> None:
@@ -259,11 +262,11 @@ class Desk:
             return
         self._controller = number
         who = with_peer(self.gateway.presence.controller, self.gateway.presence.peer)
-        self.command(f"{who} has control" if number else "nobody has control", kind="control")
+        self.command(f"{who} has control" if number else "no client has control", kind="control")
         self.lost_control()
 
     def show(self) -> None:
-        """Tell the state."""
+        """Publish the state."""
         watch, now = self.watch, self.now_s
         if watch is not None:
             self._watch_frames(watch)
@@ -277,7 +280,7 @@ class Desk:
         self._notice_prompt(view)
 
     def _show_steps(self, watch: RunWatch) -> None:
-        """Tell the list of steps where it has changed, before the state that goes with it."""
+        """Send the list of steps if it has changed, before the state that refers to it."""
         if self.hand is None and watch.track.revision != self._revision:
             self._revision = watch.track.revision
             self.gateway.plan(watch.track.view())
@@ -306,8 +309,8 @@ class Desk:
         known = known_checks(
             self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now(), self.history
         )
-        own = watch.preflight() if watch is not None else ()
-        said = {check.name for check in own}
+        from_rig = watch.preflight() if watch is not None else ()
+        names = {check.name for check in from_rig}
         return StateView(
             mode=mode,
             mode_text=text,
@@ -331,13 +334,13 @@ class Desk:
             tick=self._tick_view(),
             clients=gateway.clients,
             interrupted=self.interrupted,
-            preflight=(*(check for check in known if check.name not in said), *own),
+            preflight=(*(check for check in known if check.name not in names), *from_rig),
             alone=watch.alone if watch is not None else self._alone,
             risk=watch.risk if watch is not None else self._risk,
         )
 
     def _situation(self) -> tuple[str, str, float]:
-        """Return mode, why, and for how long; tell the hook of a hold."""
+        """Return mode, reason, and seconds in this mode; run the hook when a hold begins."""
         if self.watch is not None:
             mode, text, since_s = self.watch.mode
             if self.hand is not None and mode == "RUN":
@@ -371,7 +374,7 @@ class Desk:
     def _disk_view(self) -> DiskView:
         if clock.monotonic() >= self._disk_due_s:
             self._look_at_disk()
-        silent = Cause("disk silent", 2, f"{self.runs} does not say how much room is left",
+        silent = Cause("disk silent", 2, f"{self.runs} does not report its free space",
                        "a run that cannot be recorded is stopped")  # fmt: skip
         self.alarms.set(self._room.hangs, silent, self.now_s)
         free, least = self._room.free, max(LOW_BYTES, MARGIN * self.needed)
@@ -387,8 +390,8 @@ class Desk:
         return DiskView(free, self.needed, self._low)
 
     def _row(self, view: StateView) -> tuple[float | None, ...]:
-        found = {value.key: value for value in view.values}
+        by_key = {value.key: value for value in view.values}
         row: list[float | None] = [round(view.wall_s, 3), round(view.t_s, 3)]
         kind = self.watch.kind if self.watch is not None else self.kind
-        row += trend_row(kind.quantities, found)
+        row += trend_row(kind.quantities, by_key)
         return tuple(None if x is None else round(x, 4) for x in row)

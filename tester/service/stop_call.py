@@ -1,9 +1,9 @@
-"""A client's end of STOP's own lane: a connection that stays open, a line that goes out, a line that comes back.
+"""A client's end of STOP's own lane: a connection that stays open, a request line, an answer line.
 
     with StopCall(None, "script") as call:
         call.stop()
 
-It needs no event loop, and waits for the answer: use a thread where somebody draws.
+It needs no event loop, and blocks until the answer: use a thread beside a screen that draws.
 """
 
 from __future__ import annotations
@@ -17,37 +17,39 @@ from tester.service.address import Address, AddressError, UnixAddress, default_a
 from tester.service.stop_door import TAKEN
 
 WITHIN_S = 3.0
-"""Without an answer by then STOP was not taken, s."""
+"""Without an answer after this time STOP has failed, s."""
 
 
 AGAIN_S = 0.005
-"""Between two tries to get into a full queue before the door, s: the door lets some hundred in a second."""
+"""Time between two attempts to join a full queue, s: the door accepts some hundred connections a second."""
 
 
 class NotTakenError(Exception):
-    """STOP has not arrived; the message says why."""
+    """STOP has not arrived; the message gives the reason."""
 
 
 class StopCall:
-    """Says STOP."""
+    """Sends STOP."""
 
     def __init__(self, address: Address | None, name: str) -> None:
-        """Nothing is connected. ``address``: of the service, None = the user's own; ``name``: who stops, on record."""
+        """Connect nothing yet.
+
+        ``address``: of the service, None = the user's own; ``name``: who stops, for the record.
+        """
         self._address = address
         self.name = name
         self._connection: socket.socket | None = None
 
     def __enter__(self) -> StopCall:
-        """Return itself."""
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Hang up."""
+        """Close the connection."""
         self.close()
 
     @property
     def open(self) -> bool:
-        """The door holds a connection of ours, as far as it is known here."""
+        """Whether the connection to the door is open, as far as this end knows."""
         connection = self._connection
         if connection is None:
             return False
@@ -63,7 +65,7 @@ class StopCall:
         return not gone
 
     def connect(self) -> None:
-        """Be connected, for the moment when it counts. Raises NotTakenError."""
+        """Connect ahead of the moment when it counts. Raises NotTakenError."""
         if self._connection is not None:
             return
         try:
@@ -72,7 +74,7 @@ class StopCall:
             raise NotTakenError(in_words(error)) from error
 
     def stop(self, *, fast: bool = False) -> None:
-        """Say STOP and wait until it is in control; a connection that is gone is renewed. Raises NotTakenError."""
+        """Send STOP and wait until control has it; a broken connection is renewed first. Raises NotTakenError."""
         if self._connection is not None:
             with suppress(OSError):
                 self._say(self._connection, fast)
@@ -82,12 +84,12 @@ class StopCall:
         assert self._connection is not None
         try:
             self._say(self._connection, fast)
-        except OSError as error:  # TimeoutError is one
+        except OSError as error:  # includes TimeoutError
             self.close()
             raise NotTakenError(in_words(error) or "no answer") from error
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         if self._connection is not None:
             self._connection.close()
             self._connection = None
@@ -96,17 +98,17 @@ class StopCall:
         name = "".join(c for c in self.name if c.isprintable())
         connection.sendall(f"{'fast' if fast else 'stop'} {name}\n".encode())
         end_s = clock.monotonic() + WITHIN_S
-        said = b""
-        while not said.endswith(TAKEN):
+        reply = b""
+        while not reply.endswith(TAKEN):
             connection.settimeout(max(end_s - clock.monotonic(), 0.001))
             data = connection.recv(64)
             if not data:
                 raise ConnectionError("the service hung up")
-            said += data
+            reply += data
 
 
 def takes_stop(address: Address | None) -> bool:
-    """Return whether STOP can be said to a service; nothing is said."""
+    """Return whether a service would take STOP; sends none."""
     with StopCall(address, "") as call:
         try:
             call.connect()
@@ -131,7 +133,7 @@ def _connected(address: Address) -> socket.socket:
 
 
 def _queue_up(connection: socket.socket, path: str) -> None:
-    """Connect; where the queue before the door is full, which a Unix socket says at once, try again. Raises OSError."""
+    """Connect, and retry while the door's queue is full, which a Unix socket reports at once. Raises OSError."""
     end_s = clock.monotonic() + WITHIN_S
     while True:
         try:

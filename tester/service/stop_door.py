@@ -1,14 +1,13 @@
-"""The door for STOP, ``python -m tester.service.stop_door LINK``: a process that takes STOP and does nothing else.
+"""The door for STOP, ``python -m tester.service.stop_door LINK``: a process that only takes STOP.
 
-Clients' messages, their limit and their queues are in the gateway; none of them stands between STOP and the rig. What a
-caller says is a line, and so is the answer:
+The gateway handles clients' messages, their limits and queues; STOP bypasses all of them. Request and answer are lines:
 
     stop NAME      a controlled stop           -> taken
     fast NAME      a fast stop                 -> taken
 
-Behind TCP the first line is the token. A line to the owner stands for all callers that wait (``s NUMBER fast|stop
-NAME``), the next one goes once that was answered (``NUMBER``): the owner never has more than
-one before it, however many call.
+On TCP the first line is the token. The door sends the owner a single line for all waiting callers (``s NUMBER fast|stop
+NAME``), and the next line after the answer (``NUMBER``). So the owner never has more than one request to read, however
+many clients call.
 """
 
 from __future__ import annotations
@@ -30,23 +29,23 @@ from tester.service.address import peer_of, peer_text, unlink_socket, with_peer
 from tester.service.child_socket import link_of
 
 MOST_CALLERS = 256
-"""Connections kept; one more, and the process that has the most of them loses its oldest."""
+"""Most connections at a time. Beyond that, the process with the most connections loses its oldest."""
 ACCEPTED_AT_ONCE = 64
-"""New connections between two looks at those that are there."""
+"""Most new connections between two looks at the existing ones."""
 PAUSE_S = 0.03
-"""... after which nobody new is let in for so long: who comes and goes without end gets no more of a core than that."""
+"""Pause after accepting new connections, s: it bounds the CPU share of a caller that reconnects without end."""
 LONGEST = 512
-"""A line is shorter, bytes."""
+"""Upper limit of a line's length, bytes."""
 NAME_LENGTH, NAMES_LENGTH = 100, 400
-"""Of one caller's name, and of all that one line gives, characters."""
+"""Longest name of a caller, and longest list of names in a line, characters."""
 TAKEN = b"taken\n"
 BACKLOG = ACCEPTED_AT_ONCE
-"""All who stand before the door are let in at once: nobody in the queue waits for longer than the pause."""
+"""Length of the listening queue: the door accepts a full queue at once, so no caller waits longer than the pause."""
 
 
 @dataclass(frozen=True, slots=True)
 class DoorSettings:
-    """What the owner tells its door: the socket's path, or a port (0: any) and the token."""
+    """The owner's settings for its door: the socket's path, or a port (0: any) and the token."""
 
     path: str
     port: int = 0
@@ -69,47 +68,48 @@ class Caller:
 
 @dataclass(slots=True)
 class Wish:
-    """What all who wait want: their names as far as they fit, fast if any of them wants it."""
+    """The combined request of all waiting callers: their names as far as they fit; fast if any of them asks for fast.
+    """
 
     name: str
     fast: bool
     callers: list[Caller] = field(default_factory=list[Caller])
 
     def join(self, name: str, fast: bool) -> None:
-        """Take in another one's."""
+        """Add a caller's request."""
         self.fast = self.fast or fast
         if len(self.name) + len(name) < NAMES_LENGTH and name not in self.name.split(", "):
             self.name += f", {name}"
 
 
 class StopDoor:
-    """Takes STOP from callers, and hands it to the owner one line at a time."""
+    """Takes STOP from callers and forwards it to the owner, one line at a time."""
 
     def __init__(self, listener: socket.socket, owner: socket.socket, *, uid: int | None, token: str = "") -> None:
-        """``uid``: the only user that may call through a Unix socket; ``token``: what others must show."""
+        """``uid``: the only user allowed on a Unix socket; ``token``: the token required on TCP."""
         self.uid, self.token = uid, token
         self.owner = owner
         self.callers: list[Caller] = []
         self.ended = False
         self._listener = listener
         self._selector = selectors.DefaultSelector()
-        for one in (listener, owner):
-            one.setblocking(False)
-            self._selector.register(one, selectors.EVENT_READ)
-        self._number = os.getpid() << 16  # another life of the door has other numbers
+        for end in (listener, owner):
+            end.setblocking(False)
+            self._selector.register(end, selectors.EVENT_READ)
+        self._number = os.getpid() << 16  # each process of the door has its own range of numbers
         self._admits_s: float | None = None
-        """When somebody new is let in again (tester.base.clock.monotonic); None: now."""
+        """When the door accepts connections again (tester.base.clock.monotonic); None: now."""
         self._asked: Wish | None = None
         self._next: Wish | None = None
         self._answers = b""
 
     def serve(self) -> None:
-        """Serve until the owner has ended."""
+        """Serve until the owner ends."""
         while not self.ended:
             self.turn(None)
 
     def turn(self, within_s: float | None) -> None:
-        """Wait for something and do it: the owner first, then those that are there, then who comes."""
+        """Wait for input and handle it: the owner first, then existing callers, then new ones."""
         if self._admits_s is not None:
             left_s = self._admits_s - clock.monotonic()
             if left_s <= 0.0:
@@ -120,9 +120,9 @@ class StopDoor:
         ready = {id(key.fileobj): key.data for key, _ in self._selector.select(within_s)}
         if id(self.owner) in ready:
             self._hear_owner()
-        for found in ready.values():
-            if isinstance(found, Caller) and found in self.callers:
-                self._hear(found)
+        for caller in ready.values():
+            if isinstance(caller, Caller) and caller in self.callers:
+                self._hear(caller)
         if id(self._listener) in ready:
             self._admit()
 
@@ -132,7 +132,7 @@ class StopDoor:
         for _ in range(ACCEPTED_AT_ONCE):
             try:
                 connection, _ = self._listener.accept()
-            except OSError:  # nobody is left, or gone again
+            except OSError:  # the queue is empty, or the caller has hung up
                 return
             connection.setblocking(False)
             process, uid = peer_of(connection)
@@ -148,7 +148,7 @@ class StopDoor:
         self._admits_s = clock.monotonic() + PAUSE_S
 
     def _make_room(self) -> None:
-        """Let go of the oldest connection of the process that has the most."""
+        """Close the oldest connection of the process that has the most."""
         count: dict[int, int] = {}
         for caller in self.callers:
             count[caller.process] = count.get(caller.process, 0) + 1
@@ -176,7 +176,7 @@ class StopDoor:
             self._let_go(caller)
 
     def _understand(self, caller: Caller, line: bytes) -> bool:
-        """Take one line; False for a caller that is none of ours."""
+        """Take one line; return False for a caller to disconnect."""
         if not caller.admitted:
             caller.admitted = hmac.compare_digest(line, self.token.encode())
             return caller.admitted
@@ -206,7 +206,7 @@ class StopDoor:
         kind = "fast" if self._asked.fast else "stop"
         line = f"s {self._number} {kind} {self._asked.name}\n".encode()
         try:
-            self.owner.sendall(line)  # at most one is on its way: it always fits
+            self.owner.sendall(line)  # at most one line is unanswered, so it always fits
         except OSError:
             self.ended = True
 
@@ -229,15 +229,15 @@ class StopDoor:
 
     def _answer(self, caller: Caller) -> None:
         if caller not in self.callers:
-            return  # it has hung up; its STOP was taken all the same
+            return  # it has hung up, but its STOP was taken
         try:
             caller.connection.sendall(TAKEN)
-        except OSError:  # it does not read
+        except OSError:  # the caller does not read
             self._let_go(caller)
 
 
 def open_listener(settings: DoorSettings) -> socket.socket:
-    """Return the socket that listens: a Unix socket of mode 0600, or loopback TCP. Raises OSError, AddressError."""
+    """Return a listening socket: a Unix socket of mode 0600, or loopback TCP. Raises OSError, AddressError."""
     if settings.token:
         return socket.create_server(("127.0.0.1", settings.port), backlog=BACKLOG)
     path = Path(settings.path)
@@ -253,8 +253,11 @@ def open_listener(settings: DoorSettings) -> socket.socket:
 
 
 def main(link: socket.socket) -> None:
-    """Serve for the owner at the other end of ``link``: its first line is the settings, ours the port (0: none)."""
-    with link.makefile("rb", buffering=0) as stream:  # unbuffered: what follows is the door's
+    """Serve the owner at the other end of ``link``.
+
+    The owner sends the settings first; the door answers with its port (0: none).
+    """
+    with link.makefile("rb", buffering=0) as stream:  # unbuffered: the door itself reads the rest
         settings = SETTINGS.validate_json(stream.readline())
     listener = open_listener(settings)
     port = int(listener.getsockname()[1]) if settings.token else 0
@@ -267,7 +270,7 @@ def main(link: socket.socket) -> None:
 
 if __name__ == "__main__":
     for _number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(_number, signal.SIG_IGN)  # it ends with its owner, who comes to a standstill first
+        signal.signal(_number, signal.SIG_IGN)  # it ends with its owner, after the rig's standstill
     if hasattr(signal, "SIGHUP"):
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
     main(link_of(sys.argv[1]))

@@ -1,9 +1,8 @@
-"""The owner's end of STOP's own lane: what the door's process says is heard by a thread that does nothing else.
+"""The owner's end of STOP's own lane: a thread that only listens to the door's process.
 
-While something ticks, the next poll, 20 ms away at most, carries out what is there before anything else a client has
-said, and answers; it looks itself, so that it need not wait for the thread's turn. While nothing ticks - a recipe is
-being planned, tables are written - the thread answers: what is being prepared does not begin any more, which whoever
-prepares it asks (``wanted``).
+While a rig ticks, the next poll, 20 ms away at most, carries STOP out before every other message of a client, and
+answers; it reads the lane itself instead of waiting for the thread's turn. While nothing ticks - during planning, or
+while tables are written - the thread answers: the preparing code checks ``wanted`` and does not begin.
 """
 
 from __future__ import annotations
@@ -21,15 +20,15 @@ from tester.service.child_socket import spawn
 from tester.service.stop_door import SETTINGS, DoorSettings
 
 AGAIN_S = 1.0
-"""A door is started anew at most this often, s."""
+"""Shortest time between two starts of a door, s."""
 UP_S = 20.0
-"""A door has said where it listens by then, s [A]."""
+"""Time for a door to report where it listens, s [A]."""
 END_S = 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class StopWish:
-    """Somebody wants the rig to stop. ``number``: the door's, 0 once it is answered."""
+    """A request to stop the rig. ``number``: the door's, 0 once it is answered."""
 
     name: str
     fast: bool
@@ -37,19 +36,19 @@ class StopWish:
 
 
 class StopLane:
-    """Keeps the door open, and what came through it until it is carried out."""
+    """Keeps the door open, and keeps each STOP until it is carried out."""
 
     def __init__(self) -> None:
-        """Nothing is open."""
+        """Open nothing yet."""
         self.ticking = False
-        """A rig is under control: only control's own thread may say that STOP was taken."""
+        """A rig is under control: only control's own thread may confirm STOP."""
         self.restarts = 0
         self.port = 0
         ours, theirs = socket.socketpair()
         self.bell, self._rope = ours, theirs
-        """Readable once STOP is there: ends a wait."""
-        for one in (ours, theirs):
-            one.setblocking(False)
+        """Readable once a STOP is there: ends a wait."""
+        for end in (ours, theirs):
+            end.setblocking(False)
         self._lock = Lock()
         self._wishes: list[StopWish] = []
         self._settings: DoorSettings | None = None
@@ -61,26 +60,26 @@ class StopLane:
     # -- the door ---------------------------------------------------------------------------------------------
 
     def open(self, address: Address) -> None:
-        """Open the door beside a service's address; returns once it is open. Raises OSError."""
+        """Open the door beside a service's address; return once it is open. Raises OSError."""
         if isinstance(address, TcpAddress):
             self._settings = DoorSettings("", address.stop_port, address.token)
         else:
             self._settings = DoorSettings(str(stop_path(address.path)))
         link = self._start(self._settings)
         link.settimeout(UP_S)
-        said = b""
-        while not said.endswith(b"\n"):
+        reply = b""
+        while not reply.endswith(b"\n"):
             more = link.recv(1)
             if not more:
                 raise OSError(f"STOP's door does not open: {stop_path(address.path)}"
                               if not isinstance(address, TcpAddress) else "STOP's door does not open")  # fmt: skip
-            said += more
-        self.port = int(said.split()[1])
+            reply += more
+        self.port = int(reply.split()[1])
         link.settimeout(None)
         self._listen(link)
 
     def look(self) -> None:
-        """Open the door again where its process is gone; never waits."""
+        """Reopen the door if its process is gone; never waits."""
         if self._settings is None or self._link is not None or clock.monotonic() < self._again_s:
             return
         self._again_s = clock.monotonic() + AGAIN_S
@@ -118,10 +117,10 @@ class StopLane:
         self._link = link
         Thread(target=self._hear, args=(link,), name="stop lane", daemon=True).start()
 
-    # -- what is heard ----------------------------------------------------------------------------------------
+    # -- requests ---------------------------------------------------------------------------------------------
 
     def _hear(self, link: socket.socket) -> None:
-        """Hear the door until it is gone; whoever ticks may have been quicker."""
+        """Read the door until it is gone; the ticking thread may read first."""
         while self._link is link:
             select.select([link], [], [])
             with self._lock:
@@ -129,7 +128,7 @@ class StopLane:
         link.close()
 
     def _read(self) -> None:
-        """Take in what the door has said (locked)."""
+        """Read the door's lines (locked)."""
         link = self._link
         if link is None:
             return
@@ -147,27 +146,27 @@ class StopLane:
             self._take(line.decode("utf-8", "replace"))
 
     def _take(self, line: str) -> None:
-        """Keep a wish; answer it where nothing ticks (locked)."""
+        """Keep a request; answer it if nothing ticks (locked)."""
         mark, _, rest = line.partition(" ")
         if mark != "s":
-            return  # the port of a door that was opened again
+            return  # the port of a reopened door
         number, kind, name = rest.split(" ", 2)
-        heard = StopWish(name, kind == "fast", int(number))
-        wish = heard if self.ticking else StopWish(name, heard.fast, 0)
+        request = StopWish(name, kind == "fast", int(number))
+        wish = request if self.ticking else StopWish(name, request.fast, 0)
         if not self._wishes or wish.fast > self._wishes[-1].fast or wish.number:
             self._wishes.append(wish)
         if not self.ticking:
-            self._answer(heard)  # only now: whoever hears the answer may rely on it
-        with suppress(OSError):  # full: it has been rung already
+            self._answer(request)  # after the request is stored: the caller may rely on the answer
+        with suppress(OSError):  # full: the bell has rung already
             self._rope.send(b"!")
 
     @property
     def wanted(self) -> bool:
-        """A STOP is there that has not been carried out yet."""
+        """Whether a STOP waits to be carried out."""
         return bool(self._wishes)
 
     def taken(self) -> list[StopWish]:
-        """Return the wishes that are to be carried out now, oldest first; ``answer`` each afterwards."""
+        """Return the requests to carry out now, oldest first; ``answer`` each afterwards."""
         with self._lock:
             self._read()
             wishes, self._wishes = self._wishes, []
@@ -177,7 +176,7 @@ class StopLane:
         return wishes
 
     def answer(self, wish: StopWish) -> None:
-        """Say that a wish was carried out."""
+        """Confirm that a request is carried out."""
         if wish.number:
             self._answer(wish)
 
@@ -188,12 +187,12 @@ class StopLane:
                 link.sendall(b"%d\n" % wish.number)
 
     def begin_ticking(self) -> None:
-        """From now on a rig is under control."""
+        """Note that a rig is under control from now on."""
         with self._lock:
             self.ticking = True
 
     def end_ticking(self) -> None:
-        """No rig is under control any more: whoever waits is answered."""
+        """Note that no rig is under control any more, and answer the waiting callers."""
         with self._lock:
             self.ticking = False
             for wish in self._wishes:

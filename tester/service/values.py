@@ -1,4 +1,4 @@
-"""Measured values beside what is wanted and allowed, for people: read off the kind's table of channels."""
+"""Measured values beside setpoints and limits, for people: taken from the kind's table of channels."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ NOTHING_WANTED = Wanted(None)
 
 @dataclass(frozen=True, slots=True)
 class Spec:
-    """What of a value stays the same for a rig."""
+    """The fixed properties of a value on a rig."""
 
     key: str
     label: str
     unit: str
     device: str
-    """Whose news it is."""
+    """Device that delivers the value."""
     low: float | None
     high: float | None
     scale_low: float
     scale_high: float
     decimals: int
     watched: bool
-    """An alarm tells when its news does not come."""
+    """An alarm reports missing updates of this value."""
 
     def value(
         self, now: float | None, wanted: Wanted = NOTHING_WANTED, age_s: float | None = None, quality: Quality = "none"
     ) -> Value:
-        """Return this value as it is."""
+        """Return this value with its present number, setpoint, age and quality."""
         setpoint, band = known(wanted.setpoint), wanted.band
         band_low = band_high = None
         if setpoint is not None and band is not None:
@@ -51,13 +51,13 @@ class Spec:
 
 
 def screen_of(channel: Channel) -> Screen:
-    """Return how a channel is shown; one of ``Quantities.shown``."""
+    """Return how a channel is shown; the channel must be in ``Quantities.shown``."""
     assert channel.screen is not None
     return channel.screen
 
 
 def spec_of(channel: Channel, rig: object) -> Spec:
-    """Return what a channel's value is called, and where on a rig its limits and the ends of its bar lie."""
+    """Return a channel's name, limits and bar range on a rig."""
     screen = screen_of(channel)
     high = screen.limit.of(rig) if screen.limit is not None else None
     low = -high if high is not None and screen.both else None
@@ -73,43 +73,43 @@ def specs(quantities: Quantities, rig: Rig) -> tuple[Spec, ...]:
 
 
 def known(value: float | None) -> float | None:
-    """Return a value where it is a finite number, else None."""
+    """Return a value if it is a finite number, else None."""
     return value if value is not None and isfinite(value) else None
 
 
 def unknown_values(rig: Rig) -> tuple[Value, ...]:
-    """Return the values of a rig that nobody is connected to."""
+    """Return the values of a rig that is not connected."""
     return tuple(spec.value(None) for spec in specs(quantities_on(rig), rig))
 
 
 class ValueView:
-    """Makes the values of one run from its engine."""
+    """Computes the values of a run from its engine."""
 
     def __init__(self, engine: Engine, panel: MachinePanel) -> None:
-        """Work out what stays."""
+        """Prepare everything that does not change."""
         self.engine = engine
         self.panel = panel
         rig, devices = engine.ctx.rig, engine.devices
         quantities = quantities_on(rig)
         self.specs = specs(quantities, rig)
         self._quantities = quantities
-        own = quantities.recorded[: -len(LAST) - len(quantities.further)]
-        self._read_off = {one.name: values_at([one.source]) for one in own}
-        self._place = {one.name: place for place, one in enumerate(quantities.further)}
+        recorded = quantities.recorded[: -len(LAST) - len(quantities.further)]
+        self._read_off = {channel.name: values_at([channel.source]) for channel in recorded}
+        self._place = {channel.name: place for place, channel in enumerate(quantities.further)}
         self._sensors = dict(zip(further_sensors(rig), devices.sensors, strict=True))
         self._nodes = dict(zip(rig.can.nodes, devices.nodes, strict=True))
 
     def values(self) -> tuple[Value, ...]:
         """Return every value as of the last scan."""
         wanted, now = self.panel.wanted(), self.engine.ctx.readings.now_s
-        found = {**self.panel.news(), **self._further_news()}
-        made = {device: self._quality(news, now) for device, news in found.items()}
+        all_news = {**self.panel.news(), **self._further_news()}
+        quality = {device: self._quality(news, now) for device, news in all_news.items()}
         nothing: tuple[float | None, Quality] = (None, "none")
         return tuple(
             spec.value(
                 channel.scaled(self._read(channel.name)) if channel.source else friction(self._quantities, self._read),
                 wanted.get(spec.key, NOTHING_WANTED),
-                *made.get(spec.device, nothing),
+                *quality.get(spec.device, nothing),
             )
             for spec, channel in zip(self.specs, self._quantities.shown, strict=True)
         )
@@ -122,13 +122,11 @@ class ValueView:
 
     def _further_news(self) -> dict[str, News]:
         """Return the news of the further sensors, by their places in the rig file."""
-        said = {f"devices.{key}": News(one.stamp_s, one.valid, one.stale_s) for key, one in self._sensors.items()}
-        return said | {
-            f"can.nodes.{key}": News(one.stamp_s, one.online, one.stale_s) for key, one in self._nodes.items()
-        }
+        lines = {f"devices.{key}": News(s.stamp_s, s.valid, s.stale_s) for key, s in self._sensors.items()}
+        return lines | {f"can.nodes.{key}": News(n.stamp_s, n.online, n.stale_s) for key, n in self._nodes.items()}
 
     def _quality(self, news: News, now: float) -> tuple[float | None, Quality]:
-        """Return age and quality. A device is not asked more often than scans come."""
+        """Return age (s) and quality. No device is read more often than once a scan."""
         if news.at_s == -inf:
             return None, "none"
         age_s = max(now - news.at_s, 0.0)
@@ -144,14 +142,14 @@ def friction(quantities: Quantities, of: Callable[[str], float]) -> float:
     """
     roles = quantities.roles
     normal_n = of(roles.normal)
-    # A load that is measured, beside both forces, is never quite 0; of weights on an arm it is known.
+    # A measured load is never quite 0; the load of weights on an arm is known exactly.
     if not normal_n > (CONTACT_N if len(roles.friction) > 1 else 0.0):
         return float("nan")
     return hypot(*(of(name) for name in roles.friction)) / normal_n
 
 
 def trend_row(quantities: Quantities, values: Mapping[str, Value]) -> list[float | None]:
-    """Return a row of the trend behind its two times (``tester.base.screen.trend_columns``)."""
+    """Return a row of the trend after its two times (``tester.base.screen.trend_columns``)."""
     row: list[float | None] = []
     for channel in quantities.shown:
         screen, value = screen_of(channel), values.get(screen_of(channel).key)

@@ -1,4 +1,4 @@
-"""One run as people see it: the state view's parts that come from its engine, and the alarms that follow from them."""
+"""A run for people: those parts of the state view that come from its engine, and the alarms that follow from them."""
 
 from __future__ import annotations
 
@@ -22,22 +22,24 @@ from tester.service.values import ValueView
 
 NO_MODE = "CONNECTING"
 MODES = {Mode.EMERGENCY: "E-STOP"}
-"""Modes that are shown under another name than control's."""
+"""Modes shown under another name than control's."""
 RESTING = (Mode.IDLE, Mode.LATCHED)
-"""Modes in which drives are let go of at the end of a run."""
+"""Modes in which drives are switched off at the end of a run."""
 
 
 def risk_of(rig: Rig) -> str:
-    """Return the safety keys of a rig that are looser than they should be, in words; "" where none is."""
+    """Return the safety keys of a rig that are looser than they should be, in words; "" without any."""
     return "; ".join(map(str, risks_of(rig)))
 
 
 class RunWatch:
-    """Looks at one run, between two ticks."""
+    """Reads one run, between two ticks."""
 
     def __init__(self, run: Run, track: PlanTrack, kind: ServedKind) -> None:
-        """Work out what stays the same. ``track``: of the whole plan, of which this run may be a part; ``kind``: the
-        rig's."""
+        """Prepare everything that does not change.
+
+        ``track``: of the whole plan, of which this run may be a part; ``kind``: the rig's.
+        """
         self.run = run
         self.kind = kind
         engine = run.engine
@@ -51,20 +53,20 @@ class RunWatch:
         self.alone = kind.alone(self.rig)
         self.track = track
         self.watched: set[str] = set()
-        """Names of the alarms that stand for this run's devices: they go with it."""
+        """Names of the alarms for this run's devices; they are cleared when it ends."""
         self.tripped = ""
         """Name of the alarm of the trip that latches the rig."""
         self.acknowledged = False
-        """There was a trip, and it has been acknowledged."""
+        """A trip has occurred and is acknowledged."""
         self._asked_utc: dict[int, str] = {}
         self._fresh = frozenset(spec.key for spec in self.values.specs if spec.watched)
-        """Keys of the values whose news must come."""
+        """Keys of the values that must be updated."""
 
-    # -- what is shown ----------------------------------------------------------------------------------------
+    # -- views ------------------------------------------------------------------------------------------------
 
     @property
     def mode(self) -> tuple[str, str, float]:
-        """Mode, why, and for how many seconds."""
+        """Mode, reason, and seconds in this mode."""
         run = self.run
         if run.connector.stage is not Stage.READY:
             return NO_MODE, run.connector.stage.value, 0.0
@@ -75,11 +77,11 @@ class RunWatch:
 
     @property
     def latched(self) -> bool:
-        """A trip or a fast stop waits for its acknowledgement."""
+        """Whether a trip or a fast stop waits for its acknowledgement."""
         return self.run.engine.control.state.mode is Mode.LATCHED
 
     def progress(self, now: float, lapse: float | None) -> ProgressView:
-        """Return where the run is; ``lapse``: rig seconds per second, None where nobody knows."""
+        """Return where the run is; ``lapse``: rig seconds per second, None if unknown."""
         p, at = self.run.engine.ctx.progress, self.track.standing()
         finish = clock.utc_in(at.left_s / lapse) if lapse and at.left_s is not None else ""
         return ProgressView(at.step, at.steps, p.title, p.phase, at.over, at.conditions, p.repeat, p.repeats,
@@ -91,11 +93,11 @@ class RunWatch:
         return self.panel.gates()
 
     def soak(self, now: float) -> SoakView | None:
-        """Return the soak under way, None where there is none."""
+        """Return the soak under way, None without one."""
         return self.panel.soak(now)
 
     def prompt(self) -> PromptView | None:
-        """Return the question that waits."""
+        """Return the waiting question."""
         waiting = self.run.engine.ctx.prompts.waiting
         if waiting is None:
             return None
@@ -103,7 +105,7 @@ class RunWatch:
         return PromptView(waiting.number, waiting.text, waiting.at_s, asked)
 
     def preflight(self) -> tuple[Check, ...]:
-        """Return what the connected rig says of its readiness."""
+        """Return the connected rig's own checks before a start."""
         return (
             *self.panel.checks(),
             Check("last run", None, "under way"),
@@ -113,7 +115,7 @@ class RunWatch:
     # -- alarms -----------------------------------------------------------------------------------------------
 
     def watch_values(self, alarms: AlarmList, now: float, values: tuple[Value, ...]) -> None:
-        """Raise and clear what follows from what is shown: data that has stopped coming, a device that is lost."""
+        """Raise and clear alarms for data that has stopped arriving and for lost devices."""
         if self.run.connector.stage is not Stage.READY or self.run.engine.control.state.mode in RESTING:
             return
         for value in values:
@@ -130,14 +132,14 @@ class RunWatch:
             )
 
     def watch_trip(self, alarms: AlarmList, now: float) -> None:
-        """Raise what has stopped the rig, for as long as it is latched."""
+        """Raise the alarm of the trip that stopped the rig, for as long as it is latched."""
         trip = self.run.engine.control.state.trip
         if trip is not None:
             consequence = "the rig comes to a standstill; nothing moves before it is acknowledged"
-            found = trip.compared
-            value = found.value if isfinite(found.value) else None
-            limit = found.limit if isfinite(found.limit) else None
-            cause = Cause(trip.name, 1, trip.text, consequence, value=value, limit=limit, unit=found.unit)
+            compared = trip.compared
+            value = compared.value if isfinite(compared.value) else None
+            limit = compared.limit if isfinite(compared.limit) else None
+            cause = Cause(trip.name, 1, trip.text, consequence, value=value, limit=limit, unit=compared.unit)
             alarms.raise_(cause, now)
             self.tripped = trip.name
         elif self.tripped:

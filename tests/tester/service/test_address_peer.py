@@ -22,7 +22,7 @@ def test_where_the_system_does_not_tell_that_is_said(monkeypatch: pytest.MonkeyP
     monkeypatch.delattr(socket, "SO_PEERCRED", raising=False)
     ours, theirs = socket.socketpair()
     with ours, theirs:
-        assert peer_text(ours) in ("user id not told", f"address 127.0.0.1:{port_of(theirs)}")
+        assert peer_text(ours) in ("user id not known", f"address 127.0.0.1:{port_of(theirs)}")
 
 
 def port_of(one: socket.socket) -> int:

@@ -288,7 +288,7 @@ def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
         yield from stage.until(off)
 
     stage = play(tmp_path, script)
-    assert stage.texts("control")[-1] == "nobody has control"
+    assert stage.texts("control")[-1] == "no client has control"
     # Of 60 s: it was not the time that ran out.
     assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
 
@@ -409,7 +409,7 @@ def test_an_axis_that_this_machine_does_not_have_is_refused_with_those_it_has(tm
         yield stage.order(Jog("chamber", 1))
         yield None
         assert stage.refused["jog"] == (
-            "no axis 'chamber' is moved by hand here: wheel, belt, both, press, sideslip, camber, heat"
+            "no axis 'chamber' for manual mode here: wheel, belt, both, press, sideslip, camber, heat"
         )
         yield stage.order(Stop())
         yield from stage.until(off)

@@ -55,7 +55,7 @@ def test_standing_alarms_are_wrong_and_named() -> None:
         ("stopped", "stop by ada", "", None, "stopped: stop by ada"),
         ("tripped", "overload", "overload", False, "tripped: overload; not acknowledged"),
         ("tripped", "overload", "", None, "tripped: overload"),
-        ("interrupted", "", "", None, "was cut off: r goes on with it"),
+        ("interrupted", "", "", None, "was cut off: r resumes it"),
         ("running", "", "", None, "running"),
         ("incomplete", "", "", None, "incomplete"),
     ],

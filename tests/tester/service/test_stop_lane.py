@@ -20,7 +20,7 @@ from tester.service.stop_lane import StopLane, StopWish
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
 
 
-ME = f"me (user id {os.getuid()})" if hasattr(socket, "SO_PEERCRED") else "me (user id not told)"
+ME = f"me (user id {os.getuid()})" if hasattr(socket, "SO_PEERCRED") else "me (user id not known)"
 
 
 @pytest.fixture(scope="module")
