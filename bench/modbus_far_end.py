@@ -11,7 +11,7 @@ import sys
 from bench.effort import TopicFailedError
 from drivers.crc16 import crc16
 from drivers.profiles import load_profile
-from sim.nodes.cell_slave import CellSlave
+from sim.nodes.sensor_slave import CellSlave
 
 PROFILE = "four_axis_transmitter"
 UNIT_ID = 1

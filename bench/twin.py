@@ -11,14 +11,13 @@ from collections.abc import Callable
 from bench.effort import Effort
 from bench.figures import Figure
 from bench.stopwatch import cpu_us_per
-from drivers.jacket import HeatingJacket
 from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
+from drivers.temperature_controller import TemperatureController
 from sim.machines.wheel_on_belt.plant import Plant
-from sim.nodes.cell_slave import CellSlave
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.controller_slave import ControllerSlave
+from sim.nodes.sensor_slave import CellSlave, IrSlave
 from sim.physics.contact import ContactModel
 from sim.physics.parameters import SimParameters
 from sim.wires.modbus_wire import ModbusWire
@@ -93,9 +92,9 @@ def _cell_line() -> Work:
 def _slow_line() -> tuple[Work, Callable[[int], int]]:
     """Return the work of so many ticks, and a function that does it and counts the transactions."""
     plant = _plant()
-    jacket, thermometer = JacketSlave(load_profile(JACKET), 1, plant), IrSlave(load_profile(THERMOMETER), 2, plant)
+    jacket, thermometer = ControllerSlave(load_profile(JACKET), 1, plant), IrSlave(load_profile(THERMOMETER), 2, plant)
     wire, link = ModbusWire(38400, "N", [jacket, thermometer]), ModbusLink("rtu", 38400)
-    driver = HeatingJacket(load_profile(JACKET), 1, link)
+    driver = TemperatureController("jacket", load_profile(JACKET), 1, link)
     Sensor(load_profile(THERMOMETER), 2, link)
     now = 0.0
 

@@ -12,9 +12,9 @@ from bench.ledger import Ledger
 ENTRY_POINTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
     ("twin", "sim.rig", "SimRig", ("advance",)),
     ("plant", "sim.machines.wheel_on_belt.plant", "Plant",
-     ("advance", "forces_measured", "surface_measured_c", "hub_measured_c")),
+     ("advance", "forces_measured", "surface_measured_c", "controller_measured_c")),
     ("nodes: drives", "sim.nodes.cia402_slave", "Cia402Slave", ("advance",)),
-    ("nodes: Modbus slaves", "sim.nodes.jacket_slave", "JacketSlave", ("advance",)),
+    ("nodes: Modbus slaves", "sim.nodes.controller_slave", "ControllerSlave", ("advance",)),
     ("nodes: Modbus slaves", "sim.nodes.modbus_slave", "ModbusSlave", ("answer",)),
     ("bus: CAN", "sim.wires.can_wire", "CanWire", ("send", "send_cycle", "receive", "transmit")),
     ("bus: Modbus", "sim.wires.modbus_wire", "ModbusWire", ("write", "read")),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.profile_slave import PlantQuantity, ProfileSlave
+from sim.nodes.sensor_slave import PlantQuantity, SensorSlave
 from sim.rig import RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 
@@ -75,7 +75,7 @@ class PlainTwin(SimRig):
         self.restart_dither()
 
 
-def _sensor(spec: RigSpec, name: str, plant: PlainPlant, channels: Mapping[str, str]) -> ProfileSlave:
+def _sensor(spec: RigSpec, name: str, plant: PlainPlant, channels: Mapping[str, str]) -> SensorSlave:
     device = spec.devices[name]
     shown = {channel: PlantQuantity(plant, quantity) for channel, quantity in channels.items()}
-    return ProfileSlave(device.profile, device.unit_id, shown)
+    return SensorSlave(device.profile, device.unit_id, shown)

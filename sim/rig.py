@@ -15,12 +15,10 @@ from typing import Final, Literal
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
 from drivers.profiles import DeviceProfile
-from sim.nodes.cell_slave import CellSlave
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.ir_slave import IrSlave
 from sim.nodes.modbus_slave import ModbusSlave
-from sim.nodes.profile_slave import PlantQuantity, ProfileSlave, Quantity
 from sim.nodes.sensor_node import SimulatedSensorNode
+from sim.nodes.sensor_slave import PlantQuantity, Quantity, SensorSlave
 from sim.wires.can_wire import CanWire
 from sim.wires.modbus_wire import ModbusWire
 
@@ -99,7 +97,7 @@ class SimRig:
         self._drives = tuple(axes.values())
         self._timed = tuple(slave for slave in every.values() if slave.due_s < inf)
         self._dithered = tuple(
-            slave for slave in every.values() if isinstance(slave, CellSlave | IrSlave | ProfileSlave)
+            slave for slave in every.values() if isinstance(slave, SensorSlave)
         )
 
     @property
@@ -149,18 +147,18 @@ class SimRig:
         self.follow(t1, still)
 
 
-def further_sensors(spec: RigSpec, own: Container[str], plant: object) -> dict[str, ProfileSlave]:
+def further_sensors(spec: RigSpec, own: Container[str], plant: object) -> dict[str, SensorSlave]:
     """Return the sensors of a wiring besides the machine's ``own`` devices, by the wiring's names.
 
     Raises UnknownQuantityError for a quantity that the plant does not have.
     """
-    found: dict[str, ProfileSlave] = {}
+    found: dict[str, SensorSlave] = {}
     for name, device in spec.devices.items():
         if name not in own and not device.part_of:
             quantities: dict[str, Quantity | float] = {}
             for channel, shown in device.shows.items():
                 quantities[channel] = PlantQuantity(plant, shown) if isinstance(shown, str) else shown
-            found[name] = ProfileSlave(device.profile, device.unit_id, quantities)
+            found[name] = SensorSlave(device.profile, device.unit_id, quantities)
     return found
 
 

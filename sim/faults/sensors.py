@@ -1,15 +1,23 @@
-"""Faults of any sensor: what it shows instead of what is."""
+"""Faults of sensors and temperature controllers: what they show, or do, instead of what they should.
+
+A spoiled source stands in for the sound one; nothing is looked up per reading while a sensor is well.
+"""
 
 from __future__ import annotations
 
 from collections import deque
 from math import expm1, nan
-from typing import Final
+from typing import Final, cast
 
+from sim.faults.scene import Effect, Scene
+from sim.nodes.controller_slave import ControllerSlave, TemperatureSource
+from sim.nodes.sensor_slave import FORCES, CellSlave, ForceSource, IrSlave, SensorSlave, SurfaceSource
 from sim.noise import NormalStream
 
 KINDS: Final = ("offset", "drift", "noise", "low", "gain", "lag", "delay", "open", "saturated", "frozen")
 SLOW: Final = ("lag", "delay")
+CROSSED: Final = ("exchanged x z", "reversed x", "reversed y", "reversed z")
+"""Kinds of a load cell alone: its channels as they should not be."""
 SEED: Final = 402
 """Key of the random numbers of noisy sensors: the same in every run."""
 _OFF_SCALE_N: Final = 1e5
@@ -61,3 +69,155 @@ def spoiled(kind: str, value: float, size: float, age_s: float, noise: NormalStr
     if kind == "gain":
         return floor + (value - floor) * 0.01 * size
     return _OFF_SCALE_N if kind == "saturated" else nan
+
+
+class _Spoiled:
+    """A sensor's source with something wrong, until it is no longer ``active``."""
+
+    def __init__(self, kind: str, size: float, since_s: float, middle: float, name: str) -> None:
+        """Of this kind and size; shares count from ``middle`` (0 N, or degC); ``name`` keys the noise."""
+        self.kind, self.active = kind, True
+        self._size, self._since_s, self._middle = size, since_s, middle
+        self._noise = NormalStream(SEED, f"faulty {name}")
+        self._slow = Slow(kind, size) if kind in SLOW else None
+
+    def spoil(self, true: float, t: float) -> float:
+        """Return what it makes of a true value at ``t`` s."""
+        return spoiled(self.kind, true, self._size, t - self._since_s, self._noise, self._middle)
+
+    @property
+    def _steady(self) -> bool:
+        """Whether it shows a value at rest as it is, but for noise."""
+        return not self.active or self.kind == "noise" or self._slow is not None or self.kind in CROSSED
+
+
+class SpoiledForces(_Spoiled):
+    """A load cell with something wrong with one force, or with all channels."""
+
+    def __init__(self, source: ForceSource, kind: str, size: float = 0.0, since_s: float = 0.0, force: str = "fz",
+                 name: str = "load cell") -> None:  # fmt: skip
+        """Stand in for ``source``; ``force``: which one is wrong."""
+        super().__init__(kind, size, since_s, 0.0, name)
+        self.source, self._place = source, FORCES.index(force)
+
+    def forces_measured(self, t: float) -> tuple[float, float, float, float]:
+        """Return Fx, Fy, Fz in N and the moment in N m as they appear at ``t`` s."""
+        forces = x, y, z, m = self.source.forces_measured(t)
+        if not self.active:
+            return forces
+        if self._slow is not None:
+            x, y, z, m = self._slow.shown(forces, t)
+        elif self.kind in CROSSED:
+            x, y, z, m = _crossed(self.kind, x, y, z, m)
+        else:
+            shown = list(forces)
+            shown[self._place] = self.spoil(shown[self._place], t)
+            x, y, z, m = shown
+        return x, y, z, m
+
+    def shown_n(self, true_n: float, t: float) -> float:
+        """Return what it makes of a force of ``true_n`` at ``t`` s, noise left out, N; NaN: nothing."""
+        return true_n if self._steady else self.spoil(true_n, t)
+
+
+class SpoiledTemperature(_Spoiled):
+    """A temperature sensor with something wrong; it stands in for the plant where a device asks for it."""
+
+    def __init__(self, source: SurfaceSource | TemperatureSource, kind: str, size: float, since_s: float,
+                 ambient_c: float, name: str) -> None:  # fmt: skip
+        """Stand in for ``source``; shares count from ``ambient_c``."""
+        super().__init__(kind, size, since_s, ambient_c, name)
+        self.source = source
+        self._held_c: float = nan
+
+    def surface_measured_c(self, t: float) -> float:
+        """Return the surface temperature in degC as it appears."""
+        return self._appears(cast("SurfaceSource", self.source).surface_measured_c(t), t)
+
+    def controller_measured_c(self, t: float) -> float:
+        """Return the controlled temperature in degC as it appears."""
+        return self._appears(cast("TemperatureSource", self.source).controller_measured_c(t), t)
+
+    def off_k(self, true_c: float, t: float) -> float:
+        """Return how far from ``true_c`` degC the sensor shows at ``t`` s, its noise left out, K; NaN: nothing."""
+        return 0.0 if self._steady else self._appears(true_c, t) - true_c
+
+    def _appears(self, true_c: float, t: float) -> float:
+        if not self.active:
+            return true_c
+        if self._slow is not None:
+            return self._slow.shown((true_c,), t)[0]
+        if self.kind == "frozen":
+            self._held_c = self._held_c if self._held_c == self._held_c else true_c
+            return self._held_c
+        return self.spoil(true_c, t)
+
+
+def _crossed(kind: str, x: float, y: float, z: float, m: float) -> tuple[float, float, float, float]:
+    """Return the channels of a load cell whose wires are crossed."""
+    if kind == "reversed x":
+        return -x, y, z, m
+    if kind == "reversed y":
+        return x, -y, z, m
+    return (x, y, -z, m) if kind == "reversed z" else (z, y, x, m)
+
+
+class SensorFault(Effect):
+    """Something is wrong with a device's sensor, or one force of a load cell, until the fault ends.
+
+    Without the device the fault has nothing to act on.
+    """
+
+    __slots__ = ("_wrapped", "device", "force", "kind", "size")
+
+    def __init__(self, device: str, kind: str, size: float = 0.0, force: str = "fz") -> None:
+        """``kind`` of KINDS (or CROSSED), of this size (unit of the sensor, or that a second, or percent, or s)."""
+        self.device, self.kind, self.size, self.force = device, kind, size, force
+        self._wrapped: SpoiledForces | SpoiledTemperature | None = None
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Let the sensor show something else from now on."""
+        slave = scene.rig.devices.get(self.device)
+        if isinstance(slave, SensorSlave) and self.kind == "frozen":
+            slave.frozen = True
+        elif isinstance(slave, CellSlave):
+            # A broken bridge drives the amplifier to the end of its range.
+            kind = "saturated" if self.kind == "open" else self.kind
+            self._wrapped = slave.source = SpoiledForces(slave.source, kind, self.size, now, self.force, self.device)
+        elif isinstance(slave, IrSlave | ControllerSlave):
+            ambient_c = scene.rig.ambient_c
+            self._wrapped = wrapped = SpoiledTemperature(
+                slave.source, self.kind, self.size, now, ambient_c, self.device
+            )
+            slave.source = wrapped
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Show what is."""
+        slave = scene.rig.devices.get(self.device)
+        if self._wrapped is not None:
+            self._wrapped.active = False
+        elif isinstance(slave, SensorSlave):
+            slave.frozen = False
+
+
+class ControllerOutput(Effect):
+    """A temperature controller's output is stuck, whatever its loop computes; its registers show it."""
+
+    __slots__ = ("device", "percent")
+
+    def __init__(self, device: str, percent: float) -> None:
+        """At this output, % (below 0 cooling)."""
+        self.device, self.percent = device, percent
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Stick."""
+        self._stick(scene, self.percent)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Come loose."""
+        self._stick(scene, None)
+
+    def _stick(self, scene: Scene, percent: float | None) -> None:
+        slave = scene.rig.devices.get(self.device)
+        if isinstance(slave, ControllerSlave):
+            slave.stuck_output = percent

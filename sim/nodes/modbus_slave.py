@@ -24,6 +24,10 @@ DEVICE_FAILURE: Final = 4
 ENDURANCE: Final = 100_000
 """Writes that a device's non-volatile memory stands (Eurotherm HA028651)."""
 BROADCAST: Final = 0
+PATTERN: Final = (0.0, 0.5, 1.0, 0.5)
+"""What a digital sensor's readings in a row add to a value in counts before it is rounded down: its last bit. A value
+at rest then changes by exactly one count within four readings, as that of a real converter does, and their mean is
+within a quarter of a count."""
 
 _MOST_READ: Final = 125
 _MOST_WRITTEN: Final = 123

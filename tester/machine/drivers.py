@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
@@ -11,6 +12,7 @@ from drivers.modbus import Device, ModbusLink
 from drivers.ports import LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from drivers.temperature_controller import TemperatureController
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 from tester.inputs.rig.sensors import further_sensors, parts_of, title_of
@@ -43,6 +45,14 @@ class RigDrivers:
             return None
         sensor = self.devices[name] = sensor_of(config, self.links, channels)
         return sensor
+
+    def controller(self, kind: Literal["jacket", "chamber"]) -> TemperatureController:
+        """Add the driver of the rig's temperature controller of this kind, which is also its name, and return it."""
+        config = self.rig.devices[kind]
+        controller = self.devices[kind] = TemperatureController(
+            kind, profile_of(config.profile), config.unit_id, self.links[config.line]
+        )
+        return controller
 
     def further(self) -> list[Sensor]:
         """Add the further sensors and return them; last, so that a shared line asks the kind's own devices first."""

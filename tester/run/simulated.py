@@ -7,7 +7,7 @@ from typing import Any
 
 from sim import machines
 from sim.made_of_materials import MadeOfMaterials
-from sim.nodes.profile_slave import UnknownQuantityError
+from sim.nodes.sensor_slave import UnknownQuantityError
 from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 from tester.base.source import InvalidSource, Problem

@@ -24,7 +24,7 @@ class Quantities:
         self.asked.append(t)
         return self.surface_c
 
-    def hub_measured_c(self, t: float) -> float:
+    def controller_measured_c(self, t: float) -> float:
         self.asked.append(t)
         return self.hub_c
 

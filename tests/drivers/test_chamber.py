@@ -6,10 +6,10 @@ from math import isnan, nan
 
 import pytest
 
-from drivers.chamber import LEASE_S, ClimateChamber
 from drivers.crc16 import with_crc
 from drivers.profiles import ProfileError, load_profile
-from sim.nodes.chamber_slave import ChamberSlave
+from drivers.temperature_controller import CHAMBER_LEASE_S, TemperatureController
+from sim.nodes.controller_slave import ControllerSlave
 from tests.drivers.modbus_rig import Rig
 
 PROFILE = load_profile("climate_chamber")
@@ -21,21 +21,21 @@ class Air:
     def __init__(self) -> None:
         self.air_c = 23.0
 
-    def chamber_measured_c(self, t: float) -> float:
+    def controller_measured_c(self, t: float) -> float:
         return self.air_c
 
 
-def rig() -> tuple[Rig, ClimateChamber, ChamberSlave, Air]:
+def rig() -> tuple[Rig, TemperatureController, ControllerSlave, Air]:
     air = Air()
-    slave = ChamberSlave(PROFILE, 3, air)
+    slave = ControllerSlave(PROFILE, 3, air)
     made = Rig(38400, slave, period_s=0.05)
-    return made, ClimateChamber(PROFILE, 3, made.link), slave, air
+    return made, TemperatureController("chamber", PROFILE, 3, made.link), slave, air
 
 
 class Command:
     """What an engine does in every scan."""
 
-    def __init__(self, chamber: ClimateChamber, celsius: float) -> None:
+    def __init__(self, chamber: TemperatureController, celsius: float) -> None:
         self.chamber, self.celsius = chamber, celsius
 
     def __call__(self) -> None:
@@ -48,7 +48,7 @@ def test_set_up_is_standby_and_the_lease_read_back() -> None:
     made.run(1.0)
     assert made.log.requests("03060012")[0][1] == with_crc(bytes.fromhex("030600120000"))
     assert made.log.requests("03060011")[0][1] == with_crc(bytes.fromhex("03060011012c"))
-    assert slave.lease_s == LEASE_S and not slave.running
+    assert slave.lease_s == CHAMBER_LEASE_S and not slave.running
 
 
 def test_a_setpoint_below_zero_goes_out_in_tenths_of_a_degree() -> None:
@@ -63,7 +63,7 @@ def test_the_reading_is_the_air() -> None:
     made, chamber, _, air = rig()
     air.air_c = -49.96
     made.run(3.0)
-    assert chamber.valid and chamber.air_c == pytest.approx(-50.0, abs=0.11)
+    assert chamber.valid and chamber.measured_c == pytest.approx(-50.0, abs=0.11)
 
 
 @pytest.mark.parametrize(("asked", "written"), [(-80.0, -50.0), (140.0, 100.0)])
@@ -81,14 +81,14 @@ def test_no_number_is_no_setpoint() -> None:
 
 def test_a_setpoint_that_is_asked_for_is_renewed_and_the_lease_holds() -> None:
     made, chamber, slave, _ = rig()
-    made.run(LEASE_S + 10.0, Command(chamber, 60.0))
+    made.run(CHAMBER_LEASE_S + 10.0, Command(chamber, 60.0))
     assert slave.running and not chamber.lease_expired
 
 
 def test_a_setpoint_that_is_not_asked_for_runs_out_and_the_chamber_stands_by() -> None:
     made, chamber, slave, _ = rig()
     made.run(5.0, Command(chamber, 60.0))
-    made.run(LEASE_S + 5.0)
+    made.run(CHAMBER_LEASE_S + 5.0)
     assert not slave.running and slave.output == 0.0 and chamber.lease_expired
 
 
@@ -97,7 +97,7 @@ def test_a_broken_sensor_is_no_reading_and_ends_the_heat() -> None:
     made.run(3.0, Command(chamber, 60.0))
     air.air_c = nan
     made.run(3.0, Command(chamber, 60.0))
-    assert chamber.sensor_break and not chamber.valid and isnan(chamber.air_c) and slave.output == 0.0
+    assert chamber.sensor_break and not chamber.valid and isnan(chamber.measured_c) and slave.output == 0.0
 
 
 @pytest.mark.parametrize("air_c", [106.0, -56.0])
@@ -129,4 +129,4 @@ def test_a_chamber_without_supply_is_not_valid_and_starts_in_standby() -> None:
 
 def test_a_profile_of_another_kind_is_refused() -> None:
     with pytest.raises(ProfileError, match="describes a jacket, not a chamber"):
-        ClimateChamber(load_profile("simulated_jacket"), 1, rig()[0].link)
+        TemperatureController("chamber", load_profile("simulated_jacket"), 1, rig()[0].link)

@@ -9,7 +9,7 @@ import pytest
 from drivers.crc16 import with_crc
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
-from sim.nodes.ir_slave import IrSlave
+from sim.nodes.sensor_slave import IrSlave
 from tests.drivers.modbus_bench import Bench, reply
 from tests.drivers.modbus_rig import Quantities, Rig
 

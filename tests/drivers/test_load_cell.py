@@ -9,7 +9,7 @@ import pytest
 from drivers.crc16 import with_crc
 from drivers.profiles import ProfileError, load_profile
 from drivers.sensor import Sensor
-from sim.nodes.cell_slave import CellSlave
+from sim.nodes.sensor_slave import CellSlave
 from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, reply
 from tests.drivers.modbus_rig import Quantities, Rig

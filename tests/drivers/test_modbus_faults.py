@@ -7,14 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.crc16 import with_crc
-from drivers.jacket import HeatingJacket
 from drivers.modbus import ModbusLink, Request
 from drivers.ports import BusLost, LineWatcher, Unwatch
 from drivers.profiles import Timing, load_profile
 from drivers.sensor import Sensor
-from sim.nodes.cell_slave import CellSlave
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import JacketSlave
+from drivers.temperature_controller import TemperatureController
+from sim.nodes.controller_slave import ControllerSlave
+from sim.nodes.sensor_slave import CellSlave, IrSlave
 from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, Notes, refusal, reply
 from tests.drivers.modbus_rig import Quantities, Rig
@@ -350,9 +349,9 @@ def three_devices_in_trouble(sparing: bool, period_s: float) -> Rig:
     """Return a line after 20 s with three devices, changing setpoints and every kind of impairment."""
     source, profiles = Quantities(), [load_profile(n) for n in ("simulated_jacket", "calex_pyrominibus")]
     cell = load_profile("four_axis_transmitter")
-    slaves = (JacketSlave(profiles[0], 1, source), IrSlave(profiles[1], 2, source), CellSlave(cell, 3, source))
+    slaves = (ControllerSlave(profiles[0], 1, source), IrSlave(profiles[1], 2, source), CellSlave(cell, 3, source))
     rig = Rig(38400, *slaves, period_s=period_s, sparing=sparing)
-    jacket = HeatingJacket(profiles[0], 1, rig.link)
+    jacket = TemperatureController("jacket", profiles[0], 1, rig.link)
     Sensor(profiles[1], 2, rig.link)
     Sensor(cell, 3, rig.link)
     for number, kind in enumerate(IMPAIRMENTS):

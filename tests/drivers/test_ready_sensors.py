@@ -7,7 +7,7 @@ import pytest
 from drivers.crc16 import with_crc
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
-from sim.nodes.profile_slave import ProfileSlave
+from sim.nodes.sensor_slave import SensorSlave
 from tests.drivers.modbus_bench import Bench, reply
 from tests.drivers.modbus_rig import Rig
 
@@ -61,7 +61,7 @@ def test_the_torque_transducer_saturates_at_98_percent_of_its_range() -> None:
 )
 def test_the_simulated_one_answers_on_the_wire(profile: str, shows: dict[str, float]) -> None:
     data = load_profile(profile)
-    made = Rig(data.line.baud, ProfileSlave(data, 1, shows))
+    made = Rig(data.line.baud, SensorSlave(data, 1, shows))
     sensor = Sensor(data, 1, made.link)
     made.run(3.0)
     assert sensor.valid

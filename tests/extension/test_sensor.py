@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.nodes.profile_slave import ProfileSlave
+from sim.nodes.sensor_slave import SensorSlave
 from tester.base.screen import Value
 from tester.cli.main import invoke
 from tester.inputs.rig.sensors import quantities_on
@@ -57,7 +57,7 @@ def shown(run: Simulation) -> dict[str, Value]:
     return {value.key: value for value in values}
 
 
-def slave(run: Simulation) -> ProfileSlave:
+def slave(run: Simulation) -> SensorSlave:
     return run.world.sensors["hygrometer"]
 
 

@@ -10,10 +10,9 @@ import pytest
 
 from drivers.crc16 import crc16
 from drivers.profiles import load_profile
-from sim.nodes.cell_slave import CellSlave
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.sensor_slave import CellSlave, IrSlave
 from tests.drivers.modbus_rig import Quantities
 
 if sys.platform == "win32":
@@ -104,7 +103,7 @@ def test_minimalmodbus_writes_the_emissivity_and_reads_it_back(connect: Callable
 
 
 def test_minimalmodbus_understands_the_exceptions(connect: Callable[..., Terminal]) -> None:
-    device = instrument(connect(JacketSlave(load_profile("simulated_jacket"), 1, Quantities())), 1)
+    device = instrument(connect(ControllerSlave(load_profile("simulated_jacket"), 1, Quantities())), 1)
     device.serial.timeout = 0.5  # it waits for a reply of full length, which a refusal is not
     with pytest.raises(minimalmodbus.IllegalRequestError):
         device.read_register(3000)
@@ -121,7 +120,7 @@ def test_minimalmodbus_hears_nothing_from_an_absent_address(connect: Callable[..
 
 
 def test_pymodbus_commands_and_reads_the_controller(connect: Callable[..., Terminal]) -> None:
-    slave = JacketSlave(load_profile("simulated_jacket"), 1, Quantities())
+    slave = ControllerSlave(load_profile("simulated_jacket"), 1, Quantities())
     terminal = connect(slave)
     with ModbusSerialClient(terminal.name, baudrate=115200, timeout=PATIENCE_S, retries=0) as client:
         assert not client.write_register(26, 800, device_id=1).isError()

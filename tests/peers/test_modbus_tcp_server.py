@@ -9,10 +9,10 @@ from select import select
 import pytest
 from pyModbusTCP.server import ModbusServer
 
-from drivers.jacket import HeatingJacket
 from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
+from drivers.temperature_controller import TemperatureController
 from drivers.transports.tcp_line import TcpLine, open_tcp_line
 
 PATIENCE_S = 10.0
@@ -78,11 +78,11 @@ def test_the_thermometer_sets_its_emissivity_and_reads(server: ModbusServer, exc
 
 def test_the_jacket_is_set_up_commanded_and_read(server: ModbusServer, exchange: Exchange) -> None:
     server.data_bank.set_holding_registers(1, [853, 0, 0, 425, 900])
-    jacket = HeatingJacket(load_profile("simulated_jacket"), 1, exchange.link)
+    jacket = TemperatureController("jacket", load_profile("simulated_jacket"), 1, exchange.link)
     jacket.enable(True)
     jacket.set_setpoint(90.0)
     exchange.until(lambda: jacket.valid and server.data_bank.get_holding_registers(199) == [0])
-    assert (jacket.hub_c, jacket.output_percent) == pytest.approx((85.3, 42.5))
+    assert (jacket.measured_c, jacket.output_percent) == pytest.approx((85.3, 42.5))
     assert server.data_bank.get_holding_registers(26) == [900]
     assert server.data_bank.get_holding_registers(276) == [1]
     assert server.data_bank.get_holding_registers(5000) == [20]

@@ -9,11 +9,9 @@ import pytest
 
 from drivers.crc16 import with_crc
 from drivers.profiles import ProfileError, load_profile
-from sim.nodes.cell_slave import CellSlave
-from sim.nodes.dither import PATTERN
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import CYCLE_S, JacketSlave
-from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.controller_slave import JACKET_CYCLE_S, ControllerSlave
+from sim.nodes.modbus_slave import PATTERN, ModbusSlave
+from sim.nodes.sensor_slave import CellSlave, IrSlave
 from tests.drivers.modbus_rig import Quantities
 
 CELL = load_profile("four_axis_transmitter")
@@ -55,9 +53,9 @@ def test_a_block_asked_for_often_reads_as_the_registers_one_by_one(made: str) ->
     slave, profile = {
         "cell": lambda: (CellSlave(CELL, 1, source), CELL),
         "thermometer": lambda: (IrSlave(INFRARED, 1, source), INFRARED),
-        "controller": lambda: (JacketSlave(JACKET, 1, source), JACKET),
+        "controller": lambda: (ControllerSlave(JACKET, 1, source), JACKET),
     }[made]()
-    if isinstance(slave, JacketSlave):
+    if isinstance(slave, ControllerSlave):
         slave.advance(0.0, 1.0)
     for block in profile.blocks:
         for _ in range(5):
@@ -172,7 +170,7 @@ class Hub:
         self.hub_c = self.rubber_c = self.sensor_c = celsius
         self.heater_w = 0.0
 
-    def hub_measured_c(self, t: float) -> float:
+    def controller_measured_c(self, t: float) -> float:
         return self.sensor_c
 
     def advance(self, dt: float) -> None:
@@ -187,7 +185,7 @@ class Oven:
 
     def __init__(self) -> None:
         self.hub = Hub()
-        self.slave = JacketSlave(JACKET, 1, self.hub, self.hub)
+        self.slave = ControllerSlave(JACKET, 1, self.hub)
         self.t = 0.0
         self.renew = True
         self.hottest = -1e9
@@ -203,6 +201,7 @@ class Oven:
             if self.renew and number % 10 == 0:
                 write(self.slave, 26, round(10 * self.setpoint), self.t)
             self.slave.advance(self.t, self.t + 0.05)
+            self.hub.heater_w = self.slave.heater_w
             self.hub.advance(0.05)
             self.t += 0.05
             self.hottest = max(self.hottest, self.hub.hub_c)
@@ -254,13 +253,12 @@ def test_in_standby_there_is_no_heat() -> None:
     oven.start(80.0)
     oven.run(10.0)
     write(oven.slave, 199, 1, oven.t)
-    oven.run(2 * CYCLE_S)
+    oven.run(2 * JACKET_CYCLE_S)
     assert oven.slave.heater_w == 0.0
-    assert oven.hub.heater_w == 0.0
 
 
 def test_a_controller_starts_in_standby() -> None:
-    slave = JacketSlave(JACKET, 1, Hub())
+    slave = ControllerSlave(JACKET, 1, Hub())
     slave.advance(0.0, 1.0)
     assert read(slave, 199, 1) == b"\x00\x01"
     assert slave.heater_w == 0.0
@@ -268,7 +266,7 @@ def test_a_controller_starts_in_standby() -> None:
 
 @pytest.mark.parametrize(("asked", "given"), [(2000, 150.0), (0xFF38, 0.0), (853, 85.3)])
 def test_the_setpoint_is_kept_between_0_and_150(asked: int, given: float) -> None:
-    slave = JacketSlave(JACKET, 1, Hub())
+    slave = ControllerSlave(JACKET, 1, Hub())
     write(slave, 26, asked)
     assert slave.setpoint_c == pytest.approx(given)
     assert int.from_bytes(read(slave, 5, 1), "big") == round(10 * given)
@@ -323,7 +321,7 @@ def test_the_limiter_latches_until_standby_and_cool() -> None:
     oven.start(100.0)
     oven.slave.stuck_output = None
     oven.hub.sensor_c = oven.hub.hub_c = 156.0
-    oven.run(2 * CYCLE_S)
+    oven.run(2 * JACKET_CYCLE_S)
     assert oven.slave.limited
     assert int.from_bytes(read(oven.slave, 75, 1), "big") & 1
     oven.hub.sensor_c = oven.hub.hub_c = 90.0
@@ -362,7 +360,7 @@ def test_temperature_and_output_are_those_of_the_last_cycle() -> None:
 def test_the_loop_runs_eight_times_a_second_whatever_the_ticks() -> None:
     for tick_s in (0.001, 0.01, 0.1, 0.5):
         source = Quantities()
-        slave = JacketSlave(JACKET, 1, source)
+        slave = ControllerSlave(JACKET, 1, source)
         for number in range(round(2.0 / tick_s)):
             slave.advance(number * tick_s, (number + 1) * tick_s)
         assert len(source.asked) == pytest.approx(17, abs=1)
@@ -370,17 +368,17 @@ def test_the_loop_runs_eight_times_a_second_whatever_the_ticks() -> None:
 
 def test_a_late_start_of_the_clock_does_not_run_cycles_of_the_past() -> None:
     source = Quantities()
-    JacketSlave(JACKET, 1, source).advance(1e6, 1e6 + 0.01)
+    ControllerSlave(JACKET, 1, source).advance(1e6, 1e6 + 0.01)
     assert len(source.asked) == 1
 
 
 @pytest.mark.parametrize(("address", "value"), [(199, 7), (5000, 60_000), (276, 5)])
 def test_values_it_does_not_know_are_refused(address: int, value: int) -> None:
-    assert write(JacketSlave(JACKET, 1, Hub()), address, value) == bytes.fromhex("018603")
+    assert write(ControllerSlave(JACKET, 1, Hub()), address, value) == bytes.fromhex("018603")
 
 
 def test_measured_registers_cannot_be_written() -> None:
-    assert write(JacketSlave(JACKET, 1, Hub()), 1, 0) == bytes.fromhex("018602")
+    assert write(ControllerSlave(JACKET, 1, Hub()), 1, 0) == bytes.fromhex("018602")
 
 
 def test_without_supply_there_is_neither_answer_nor_heat() -> None:
@@ -388,7 +386,7 @@ def test_without_supply_there_is_neither_answer_nor_heat() -> None:
     oven.start(80.0)
     oven.run(5.0)
     oven.slave.power(False)
-    assert oven.hub.heater_w == 0.0
+    assert oven.slave.heater_w == 0.0
     assert oven.slave.answer(with_crc(bytes.fromhex("010300010005")), oven.t) is None
     oven.slave.power(True)
     oven.run(1.0)
@@ -396,7 +394,7 @@ def test_without_supply_there_is_neither_answer_nor_heat() -> None:
 
 
 def test_the_other_controllers_profile_works_too() -> None:
-    slave = JacketSlave(load_profile("omron_e5cc"), 1, Quantities())
+    slave = ControllerSlave(load_profile("omron_e5cc"), 1, Quantities())
     write(slave, 0x2103, 900)
     write(slave, 0x0000, 0x0100)
     slave.advance(0.0, 1.0)
@@ -424,7 +422,7 @@ def test_a_copy_of_controller_and_hub_lives_on_its_own() -> None:
 
 
 def test_only_a_changed_value_is_written_to_memory_and_the_remote_setpoint_never() -> None:
-    jacket = JacketSlave(JACKET, 1, Quantities())
+    jacket = ControllerSlave(JACKET, 1, Quantities())
     for value in (20, 20, 20, 30):
         write(jacket, 5000, value)
         write(jacket, 26, 10 * value)
@@ -432,7 +430,7 @@ def test_only_a_changed_value_is_written_to_memory_and_the_remote_setpoint_never
 
 
 def test_a_memory_worn_out_refuses_a_change_with_exception_04_and_keeps_the_value() -> None:
-    jacket = JacketSlave(JACKET, 1, Quantities())
+    jacket = ControllerSlave(JACKET, 1, Quantities())
     write(jacket, 199, 0)
     jacket.endurance = 1
     assert write(jacket, 199, 1).hex() == "018604"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sim import machines
-from sim.nodes.profile_slave import UnknownQuantityError
+from sim.nodes.sensor_slave import UnknownQuantityError
 from sim.plain_twin import PlainTwin
 from tester.run.simulated import spec_of
 from tests.tester.machine.plain.bench import BenchPlant, BenchRuns, bench_rig

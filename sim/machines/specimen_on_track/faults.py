@@ -16,13 +16,9 @@ from sim.faults import actuators, can, drives, modbus, operator_faults, sdo
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.language import FaultLanguage
 from sim.faults.scene import Effect, Scene
-from sim.faults.sensors import SEED, SLOW, Slow, spoiled
+from sim.faults.sensors import ControllerOutput, SensorFault
 from sim.machines.specimen_on_track.rig import TrackRig
-from sim.nodes.cell_slave import CellSlave, ForceSource
-from sim.nodes.chamber_slave import AirSource
-from sim.nodes.ir_slave import IrSlave, SurfaceSource
 from sim.nodes.motion import VelocityAxis
-from sim.noise import NormalStream
 from sim.wires.modbus_wire import Kind
 
 STEPS: Final = ("connect", "install", "temper", "settle", "tare", "lower", "slide", "lift", "prompt")
@@ -52,124 +48,6 @@ def track_rig(scene: Scene) -> TrackRig:
     if not isinstance(scene.rig, TrackRig):
         raise TypeError(f"a fault of a specimen on a track cannot act on {type(scene.rig).__name__}")
     return scene.rig
-
-
-class _Spoiled:
-    """How a sensor shows something else than is, until it is no longer ``active``."""
-
-    def __init__(self, kind: str, value: float, since_s: float, middle: float) -> None:
-        """Of one of the kinds of ``sim.faults.sensors``, of this size; shares count from ``middle`` (0 N, or degC)."""
-        self._kind, self._value, self._since_s, self._middle = kind, value, since_s, middle
-        self._noise = NormalStream(SEED, "faulty track sensor")
-        self._slow = Slow(kind, value) if kind in SLOW else None
-        self.active = True
-
-    def shown(self, true: float, t: float) -> float:
-        """Return what it makes of a true value at ``t`` s."""
-        if not self.active:
-            return true
-        if self._slow is not None:
-            return self._slow.shown((true,), t)[0]
-        return spoiled(self._kind, true, self._value, t - self._since_s, self._noise, self._middle)
-
-
-class SpoiledForce:
-    """A load cell with something wrong."""
-
-    def __init__(self, source: ForceSource, spoil: _Spoiled) -> None:
-        """Stand in for ``source``."""
-        self._source, self._spoil = source, spoil
-
-    def forces_measured(self, t: float) -> tuple[float, float, float, float]:
-        """Return the tangential force in N as it appears, as the first of four channels."""
-        x, y, z, m = self._source.forces_measured(t)
-        return self._spoil.shown(x, t), y, z, m
-
-
-class SpoiledSurface:
-    """A pyrometer or thermometer with something wrong."""
-
-    def __init__(self, source: SurfaceSource, spoil: _Spoiled) -> None:
-        """Stand in for ``source``."""
-        self._source, self._spoil = source, spoil
-
-    def surface_measured_c(self, t: float) -> float:
-        """Return the temperature in degC as it appears."""
-        return self._spoil.shown(self._source.surface_measured_c(t), t)
-
-
-class SpoiledAir:
-    """A chamber's sensor with something wrong."""
-
-    def __init__(self, source: AirSource, spoil: _Spoiled) -> None:
-        """Stand in for ``source``."""
-        self._source, self._spoil = source, spoil
-
-    def chamber_measured_c(self, t: float) -> float:
-        """Return the air's temperature in degC as it appears."""
-        return self._spoil.shown(self._source.chamber_measured_c(t), t)
-
-
-class SpoiledSensor(Effect):
-    """Something is wrong with a sensor (N, K, or that a second, or percent, or s); "frozen" stops a device's sampling.
-
-    Without the device the fault has nothing to act on.
-    """
-
-    __slots__ = ("_spoil", "device", "kind", "value")
-
-    def __init__(self, device: str, kind: str, value: float = 0.0) -> None:
-        """Of the device of this name."""
-        self.device, self.kind, self.value = device, kind, value
-        self._spoil: _Spoiled | None = None
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Let it show something else from now on."""
-        rig = track_rig(scene)
-        slave = rig.devices.get(self.device)
-        if isinstance(slave, CellSlave | IrSlave) and self.kind == "frozen":
-            slave.frozen = True
-            return
-        middle = 0.0 if isinstance(slave, CellSlave) else rig.ambient_c
-        # A broken bridge drives the amplifier to the end of its range.
-        kind = "saturated" if self.kind == "open" and isinstance(slave, CellSlave) else self.kind
-        self._spoil = spoil = _Spoiled(kind, self.value, now, middle)
-        if isinstance(slave, CellSlave):
-            slave.source = SpoiledForce(slave.source, spoil)
-        elif isinstance(slave, IrSlave):
-            slave.source = SpoiledSurface(slave.source, spoil)
-        elif rig.chamber is not None:
-            rig.chamber.source = SpoiledAir(rig.chamber.source, spoil)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Show what is."""
-        if self._spoil is not None:
-            self._spoil.active = False
-        slave = track_rig(scene).devices.get(self.device)
-        if isinstance(slave, CellSlave | IrSlave):
-            slave.frozen = False
-
-
-class ChamberOutput(Effect):
-    """The chamber heats or cools whatever its loop says."""
-
-    __slots__ = ("percent",)
-
-    def __init__(self, percent: float) -> None:
-        """With this output, -100 (cooling) to 100 %."""
-        self.percent = percent
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Stick."""
-        chamber = track_rig(scene).chamber
-        if chamber is not None:
-            chamber.stuck_output = self.percent
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Come loose."""
-        chamber = track_rig(scene).chamber
-        if chamber is not None:
-            chamber.stuck_output = None
 
 
 class TrackOverspeeds(drives.Runaway):
@@ -269,6 +147,9 @@ _SPOILED: Final[tuple[tuple[str, Kind], ...]] = (
 )  # fmt: skip
 
 
+_CELL: Final = partial(SensorFault, "load cell", force="fx")
+
+
 def _device_rows() -> Iterator[FaultKind]:
     for device, (when, budget_s) in _SILENT_S.items():
         for what, kind in _SPOILED:
@@ -278,29 +159,30 @@ def _device_rows() -> Iterator[FaultKind]:
                         lasts_s=modbus.REBOOT_S)
         yield FaultKind(f"{device} replies late", partial(modbus.LateReply, device), when, Expected.TRIP,
                         budget_s + 0.5, "ms", 1.5)
-    yield FaultKind("chamber runs away", ChamberOutput, Onset.TEMPERED, Expected.TRIP, 600.0, "%", 100.0, slow=True,
+    yield FaultKind("chamber runs away", partial(ControllerOutput, "chamber"), Onset.TEMPERED, Expected.TRIP, 600.0,
+                    "%", 100.0, slow=True,
                     note="seen by its reading, 10 K from the setpoint after it was there, or at its range")
-    yield FaultKind("chamber sensor open", partial(SpoiledSensor, "chamber", "open"), Onset.TEMPERED, Expected.TRIP,
+    yield FaultKind("chamber sensor open", partial(SensorFault, "chamber", "open"), Onset.TEMPERED, Expected.TRIP,
                     3.0 + SCAN_S)
-    yield FaultKind("chamber sensor offset", partial(SpoiledSensor, "chamber", "offset"), Onset.TEMPERED,
+    yield FaultKind("chamber sensor offset", partial(SensorFault, "chamber", "offset"), Onset.TEMPERED,
                     Expected.MAY, 0.0, "K", -10.0, slow=True,
                     note="one sensor alone: nothing in the chamber contradicts it")
-    yield FaultKind("load cell frozen", partial(SpoiledSensor, "load cell", "frozen"), Onset.SLIDING, Expected.TRIP,
+    yield FaultKind("load cell frozen", partial(_CELL, "frozen"), Onset.SLIDING, Expected.TRIP,
                     2.0 + SCAN_S, note="not one count changes")
-    yield FaultKind("load cell open", partial(SpoiledSensor, "load cell", "open"), Onset.ALWAYS, Expected.TRIP,
+    yield FaultKind("load cell open", partial(_CELL, "open"), Onset.ALWAYS, Expected.TRIP,
                     0.2 + SCAN_S)
-    yield FaultKind("load cell offset", partial(SpoiledSensor, "load cell", "offset"), Onset.SLIDING, Expected.MAY,
+    yield FaultKind("load cell offset", partial(_CELL, "offset"), Onset.SLIDING, Expected.MAY,
                     0.0, "N", 5.0, note="seen by the next tare")
-    yield FaultKind("load cell drift", partial(SpoiledSensor, "load cell", "drift"), Onset.SLIDING, Expected.MAY, 0.0,
+    yield FaultKind("load cell drift", partial(_CELL, "drift"), Onset.SLIDING, Expected.MAY, 0.0,
                     "N/s", 0.01, note="seen by the next tare")
-    yield FaultKind("load cell gain", partial(SpoiledSensor, "load cell", "gain"), Onset.SLIDING, Expected.MAY, 0.0,
+    yield FaultKind("load cell gain", partial(_CELL, "gain"), Onset.SLIDING, Expected.MAY, 0.0,
                     "%", 70.0, note="one channel alone: nothing on the rig contradicts it")
     yield FaultKind("friction", TrackRubsOtherwise, Onset.SLIDING, Expected.MAY, 0.0, "%", 115.0,
                     note="rubber and track, no fault of the machine: results carry a doubt")
     for name in ("pyrometer", "thermometer"):
         yield FaultKind(f"{name} silent", partial(modbus.Impaired, name, "silence"), Onset.ALWAYS, Expected.TRIP,
                         3.0, note="on a rig that has one")
-        yield FaultKind(f"{name} offset", partial(SpoiledSensor, name, "offset"), Onset.ALWAYS, Expected.MAY, 0.0, "K",
+        yield FaultKind(f"{name} offset", partial(SensorFault, name, "offset"), Onset.ALWAYS, Expected.MAY, 0.0, "K",
                         10.0, note="recorded, not controlled by")
 
 

@@ -203,7 +203,7 @@ class TrackPlant:
             seen_n += rms_n * self._noise.next()
         return min(max(seen_n, -s.force_range), s.force_range), 0.0, 0.0, 0.0
 
-    def chamber_measured_c(self, t: float) -> float:
+    def controller_measured_c(self, t: float) -> float:
         """Return what the chamber's sensor reads now, degC."""
         return self._air.measure()
 

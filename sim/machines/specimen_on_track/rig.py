@@ -10,12 +10,11 @@ from typing import Final
 
 from drivers.axis import AxisConfig
 from sim.machines.specimen_on_track.plant import TrackPlant
-from sim.nodes.cell_slave import CellSlave
-from sim.nodes.chamber_slave import ChamberSlave
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.ir_slave import IrSlave
+from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import PositionAxis, VelocityAxis
+from sim.nodes.sensor_slave import CellSlave, IrSlave
 from sim.physics.laws import LawSetting
 from sim.physics.track import Interface, TrackParameters
 from sim.rig import DeviceSpec, RigSpec, SimRig
@@ -99,15 +98,15 @@ class TrackRig(SimRig):
         if name == "load_cell":
             return CellSlave(profile, unit_id, self.plant)
         if name == "chamber":
-            return ChamberSlave(profile, unit_id, self.plant)
+            return ControllerSlave(profile, unit_id, self.plant)
         if name == "pyrometer":
             return IrSlave(profile, unit_id, self.plant, sensor_c=self.plant.parameters.ambient)
         return IrSlave(profile, unit_id, AmbientAir(self.plant), sensor_c=self.plant.parameters.ambient)
 
     @staticmethod
-    def _chamber(devices: dict[str, ModbusSlave]) -> ChamberSlave | None:
+    def _chamber(devices: dict[str, ModbusSlave]) -> ControllerSlave | None:
         chamber = devices.get("chamber")
-        return chamber if isinstance(chamber, ChamberSlave) else None
+        return chamber if isinstance(chamber, ControllerSlave) else None
 
     # -- the wires' side ------------------------------------------------------------------------------------------
 

@@ -447,6 +447,6 @@ class Plant:
         """Return what the infrared thermometer reads now, in degC; ``t`` is the time of asking."""
         return self.ir.measure()
 
-    def hub_measured_c(self, t: float) -> float:
+    def controller_measured_c(self, t: float) -> float:
         """Return what the hub's sensor reads now, in degC; ``t`` is the time of asking."""
         return self.hub_sensor.measure()

@@ -15,12 +15,11 @@ from drivers.axis import AxisConfig
 from sim.machines.wheel_on_belt.plant import Plant
 from sim.machines.wheel_on_belt.scatter import WheelSetting
 from sim.machines.wheel_on_belt.torque import PressScrew, capstan_n, shafts
-from sim.nodes.cell_slave import CellSlave
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import VelocityAxis
+from sim.nodes.sensor_slave import CellSlave, IrSlave
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity
 from sim.rig import LONGEST_STEP_S, RigSpec, SimRig
@@ -72,7 +71,7 @@ class WheelRig(SimRig):
         self.cell = _measuring(self.cells, "fz")
         """The transmitter of the normal force."""
         self.ir = IrSlave(ir.profile, ir.unit_id, self.plant, sensor_c=parameters.ambient)
-        self.jacket = JacketSlave(jacket.profile, jacket.unit_id, self.plant)
+        self.jacket = ControllerSlave(jacket.profile, jacket.unit_id, self.plant)
         devices: dict[str, ModbusSlave] = {"load cell": self.cell, "thermometer": self.ir, "jacket": self.jacket}
         devices |= {f"load cell {force}": _measuring(self.cells, force) for force in FORCES}
         wired: dict[str, ModbusSlave] = {**self.cells, "ir_thermometer": self.ir, "jacket": self.jacket}

@@ -9,10 +9,9 @@ from collections import deque
 from math import inf, nan
 from typing import Final
 
-from drivers.chamber import ClimateChamber
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
-from tester.inputs.rig.profiles import profile_of
+from drivers.temperature_controller import TemperatureController
 from tester.kinds.specimen_on_track.process import NEVER, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.devices import DeviceList
@@ -41,11 +40,7 @@ class TrackDevices(DeviceList):
         self.cell: Sensor = cell
         self.thermometer: Sensor | None = drivers.sensor("thermometer", SURFACE_CHANNELS)
         self.pyrometer: Sensor | None = drivers.sensor("pyrometer", SURFACE_CHANNELS)
-        self.chamber: ClimateChamber | None = None
-        if rig.chamber:
-            config = rig.devices["chamber"]
-            self.chamber = ClimateChamber(profile_of(config.profile), config.unit_id, drivers.links[config.line])
-            drivers.devices["chamber"] = self.chamber
+        self.chamber: TemperatureController | None = drivers.controller("chamber") if rig.chamber else None
         super().__init__(drivers, (cell.link,))
         self.track: ServoDrive = drivers.drives["track"]
         self.lift: ServoDrive | None = drivers.drives.get("lift")
@@ -111,7 +106,7 @@ class TrackDevices(DeviceList):
     def _fill_temperatures(self, r: TrackReadings) -> None:
         chamber, thermometer, pyrometer = self.chamber, self.thermometer, self.pyrometer
         if chamber is not None:
-            r.air_c, r.air_valid, r.air_at_s = chamber.air_c, chamber.valid, chamber.stamp_s
+            r.air_c, r.air_valid, r.air_at_s = chamber.measured_c, chamber.valid, chamber.stamp_s
             r.air_silent = not chamber.ready
             r.chamber_percent = chamber.output_percent
             r.chamber_alarm = chamber.out_of_range or chamber.lease_expired

@@ -13,9 +13,8 @@ from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from sim.machines.wheel_on_belt.faults.sensors import SpoiledForces, SpoiledTemperature
+from sim.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.machines.wheel_on_belt.rig import WheelRig
-from sim.noise import NormalStream
 from tester.kinds.wheel_on_belt.commission.jog import AXES
 from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
@@ -88,18 +87,18 @@ def reverse(name: str, world: WheelRig) -> None:
 
 
 def cross(kind: str, world: WheelRig) -> None:
-    """Cross the wires of the load cell (sim.machines.wheel_on_belt.faults.sensors.CROSSED)."""
-    world.cell.source = SpoiledForces(world.cell.source, kind, 0.0, 0.0, NormalStream(0, "unused"))
+    """Cross the wires of the load cell (sim.faults.sensors.CROSSED)."""
+    world.cell.source = SpoiledForces(world.cell.source, kind)
 
 
 def gain(percent: float, world: WheelRig) -> None:
     """Let the load cell's Fz have another gain."""
-    world.cell.source = SpoiledForces(world.cell.source, "gain", percent, 0.0, NormalStream(0, "unused"))
+    world.cell.source = SpoiledForces(world.cell.source, "gain", percent)
 
 
 def see(kind: str, size: float, world: WheelRig) -> None:
     """Let the thermometer show something else: ``gain`` is what a wrong emissivity does, per cent of the excess."""
-    world.ir.source = SpoiledTemperature(world.ir.source, kind, size, 0.0, 23.0, NormalStream(0, "unused"))
+    world.ir.source = SpoiledTemperature(world.ir.source, kind, size, 0.0, 23.0, "thermometer")
 
 
 def swap(world: WheelRig) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from drivers.crc16 import with_crc
 from drivers.profiles import load_profile
-from sim.nodes.cell_slave import CellSlave
+from sim.nodes.sensor_slave import CellSlave
 from sim.servers.rtu import LONGEST_FRAME, RtuEar
 from sim.wires.modbus_wire import ModbusWire
 from tests.drivers.modbus_rig import Quantities

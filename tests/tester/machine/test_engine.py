@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from drivers.cia402 import State
-from drivers.jacket import LEASE_S
+from drivers.temperature_controller import JACKET_LEASE_S
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.image.process import Press, Setpoints
 from tester.machine.engine import Engine
@@ -218,7 +218,7 @@ def test_a_rig_that_is_abandoned_loses_its_heat_by_the_contactor_and_its_jackets
         while left.world.jacket.heater_w > 0.0:
             after_s += 0.05
             left.world.advance(left.now + after_s)
-            assert after_s < LEASE_S + 0.2
+            assert after_s < JACKET_LEASE_S + 0.2
         latest_s = max(latest_s, after_s)
     assert latest_s > 0.5, "it was the lease"
 

@@ -17,10 +17,9 @@ from select import select
 
 from drivers.crc16 import crc16
 from drivers.profiles import load_profile
-from sim.nodes.cell_slave import CellSlave
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.modbus_slave import ModbusSlave
+from sim.nodes.sensor_slave import CellSlave, IrSlave
 from tester.kinds import hardware_text, load_rig
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_run
@@ -72,7 +71,8 @@ def lines() -> Iterator[dict[str, FarEnd]]:
     source = Quantities()
     cell = FarEnd(CellSlave(load_profile("four_axis_transmitter"), 1, source))
     heat = FarEnd(
-        JacketSlave(load_profile("simulated_jacket"), 1, source), IrSlave(load_profile("calex_pyrominibus"), 2, source)
+        ControllerSlave(load_profile("simulated_jacket"), 1, source),
+        IrSlave(load_profile("calex_pyrominibus"), 2, source),
     )
     yield {"load_cell": cell, "heat": heat}
     cell.close()

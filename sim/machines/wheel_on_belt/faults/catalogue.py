@@ -20,9 +20,9 @@ from sim.faults import operator_faults as p
 from sim.faults import sdo
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.scene import Effect
-from sim.machines.wheel_on_belt.faults import jacket as j
+from sim.faults.sensors import CROSSED, ControllerOutput, SensorFault
+from sim.machines.wheel_on_belt.faults import heat as h
 from sim.machines.wheel_on_belt.faults import mechanics as k
-from sim.machines.wheel_on_belt.faults import sensors as s
 from sim.machines.wheel_on_belt.faults.exposure import Exposure
 from sim.machines.wheel_on_belt.faults.slip_ring import WornSector
 from sim.machines.wheel_on_belt.rig import FORCES
@@ -37,6 +37,8 @@ STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "rol
 OVERCURRENT, OVERHEATING, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310, 0x8611, 0x7305, 0x8110
 SCAN_S = 0.05
 """The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
+CELL, SURFACE, HUB = (partial(SensorFault, device) for device in MODBUS_DEVICES)
+OUTPUT = partial(ControllerOutput, "jacket")
 
 POLL_S = 0.2 + SCAN_S
 """A temperature is polled at 5 Hz and judged by the next scan, s."""
@@ -183,53 +185,53 @@ def _exception(device: str, code: float) -> m.ExceptionReply:
 
 
 def _sensor_rows() -> Iterator[FaultKind]:
-    yield FaultKind("load cell frozen", partial(s.CellFault, "frozen"), PRESSING, TRIP, 0.5 + 0.1)
-    yield FaultKind("load cell open", partial(s.CellFault, "open"), LOADED, TRIP, 0.1 + SCAN_S)
-    yield FaultKind("load cell saturated", partial(s.CellFault, "saturated"), LOADED, TRIP, 0.1 + SCAN_S)
-    yield FaultKind("load cell offset", partial(s.CellFault, "offset"), PRESSING, MAY, 0.0, "N", 30.0,
+    yield FaultKind("load cell frozen", partial(CELL, "frozen"), PRESSING, TRIP, 0.5 + 0.1)
+    yield FaultKind("load cell open", partial(CELL, "open"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("load cell saturated", partial(CELL, "saturated"), LOADED, TRIP, 0.1 + SCAN_S)
+    yield FaultKind("load cell offset", partial(CELL, "offset"), PRESSING, MAY, 0.0, "N", 30.0,
                     note="seen at the next check of the zero; the force stays inside its limit")
-    yield FaultKind("load cell jumps", partial(s.CellFault, "offset"), PRESSING, TRIP, 0.05 + 2.0 * SCAN_S, "N", 150.0,
+    yield FaultKind("load cell jumps", partial(CELL, "offset"), PRESSING, TRIP, 0.05 + 2.0 * SCAN_S, "N", 150.0,
                     lasts_s=0.3,
                     note="a bolt gives way, an amplifier changes its range: the load reads above its target")
-    yield FaultKind("load cell reads low", partial(s.CellFault, "low"), MISWEIGHED, TRIP, 0.05 + 2.0 * SCAN_S, "%",
+    yield FaultKind("load cell reads low", partial(CELL, "low"), MISWEIGHED, TRIP, 0.05 + 2.0 * SCAN_S, "%",
                     50.0, note="the press goes on beyond what the load shown needs")
-    yield FaultKind("load cell drift", partial(s.CellFault, "drift"), PRESSING, MAY, 0.0, "N/s", 2.0,
+    yield FaultKind("load cell drift", partial(CELL, "drift"), PRESSING, MAY, 0.0, "N/s", 2.0,
                     note="seen at the next check of the zero, before each repeat")
-    yield FaultKind("load cell noisy", partial(s.CellFault, "noise"), PRESSING, MAY, 0.0, "N", 40.0,
+    yield FaultKind("load cell noisy", partial(CELL, "noise"), PRESSING, MAY, 0.0, "N", 40.0,
                     note="no reading stays beyond a limit for its delay; the load itself hardly moves")
-    yield FaultKind("thermometer frozen", partial(s.SurfaceFault, "frozen"), TURNING, TRIP, 62.0 + POLL_S, slow=True)
-    yield FaultKind("thermometer open", partial(s.SurfaceFault, "open"), HEATING, TRIP, 1.2 + SCAN_S)
-    yield FaultKind("thermometer jumps", partial(s.SurfaceFault, "offset"), HEATING, TRIP, POLL_S, "K", -10.0,
+    yield FaultKind("thermometer frozen", partial(SURFACE, "frozen"), TURNING, TRIP, 62.0 + POLL_S, slow=True)
+    yield FaultKind("thermometer open", partial(SURFACE, "open"), HEATING, TRIP, 1.2 + SCAN_S)
+    yield FaultKind("thermometer jumps", partial(SURFACE, "offset"), HEATING, TRIP, POLL_S, "K", -10.0,
                     lasts_s=0.6, note="moved, covered or disturbed")
-    yield FaultKind("thermometer offset", partial(s.SurfaceFault, "offset"), MISREAD, TRIP, 30.0 + POLL_S, "K", -15.0,
+    yield FaultKind("thermometer offset", partial(SURFACE, "offset"), MISREAD, TRIP, 30.0 + POLL_S, "K", -15.0,
                     slow=True, note="seen as a jump where a temperature is wanted")
-    yield FaultKind("thermometer reads low", partial(s.SurfaceFault, "low"), MISREAD, TRIP, 30.0 + POLL_S, "%", 60.0,
+    yield FaultKind("thermometer reads low", partial(SURFACE, "low"), MISREAD, TRIP, 30.0 + POLL_S, "%", 60.0,
                     slow=True, note="misaligned or dirty")
-    yield FaultKind("thermometer drift", partial(s.SurfaceFault, "drift"), MISREAD, TRIP, 30.0 + POLL_S, "K/s", -0.2,
+    yield FaultKind("thermometer drift", partial(SURFACE, "drift"), MISREAD, TRIP, 30.0 + POLL_S, "K/s", -0.2,
                     slow=True)
-    yield FaultKind("thermometer noisy", partial(s.SurfaceFault, "noise"), HEATING, TRIP, 3.0, "K", 5.0,
+    yield FaultKind("thermometer noisy", partial(SURFACE, "noise"), HEATING, TRIP, 3.0, "K", 5.0,
                     note="by chance: two readings in a row 5 K apart")
-    yield FaultKind("hub sensor open", partial(s.HubFault, "open"), ALWAYS, TRIP, 1.2 + SCAN_S)
-    yield FaultKind("hub sensor frozen", partial(s.HubFault, "frozen"), STARVED, TRIP, 61.0 + POLL_S, slow=True,
+    yield FaultKind("hub sensor open", partial(HUB, "open"), ALWAYS, TRIP, 1.2 + SCAN_S)
+    yield FaultKind("hub sensor frozen", partial(HUB, "frozen"), STARVED, TRIP, 61.0 + POLL_S, slow=True,
                     note="seen where the controller asks for heat; at its setpoint it only stops controlling")
-    yield FaultKind("hub sensor jumps", partial(s.HubFault, "offset"), RUNNING, TRIP, HUB_S, "K", -10.0, lasts_s=0.6,
+    yield FaultKind("hub sensor jumps", partial(HUB, "offset"), RUNNING, TRIP, HUB_S, "K", -10.0, lasts_s=0.6,
                     note="slip ring chatter, once")
-    yield FaultKind("hub sensor offset", partial(s.HubFault, "offset"), RUNNING, TRIP, HUB_S, "K", -20.0)
-    yield FaultKind("hub sensor reads low", partial(s.HubFault, "low"), HOT, TRIP, 10.0, "%", 80.0, slow=True,
+    yield FaultKind("hub sensor offset", partial(HUB, "offset"), RUNNING, TRIP, HUB_S, "K", -20.0)
+    yield FaultKind("hub sensor reads low", partial(HUB, "low"), HOT, TRIP, 10.0, "%", 80.0, slow=True,
                     note="shorted towards ambient: the controller heats what it does not see; by the surface, in time")
-    yield FaultKind("hub sensor noisy", partial(s.HubFault, "noise"), ALWAYS, TRIP, 3.0, "K", 8.0,
+    yield FaultKind("hub sensor noisy", partial(HUB, "noise"), ALWAYS, TRIP, 3.0, "K", 8.0,
                     note="slip ring chatter")
 
 
 def _actuator_rows() -> Iterator[FaultKind]:
-    yield FaultKind("jacket output stuck on", partial(j.JacketOutput, 100.0), OVERHEATED, TRIP, 2.0 + 1.0 + POLL_S,
+    yield FaultKind("jacket output stuck on", partial(OUTPUT, 100.0), OVERHEATED, TRIP, 2.0 + 1.0 + POLL_S,
                     slow=True, note="its sensor follows within a second")
-    yield FaultKind("jacket output stuck off", partial(j.JacketOutput, 0.0), HEATING, MAY, 0.0,
+    yield FaultKind("jacket output stuck off", partial(OUTPUT, 0.0), HEATING, MAY, 0.0,
                     note="the wheel gets colder than wanted: the recipe's waits notice, nothing is harmed")
-    yield FaultKind("jacket relay shorted", partial(j.HeaterElement, 100.0), UNASKED, TRIP, 16.0, slow=True,
+    yield FaultKind("jacket relay shorted", partial(h.HeaterElement, 100.0), UNASKED, TRIP, 16.0, slow=True,
                     note="the rate is known 3 s after the output has gone, over 4 to 8 s; 5 and 2 s of the row")
-    yield FaultKind("heater line open", partial(j.HeaterElement, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
-    yield FaultKind("jacket limiter dead", j.LimiterDead, ALWAYS, MAY, 0.0,
+    yield FaultKind("heater line open", partial(h.HeaterElement, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
+    yield FaultKind("jacket limiter dead", h.LimiterDead, ALWAYS, MAY, 0.0,
                     note="a second line: nothing shows that it is gone before it is needed")
     yield FaultKind("contactor welded", a.ContactorWelded, WELDED, TRIP, 0.5 + 2.0 * SCAN_S,
                     note="seen when it is to open")
@@ -284,21 +286,21 @@ def _hides(phrase: str, make: Callable[..., Effect], unit: str, value: float) ->
 
 def _misread_rows() -> Iterator[FaultKind]:
     """Yield sensors that show something else than is: by a share, late, of another channel or sign."""
-    yield _may("load cell gain", partial(s.CellFault, "gain"), "%", 70.0)
-    for channels in s.CROSSED:
+    yield _may("load cell gain", partial(CELL, "gain"), "%", 70.0)
+    for channels in CROSSED:
         what, _, which = channels.partition(" ")
         named = " and ".join(f"F{one}" for one in which.split())
-        yield _may(f"load cell {named} {what}", partial(s.CellFault, channels))
-    yield _hides("hub sensor gain", partial(s.HubFault, "gain"), "%", 60.0)
-    yield _hides("hub sensor partly detached", s.HubDetached, "%", 60.0)
-    yield _may("thermometer gain", partial(s.SurfaceFault, "gain"), "%", 80.0, slow=True)
-    yield _hides("common supply of hub sensor and thermometer", s.CommonSupplyFault, "%", 60.0)
-    for name, make, lag_s in (("load cell", s.CellFault, 1.0), ("thermometer", s.SurfaceFault, 1.5)):
+        yield _may(f"load cell {named} {what}", partial(CELL, channels))
+    yield _hides("hub sensor gain", partial(HUB, "gain"), "%", 60.0)
+    yield _hides("hub sensor partly detached", h.HubDetached, "%", 60.0)
+    yield _may("thermometer gain", partial(SURFACE, "gain"), "%", 80.0, slow=True)
+    yield _hides("common supply of hub sensor and thermometer", h.CommonSupplyFault, "%", 60.0)
+    for name, lag_s in (("load cell", 1.0), ("thermometer", 1.5)):
         slow = name != "load cell"
-        yield _may(f"{name} lag", partial(make, "lag"), "ms", lag_s, slow=slow)
-        yield _may(f"{name} delay", partial(make, "delay"), "ms", 0.5 * lag_s, slow=slow)
-    yield _hides("hub sensor lag", partial(s.HubFault, "lag"), "ms", 20.0)
-    yield _hides("hub sensor delay", partial(s.HubFault, "delay"), "ms", 20.0)
+        yield _may(f"{name} lag", partial(SensorFault, name, "lag"), "ms", lag_s, slow=slow)
+        yield _may(f"{name} delay", partial(SensorFault, name, "delay"), "ms", 0.5 * lag_s, slow=slow)
+    yield _hides("hub sensor lag", partial(HUB, "lag"), "ms", 20.0)
+    yield _hides("hub sensor delay", partial(HUB, "delay"), "ms", 20.0)
 
 
 ASSEMBLY = (

@@ -11,8 +11,8 @@ from math import inf, isfinite
 from typing import Any, Final
 
 from drivers.canopen import objects as o
-from drivers.jacket import HeatingJacket
 from drivers.servo import ServoDrive
+from drivers.temperature_controller import TemperatureController
 from tester.kinds.wheel_on_belt.commission.quiet import QuietArming, QuietConnector, QuietSeat
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import Proof
@@ -228,12 +228,12 @@ def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text:
 
 def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
     """Let the jacket run, asked for no heat, and say nothing until its lease, or its own setpoint, ends that."""
-    jacket: HeatingJacket = seat.devices.jacket
+    jacket: TemperatureController = seat.devices.jacket
     if jacket.ends_s is None:
         how = seat.rig.devices["jacket"].heat_off or "nothing that the rig file names"
         notes.tell(f"  the jacket has no watchdog of its own: {how} ends its heat; try that out by hand")
         return f"ended by {how}, not tried out here"
-    asked_c = jacket.hub_c - COOLER_K
+    asked_c = jacket.measured_c - COOLER_K
     if not isfinite(asked_c):
         raise StepRefused("the jacket says no temperature: sensor, or its wires")
     yield from press("watchdog heat", f"the jacket runs for {jacket.ends_s:g} s, asked for no heat, and hears no more")
@@ -249,16 +249,16 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
         return now_s - begun_s >= RUNS_S
 
     yield running
-    if jacket.remote_failed:
+    if jacket.lease_expired:
         raise StepRefused("watchdogs: the jacket says that our setpoint does not reach it, though it is sent")
 
     def over(now_s: float) -> bool:
         nonlocal ended_s
         ended_s = now_s
-        return jacket.remote_failed or now_s - heard_s > ends_s + LEASE_MORE_S
+        return jacket.lease_expired or now_s - heard_s > ends_s + LEASE_MORE_S
 
     yield over
-    failed, after_s = jacket.remote_failed, ended_s - heard_s
+    failed, after_s = jacket.lease_expired, ended_s - heard_s
     yield from wait(1.0)  # its output is read anew
     output = jacket.output_percent
     seat.arming.renews = True

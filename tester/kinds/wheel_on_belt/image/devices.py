@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from math import cos, pi, sin
 from typing import Final
 
-from drivers.jacket import HeatingJacket
 from drivers.joined_cell import JoinedCell, LoadCell, links_of
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from drivers.temperature_controller import TemperatureController
 from tester.kinds.wheel_on_belt.image.cell_skew import CellSkew
 from tester.kinds.wheel_on_belt.image.process import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch
@@ -51,7 +51,7 @@ class Devices(DeviceList):
     """
 
     def __init__(
-        self, drivers: RigDrivers, axes: WheelDrives, cell: LoadCell, thermometer: Sensor, jacket: HeatingJacket
+        self, drivers: RigDrivers, axes: WheelDrives, cell: LoadCell, thermometer: Sensor, jacket: TemperatureController
     ) -> None:
         """Take the drivers."""
         # A quick-stopped press would stay in contact: it keeps its own retraction, as long as it is to have power.
@@ -85,7 +85,7 @@ class Devices(DeviceList):
         r.surface_changed_s = thermometer.changed_s
         r.surface_silent = not thermometer.ready
         jacket = self.jacket
-        r.hub_c, r.heat_percent = jacket.hub_c, jacket.output_percent
+        r.hub_c, r.heat_percent = jacket.measured_c, jacket.output_percent
         r.jacket_valid, r.jacket_at_s, r.jacket_silent = jacket.valid, jacket.stamp_s, not jacket.ready
         self.slip_ring.look(r.wheel_angle_rev, r.wheel_rad_s)
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from math import log, nan, pi
 
-from drivers.jacket import HeatingJacket
 from drivers.joined_cell import JoinedCell
 from tester.analysis.closest import combining_of
 from tester.inputs.recipe.plan import Plan
-from tester.inputs.rig.profiles import profile_of
 from tester.inputs.rig.sensors import quantities_on
 from tester.kinds.wheel_on_belt.context import Attendant, Context
 from tester.kinds.wheel_on_belt.control.heat_loop import HeatLoop
@@ -52,10 +50,7 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
     drivers.devices |= transmitters
     thermometer = drivers.sensor("ir_thermometer", SURFACE_CHANNELS)
     assert thermometer is not None  # the rig file has one, or is refused
-    heating = rig.devices["jacket"]
-    jacket = HeatingJacket(profile_of(heating.profile), heating.unit_id, drivers.links[heating.line])
-    drivers.devices["jacket"] = jacket
-    return Devices(drivers, WheelDrives(wheel, belt, press, drives), cell, thermometer, jacket)
+    return Devices(drivers, WheelDrives(wheel, belt, press, drives), cell, thermometer, drivers.controller("jacket"))
 
 
 def loss_ratios(rig: RigConfig) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from drivers.jacket import LEASE_S
+from drivers.temperature_controller import JACKET_LEASE_S
 from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.panel import drives_alone
@@ -19,7 +19,7 @@ def _heating(rig: RigConfig) -> str:
     jacket = rig.devices["jacket"]
     profile = profile_of(jacket.profile)
     if "lease" in profile.writes:
-        return f"The jacket stops heating by itself ({LEASE_S:g} s without a command)."
+        return f"The jacket stops heating by itself ({JACKET_LEASE_S:g} s without a command)."
     if jacket.heat_off == "fallback" and profile.falls_back_s is not None:
         return f"The jacket falls back to a setpoint of no heat ({profile.falls_back_s:g} s without a command)."
     if jacket.heat_off == "relay":

@@ -9,7 +9,7 @@ from sim.faults.can import FaultyCanWire
 from sim.machines.specimen_on_track.faults import CATALOGUE, LANGUAGE
 from sim.machines.specimen_on_track.rig import TrackRig
 from sim.machines.specimen_on_track.variants import parameters, wiring
-from sim.nodes.cell_slave import CellSlave
+from sim.nodes.sensor_slave import CellSlave
 from tests.sim.machines.specimen_on_track.test_track_rig import drive, lower, run
 
 

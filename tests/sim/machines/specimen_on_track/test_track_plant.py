@@ -239,7 +239,7 @@ def test_equal_seeds_make_equal_rigs_and_others_other_ones() -> None:
         plant.put_on(20.0)
         slid(plant, 1e-3, 1.0)
         cell_n = plant.forces_measured(0.0)[0]
-        return plant.force_n, cell_n, plant.surface_measured_c(0.0), plant.chamber_measured_c(0.0)
+        return plant.force_n, cell_n, plant.surface_measured_c(0.0), plant.controller_measured_c(0.0)
 
     assert reading(5) == reading(5)
     assert all(one != other for one, other in zip(reading(5), reading(6), strict=True))

@@ -12,7 +12,7 @@ from sim import machines
 from sim.machines.specimen_on_track.rig import TrackRig
 from sim.machines.specimen_on_track.variants import parameters, wiring
 from sim.nodes.motion import PositionAxis, VelocityAxis
-from sim.nodes.profile_slave import UnknownQuantityError
+from sim.nodes.sensor_slave import UnknownQuantityError
 
 
 def made(variant: str = "grosch", **changes: object) -> TrackRig:

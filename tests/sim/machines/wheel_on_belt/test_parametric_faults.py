@@ -9,8 +9,9 @@ from math import exp
 import pytest
 
 from sim.faults import FaultScript, Parametric, Scene
+from sim.faults.sensors import Slow
 from sim.machines.wheel_on_belt.faults import CATALOGUE, PARAMETRIC, parse
-from sim.machines.wheel_on_belt.faults.sensors import DETACHED_S, Slow
+from sim.machines.wheel_on_belt.faults.heat import DETACHED_S
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.motion import VelocityAxis
 from tester.kinds import load_rig
@@ -45,7 +46,7 @@ class Hub:
     def __init__(self, hub_c: float) -> None:
         self.hub_c = hub_c
 
-    def hub_measured_c(self, t: float) -> float:
+    def controller_measured_c(self, t: float) -> float:
         return self.hub_c
 
 
@@ -111,9 +112,9 @@ def test_a_hub_sensor_that_has_come_loose_shows_too_little_and_late() -> None:
     play(rig, "hub sensor partly detached 80 %", 0.5)
     hub.hub_c = ambient_c + 100.0
     now, shown = rig.now_s, rig.jacket.source
-    assert shown.hub_measured_c(now) < ambient_c + 5.0
-    assert shown.hub_measured_c(now + DETACHED_S) == pytest.approx(ambient_c + 80.0 * (1.0 - exp(-1.0)), abs=2.0)
-    assert shown.hub_measured_c(now + 20.0 * DETACHED_S) == pytest.approx(ambient_c + 80.0)
+    assert shown.controller_measured_c(now) < ambient_c + 5.0
+    assert shown.controller_measured_c(now + DETACHED_S) == pytest.approx(ambient_c + 80.0 * (1.0 - exp(-1.0)), abs=2.0)
+    assert shown.controller_measured_c(now + 20.0 * DETACHED_S) == pytest.approx(ambient_c + 80.0)
 
 
 @pytest.mark.parametrize(("least", "most", "normal"), [(1.0, 2.0, 0.0), (0.0, 0.0, 0.0)])
@@ -164,8 +165,8 @@ def test_a_common_supply_is_that_of_both_thermometers(percent: int) -> None:
     rig.plant.heat.set_all(83.0)
     play(rig, f"common supply of hub sensor and thermometer {percent} %", 1.5)
     t = rig.now_s
-    shown = [rig.jacket.source.hub_measured_c(t) - 23.0, rig.ir.source.surface_measured_c(t) - 23.0]
-    true = [rig.plant.hub_measured_c(t) - 23.0, rig.plant.surface_measured_c(t) - 23.0]
+    shown = [rig.jacket.source.controller_measured_c(t) - 23.0, rig.ir.source.surface_measured_c(t) - 23.0]
+    true = [rig.plant.controller_measured_c(t) - 23.0, rig.plant.surface_measured_c(t) - 23.0]
     assert shown == pytest.approx([0.01 * percent * one for one in true])
 
 
@@ -262,4 +263,5 @@ def test_what_ends_is_as_it_was(phrase: str) -> None:
     whole.advance(whole.now_s + 0.6)
     assert (rig.rim_m_s, rig.belt_m_s) == pytest.approx((whole.rim_m_s, whole.belt_m_s))
     assert forces(rig) == pytest.approx(forces(whole))
-    assert rig.jacket.source.hub_measured_c(rig.now_s) == pytest.approx(whole.plant.hub_measured_c(rig.now_s))
+    hub_c = rig.jacket.source.controller_measured_c(rig.now_s)
+    assert hub_c == pytest.approx(whole.plant.controller_measured_c(rig.now_s))

@@ -330,7 +330,7 @@ def test_without_noise_the_sensors_read_the_truth() -> None:
     truth = (plant.force_x_n, plant.force_y_n, plant.force_z_n, plant.moment_z_nm)
     assert plant.forces_measured(3.0) == truth
     assert plant.surface_measured_c(3.0) == pytest.approx(plant.surface_c, abs=0.05)
-    assert plant.hub_measured_c(3.0) == pytest.approx(plant.hub_c, abs=1e-3)
+    assert plant.controller_measured_c(3.0) == pytest.approx(plant.hub_c, abs=1e-3)
     assert plant.wheel_speed.measure(0.8) == 0.8
     assert plant.belt_speed.measure(0.5) == 0.5
 
@@ -351,7 +351,7 @@ def measured(plant: Plant) -> list[tuple[float, ...]]:
     for i in range(100):
         plant.advance(0.01, WHEEL_RAD_S, 0.5, press_for(200.0), 0.0, 0.0, 0.0)
         speeds = (plant.wheel_speed.measure(0.8), plant.belt_speed.measure(0.5))
-        thermometers = (plant.surface_measured_c(0.01 * i), plant.hub_measured_c(0.01 * i))
+        thermometers = (plant.surface_measured_c(0.01 * i), plant.controller_measured_c(0.01 * i))
         rows.append((*plant.forces_measured(0.01 * i), *thermometers, *speeds))
     return rows
 

@@ -11,7 +11,7 @@ from drivers.cia402 import INTERNAL_LIMIT, State
 from sim.machines.wheel_on_belt.harm import FORCE_N
 from sim.machines.wheel_on_belt.plant import Plant
 from sim.machines.wheel_on_belt.rig import WheelRig
-from sim.nodes.jacket_slave import JacketSlave
+from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.motion import VelocityAxis
 from sim.rig import LONGEST_STEP_S, SHORTEST_STEP_S, SimRig
 from tester.kinds import load_rig
@@ -89,7 +89,7 @@ def test_the_jacket_heats_only_through_a_closed_contactor(rolling: Simulation, m
     world = deepcopy(rolling).world
     heat: list[float] = []
     monkeypatch.setattr(Plant, "advance", lambda _, *arguments: heat.append(arguments[-1]))
-    monkeypatch.setattr(JacketSlave, "advance", lambda jacket, *_: setattr(jacket, "heater_w", 200.0))
+    monkeypatch.setattr(ControllerSlave, "advance", lambda jacket, *_: setattr(jacket, "heater_w", 200.0))
     io = world.axes["press"].io
     assert io is not None and io.contactor_closed
     world.jacket.due_s = world.now_s  # a cycle of the controller is due

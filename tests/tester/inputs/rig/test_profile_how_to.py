@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from drivers.sensor import Sensor
-from sim.nodes.profile_slave import ProfileSlave
+from sim.nodes.sensor_slave import SensorSlave
 from tester.base.source import InvalidSource
 from tester.inputs.rig.sensors import FurtherChannel, further_channels
 from tester.kinds import load_rig, load_rig_text, packaged_text
@@ -51,7 +51,7 @@ def connected(run: Simulation) -> Simulation:
     return run
 
 
-def sensor_of(run: Simulation, number: int = 0) -> tuple[Sensor, ProfileSlave]:
+def sensor_of(run: Simulation, number: int = 0) -> tuple[Sensor, SensorSlave]:
     slave = list(run.world.sensors.values())[number]
     return run.run.engine.devices.sensors[number], slave
 
@@ -88,7 +88,7 @@ def test_a_second_one_of_the_same_make_has_channels_of_its_own_on_another_line()
     ],
     ids=["silent", "invalid"],
 )
-def test_a_sensor_that_cannot_be_believed_reads_as_missing(spoil: Callable[[ProfileSlave], None]) -> None:
+def test_a_sensor_that_cannot_be_believed_reads_as_missing(spoil: Callable[[SensorSlave], None]) -> None:
     run = connected(simulation())
     spoil(sensor_of(run)[1])
     end = run.now + 2.0

@@ -7,11 +7,11 @@ from math import inf, isnan, nan
 import pytest
 
 from drivers.crc16 import with_crc
-from drivers.jacket import HeatingJacket
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
-from sim.nodes.ir_slave import IrSlave
-from sim.nodes.jacket_slave import JacketSlave
+from drivers.temperature_controller import TemperatureController
+from sim.nodes.controller_slave import ControllerSlave
+from sim.nodes.sensor_slave import IrSlave
 from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, refusal, reply
 from tests.drivers.modbus_rig import Quantities, Rig
@@ -26,10 +26,10 @@ def answer(bench: Bench, registers: dict[int, tuple[int, ...]], now: float) -> N
     bench.serve(now, (now - 0.005, data))
 
 
-def connected(now: float = 0.5) -> tuple[Bench, HeatingJacket]:
+def connected(now: float = 0.5) -> tuple[Bench, TemperatureController]:
     """Return a jacket that has been set up with nothing wanted; its first read is under way."""
     bench = Bench(baud=38400)
-    jacket = HeatingJacket(PROFILE, 1, bench.link)
+    jacket = TemperatureController("jacket", PROFILE, 1, bench.link)
     bench.serve(0.0)
     at = 0.0
     while not jacket.ready:
@@ -38,17 +38,17 @@ def connected(now: float = 0.5) -> tuple[Bench, HeatingJacket]:
     return bench, jacket
 
 
-def rig() -> tuple[Rig, HeatingJacket, JacketSlave, Quantities]:
+def rig() -> tuple[Rig, TemperatureController, ControllerSlave, Quantities]:
     source = Quantities()
-    slave = JacketSlave(PROFILE, 1, source)
+    slave = ControllerSlave(PROFILE, 1, source)
     made = Rig(38400, slave)
-    return made, HeatingJacket(PROFILE, 1, made.link), slave, source
+    return made, TemperatureController("jacket", PROFILE, 1, made.link), slave, source
 
 
 class Command:
     """What an engine does in every scan."""
 
-    def __init__(self, jacket: HeatingJacket, celsius: float) -> None:
+    def __init__(self, jacket: TemperatureController, celsius: float) -> None:
         self.jacket = jacket
         self.celsius = celsius
 
@@ -70,7 +70,7 @@ def test_set_up_is_standby_remote_setpoint_and_off_line_time_each_read_back() ->
 
 def test_an_off_line_time_that_is_not_kept_is_refused() -> None:
     bench = Bench(baud=38400)
-    jacket = HeatingJacket(PROFILE, 1, bench.link)
+    jacket = TemperatureController("jacket", PROFILE, 1, bench.link)
     bench.serve(0.0)
     for number in range(1, 6):
         answer(bench, {276: (1,), 5000: (0,)}, 0.03 * number)
@@ -79,7 +79,7 @@ def test_an_off_line_time_that_is_not_kept_is_refused() -> None:
 
 def test_a_controller_without_the_watchdog_register_is_refused_with_the_address() -> None:
     bench = Bench(baud=38400)
-    jacket = HeatingJacket(PROFILE, 1, bench.link)
+    jacket = TemperatureController("jacket", PROFILE, 1, bench.link)
     bench.serve(0.0)
     for number in range(1, 4):
         answer(bench, {276: (1,)}, 0.03 * number)
@@ -88,8 +88,8 @@ def test_a_controller_without_the_watchdog_register_is_refused_with_the_address(
 
 
 def test_a_profile_without_lease_says_so() -> None:
-    assert not HeatingJacket(load_profile("omron_e5cc"), 1, Bench().link).has_lease
-    assert HeatingJacket(PROFILE, 1, Bench().link).has_lease
+    assert not TemperatureController("jacket", load_profile("omron_e5cc"), 1, Bench().link).has_lease
+    assert TemperatureController("jacket", PROFILE, 1, Bench().link).has_lease
 
 
 def test_readings_come_from_one_block_of_five_and_the_status() -> None:
@@ -100,7 +100,7 @@ def test_readings_come_from_one_block_of_five_and_the_status() -> None:
         seen.add(frame[:6].hex())
         answer(bench, {1: (853, 0, 0, 425, 900), 75: (0,)}, 0.5 + 0.03 * number)
     assert {"010300010005", "0103004b0001"} <= seen
-    assert (jacket.hub_c, jacket.output_percent, jacket.setpoint_c) == pytest.approx((85.3, 42.5, 90.0))
+    assert (jacket.measured_c, jacket.output_percent, jacket.setpoint_c) == pytest.approx((85.3, 42.5, 90.0))
     assert jacket.valid
     assert jacket.counts == 853
 
@@ -121,14 +121,14 @@ def test_a_sensor_break_hides_the_temperature() -> None:
     assert not jacket.valid
     made.run(0.6)
     assert jacket.sensor_break
-    assert isnan(jacket.hub_c)
+    assert isnan(jacket.measured_c)
 
 
 def test_an_implausible_temperature_is_never_shown() -> None:
     bench, jacket = connected()
     for number in range(1, 8):
         answer(bench, {1: (0x7FFF, 0, 0, 0, 0), 75: (0,)}, 0.5 + 0.03 * number)
-    assert isnan(jacket.hub_c)
+    assert isnan(jacket.measured_c)
     assert not jacket.valid
 
 
@@ -157,7 +157,7 @@ def test_the_setpoint_stays_inside_the_profiles_bounds(asked: float, given: floa
 
 @pytest.mark.parametrize("celsius", [nan, inf, -inf])
 def test_a_setpoint_that_is_no_number_is_refused(celsius: float) -> None:
-    jacket = HeatingJacket(PROFILE, 1, Bench().link)
+    jacket = TemperatureController("jacket", PROFILE, 1, Bench().link)
     with pytest.raises(ValueError, match="finite"):
         jacket.set_setpoint(celsius)
 
@@ -188,10 +188,10 @@ def test_a_setpoint_that_is_not_asked_for_any_more_is_not_renewed() -> None:
     made.run(2.0, Command(jacket, 80.0))
     made.run(4.0)
     assert slave.heater_w == 0.0
-    assert jacket.remote_failed
+    assert jacket.lease_expired
     made.run(2.0, Command(jacket, 80.0))
     assert slave.heater_w > 0.0
-    assert not jacket.remote_failed
+    assert not jacket.lease_expired
 
 
 def test_standby_goes_before_everything_else() -> None:
@@ -231,8 +231,8 @@ def test_a_controller_that_lost_its_supply_is_set_up_again_before_it_heats() -> 
 def test_jacket_and_thermometer_share_a_line_at_five_readings_a_second_each() -> None:
     source = Quantities()
     infrared = load_profile("calex_pyrominibus")
-    made = Rig(38400, JacketSlave(PROFILE, 1, source), IrSlave(infrared, 2, source), period_s=0.05)
-    jacket = HeatingJacket(PROFILE, 1, made.link)
+    made = Rig(38400, ControllerSlave(PROFILE, 1, source), IrSlave(infrared, 2, source), period_s=0.05)
+    jacket = TemperatureController("jacket", PROFILE, 1, made.link)
     thermometer = Sensor(infrared, 2, made.link)
     made.run(2.0, Command(jacket, 60.0))
     made.log.frames.clear()
@@ -248,9 +248,9 @@ def test_jacket_and_thermometer_share_a_line_at_five_readings_a_second_each() ->
 def test_a_silent_thermometer_does_not_make_the_jacket_stale_or_its_lease_run_out() -> None:
     source = Quantities()
     infrared = load_profile("calex_pyrominibus")
-    slave = JacketSlave(PROFILE, 1, source)
+    slave = ControllerSlave(PROFILE, 1, source)
     made = Rig(38400, slave, IrSlave(infrared, 2, source), period_s=0.05)
-    jacket = HeatingJacket(PROFILE, 1, made.link)
+    jacket = TemperatureController("jacket", PROFILE, 1, made.link)
     thermometer = Sensor(infrared, 2, made.link)
     made.run(2.0, Command(jacket, 60.0))
     made.wire.impair = Impairment("silence", count=-1, unit_id=2)
@@ -268,7 +268,7 @@ def test_slip_ring_chatter_is_counted_and_never_becomes_a_reading() -> None:
         kinds = ("corrupt", "silence", "truncate", "noise", "wrong_id", "stale")
         made.wire.impair = Impairment(kinds[number % 6], count=1)  # type: ignore[arg-type]
         made.run(0.1, Command(jacket, 60.0))
-        assert isnan(jacket.hub_c) or jacket.hub_c == pytest.approx(source.hub_c, abs=0.11)
+        assert isnan(jacket.measured_c) or jacket.measured_c == pytest.approx(source.hub_c, abs=0.11)
     counters = jacket.station.counters
     assert counters.crc_errors > 0
     assert counters.timeouts > 0
@@ -278,7 +278,7 @@ def test_slip_ring_chatter_is_counted_and_never_becomes_a_reading() -> None:
 def test_omron_run_and_stop_are_operation_commands() -> None:
     profile = load_profile("omron_e5cc")
     bench = Bench(baud=38400)
-    jacket = HeatingJacket(profile, 1, bench.link)
+    jacket = TemperatureController("jacket", profile, 1, bench.link)
     jacket.enable(True)
     bench.serve(0.0)
     for number in range(1, 5):
@@ -290,7 +290,7 @@ def test_omron_run_and_stop_are_operation_commands() -> None:
 
 def test_an_echo_of_the_wrong_register_does_not_end_the_set_up() -> None:
     bench = Bench(baud=38400)
-    jacket = HeatingJacket(PROFILE, 1, bench.link)
+    jacket = TemperatureController("jacket", PROFILE, 1, bench.link)
     bench.serve(0.0)
     bench.serve(0.03, (0.02, with_crc(bytes.fromhex("010600C80001"))))
     assert not jacket.ready
@@ -304,7 +304,7 @@ REAL = load_profile("eurotherm_3200")
 
 def test_without_a_lease_the_setpoint_that_it_falls_back_to_is_set_and_read_back() -> None:
     bench = Bench(baud=38400)
-    jacket = HeatingJacket(REAL, 1, bench.link)
+    jacket = TemperatureController("jacket", REAL, 1, bench.link)
     bench.serve(0.0)
     at = 0.0
     while not jacket.ready:
@@ -324,7 +324,7 @@ def test_without_a_lease_the_setpoint_that_it_falls_back_to_is_set_and_read_back
 
 def test_one_that_keeps_another_setpoint_to_fall_back_to_is_refused() -> None:
     bench = Bench(baud=38400)
-    jacket = HeatingJacket(REAL, 1, bench.link)
+    jacket = TemperatureController("jacket", REAL, 1, bench.link)
     bench.serve(0.0)
     for number in range(1, 4):
         answer(bench, {24: (800,)}, 0.03 * number)
@@ -333,15 +333,15 @@ def test_one_that_keeps_another_setpoint_to_fall_back_to_is_refused() -> None:
 
 def test_without_setpoints_the_real_controller_heats_no_more_after_5_s_and_says_so() -> None:
     source = Quantities()
-    slave = JacketSlave(REAL, 1, source)
+    slave = ControllerSlave(REAL, 1, source)
     made = Rig(38400, slave)
-    jacket = HeatingJacket(REAL, 1, made.link)
+    jacket = TemperatureController("jacket", REAL, 1, made.link)
     made.run(3.0, Command(jacket, 80.0))
     assert slave.heater_w > 0.0
     made.run(4.0)
     assert slave.heater_w > 0.0
     made.run(3.0)
-    assert (slave.heater_w, slave.setpoint_c, jacket.remote_failed) == (0.0, 0.0, True)
+    assert (slave.heater_w, slave.setpoint_c, jacket.lease_expired) == (0.0, 0.0, True)
     made.run(2.0, Command(jacket, 80.0))
     assert slave.heater_w > 0.0
-    assert not jacket.remote_failed
+    assert not jacket.lease_expired

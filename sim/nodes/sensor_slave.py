@@ -1,0 +1,228 @@
+"""Simulated Modbus sensors, put together from their profiles: a load cell, an infrared thermometer, any other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import floor, inf, isfinite
+from typing import Final, Protocol
+
+from drivers.profiles.model import LIMITS, DeviceProfile, Signal
+from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, PATTERN, ModbusSlave
+
+Quantity = Callable[[], float]
+"""What a channel measures now, in the channel's unit; NaN where it cannot be measured."""
+READS_ZERO: Final = 0.0
+"""What a channel shows that measures nothing, in its unit; the nearest end of its range where that excludes zero."""
+FORCES: Final = ("fx", "fy", "fz", "mz")
+"""What a load cell can measure: forces in N, the moment in N m."""
+_AS_NAMED: Final[Mapping[str, str]] = {}
+_NOTHING: Final[Mapping[str, Quantity | float]] = {}
+
+
+class UnknownQuantityError(ValueError):
+    """A simulated sensor is to show what the plant does not have."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f'the simulated rig has no quantity "{name}" that a sensor could show')
+
+
+class PlantQuantity:
+    """A number of a simulated machine's plant, by its name."""
+
+    def __init__(self, plant: object, name: str) -> None:
+        """Raise UnknownQuantityError where the plant has no such number."""
+        if name.startswith("_") or not isinstance(getattr(plant, name, None), float):
+            raise UnknownQuantityError(name)
+        self.plant = plant
+        self.name = name
+
+    def __call__(self) -> float:
+        """Return the number now."""
+        return float(getattr(self.plant, self.name))
+
+
+class SensorSlave(ModbusSlave):
+    """A sensor with the channels of a profile, sampled whenever its registers are read.
+
+    ``dither`` is the phase of the last bit: set it to 0 where a run must not depend on what was before.
+    ``status_bits`` are set whatever is measured (a broken bridge); ``frozen`` stops the sampling. What cannot be
+    measured sets the lowest status bit that makes a reading invalid.
+    """
+
+    def __init__(
+        self, profile: DeviceProfile, unit_id: int, quantities: Mapping[str, Quantity | float] = _NOTHING
+    ) -> None:
+        """Put the registers where ``profile`` has them; ``quantities`` by channel are asked for at each read."""
+        profile.expect_sensor()
+        block = profile.blocks[0]
+        read = [(one.address, one.count) for one in profile.blocks]
+        if profile.identity is not None:
+            read.append((profile.identity.address, 1))
+        written = [(signal.address, signal.size) for signal in profile.writes.values()]
+        written += [(write.address, 1) for write in profile.setup]
+        super().__init__(unit_id, profile.timing.turnaround_s, [*read, *written], profile.functions)
+        if profile.identity is not None:
+            self.put(profile.identity.address, profile.identity.value.to_bytes(2, "big"))
+        self._read_only = {address for start, count in read for address in range(start, start + count)}
+        self._parameters = {signal.address: signal for signal in profile.writes.values() if signal.size == 1}
+        self.dither = 0
+        self.status_bits = 0
+        self.frozen = False
+        self._block = block
+        self._signals = block.signals
+        self._quantities = {
+            signal.name: quantities.get(signal.name, min(max(READS_ZERO, signal.least), signal.greatest))
+            for signal in block.signals
+        }
+        self._invalid = profile.invalid_bits & -profile.invalid_bits
+        self._overload = profile.bit("overload")
+        self._limits = tuple(_most_counts(signal) if profile.kind == "load_cell" else inf for signal in block.signals)
+        self._shown = bytes(2 * block.count)
+        self.blocks = {(block.address, block.count): 0}
+
+    def measure(self, t: float) -> list[float]:
+        """Return what the signals of the first read measure at ``t`` s, in their units; anything for the status."""
+        return [
+            quantity if isinstance(quantity, float | int) else quantity() for quantity in self._quantities.values()
+        ]
+
+    def refresh(self, t: float) -> None:
+        """Sample at ``t`` s."""
+        self.put(self._block.address, self.sample(0, t))
+
+    def sample(self, block: int, t: float) -> bytes:
+        """Sample at ``t`` s and return all that is read."""
+        return self._shown if self.frozen else self._encode(self.measure(t))
+
+    def _encode(self, values: Sequence[float]) -> bytes:
+        """Return the first read with these values, one a signal, as the next phase of the dither rounds them."""
+        self.dither = phase = (self.dither + 1) & 3
+        step, status = PATTERN[phase], self.status_bits
+        counts: list[object] = []
+        status_place = -1
+        for signal, value, limit in zip(self._signals, values, self._limits, strict=True):
+            if signal.name == "status":
+                status_place = len(counts)
+                counts.append(0)
+                continue
+            if not isfinite(value):
+                status |= self._invalid
+                value = 0.0
+            whole = signal.type != "f32"
+            found: float = floor(value / signal.scale + step) if whole else value / signal.scale
+            if not -limit < found < limit:
+                status |= self._overload
+                found = min(max(found, -limit), limit)
+            if signal.sign_bit is not None and found < 0.0:
+                status |= 1 << signal.sign_bit
+                found = -found
+            least, most = LIMITS[signal.type]
+            counts.append(min(max(int(found), least), most) if whole else found)
+        if status_place >= 0:
+            counts[status_place] = status
+        self._shown = data = self._block.pack(*counts)
+        return data
+
+    def written(self, address: int, value: int, t: float) -> int:
+        """Accept a parameter inside the device's range; measured values cannot be written."""
+        if address in self._read_only:
+            return ILLEGAL_ADDRESS
+        register = self._parameters.get(address)
+        if register is None or register.type not in ("u16", "i16"):
+            return 0
+        signed = value - 0x10000 if register.type == "i16" and value > 0x7FFF else value
+        return 0 if register.least <= signed * register.scale <= register.greatest else ILLEGAL_VALUE
+
+
+class ForceSource(Protocol):
+    """What a load cell measures."""
+
+    def forces_measured(self, t: float) -> tuple[float, float, float, float]:
+        """Return Fx, Fy, Fz in N and the moment in N m at ``t`` s."""
+        ...
+
+
+class CellSlave(SensorSlave):
+    """A load cell's transmitter, with any of the channels fx, fy, fz, mz by whatever names its profile has them."""
+
+    def __init__(
+        self, profile: DeviceProfile, unit_id: int, source: ForceSource, forces: Mapping[str, str] = _AS_NAMED
+    ) -> None:
+        """Put the registers where ``profile`` has them; ``source`` is asked at each read.
+
+        ``forces``: which of them a channel of the profile is, where its name does not say it.
+        """
+        profile.expect("load_cell")
+        super().__init__(profile, unit_id)
+        self.source = source
+        names = [signal.name for signal in self._signals]
+        self.forces: tuple[str, ...] = tuple(forces.get(name, name) for name in names)
+        """What its channels show, in the order of the block; its status among them."""
+        self._plain = names == [*FORCES, "status"]
+        self._places = tuple(FORCES.index(force) if force in FORCES else -1 for force in self.forces)
+        self._scales = tuple(signal.scale for signal in self._signals)
+        self._pack = self._block.pack
+
+    def measure(self, t: float) -> list[float]:
+        """Return each channel's force at ``t`` s, 0 where it is none."""
+        forces = self.source.forces_measured(t)
+        return [forces[place] if place >= 0 else 0.0 for place in self._places]
+
+    def sample(self, block: int, t: float) -> bytes:
+        """Sample at ``t`` s; four channels within their range, asked for in every scan, go a short way."""
+        if not self._plain or self.frozen:
+            return super().sample(block, t)
+        x, y, z, m = forces = self.source.forces_measured(t)
+        phase = (self.dither + 1) & 3
+        step = PATTERN[phase]
+        sx, sy, sz, sm, _ = self._scales
+        lx, ly, lz, lm, _ = self._limits
+        cx, cy, cz, cm = floor(x / sx + step), floor(y / sy + step), floor(z / sz + step), floor(m / sm + step)
+        if not (-lx < cx < lx and -ly < cy < ly and -lz < cz < lz and -lm < cm < lm):
+            return self._encode((*forces, 0.0))
+        self.dither = phase
+        self._shown = data = self._pack(cx, cy, cz, cm, self.status_bits)
+        return data
+
+
+class SurfaceSource(Protocol):
+    """What an infrared thermometer looks at."""
+
+    def surface_measured_c(self, t: float) -> float:
+        """Return the surface temperature in degC at ``t`` s; NaN where it cannot be measured."""
+        ...
+
+
+class IrSlave(SensorSlave):
+    """An infrared thermometer. ``sensor_c`` is its own temperature, degC."""
+
+    def __init__(self, profile: DeviceProfile, unit_id: int, source: SurfaceSource, sensor_c: float = 25.0) -> None:
+        """Put the registers where ``profile`` has them; ``source`` is asked at each read."""
+        profile.expect("ir_thermometer")
+        super().__init__(profile, unit_id)
+        self._emissivity = profile.writes.get("emissivity")
+        self.source = source
+        self.sensor_c = sensor_c
+        self.power(True)
+
+    def power(self, on: bool) -> None:
+        """Switch the supply; it starts with an emissivity of 1 [A]."""
+        self.powered = on
+        if on and self._emissivity is not None:
+            self.put(self._emissivity.address, round(1.0 / self._emissivity.scale).to_bytes(2, "big"))
+
+    @property
+    def emissivity(self) -> float:
+        """The emissivity set, 1 after power-on; 1 where the device has none to set."""
+        register = self._emissivity
+        return self.get(register.address) * register.scale if register is not None else 1.0
+
+    def measure(self, t: float) -> list[float]:
+        """Return the surface's temperature at ``t`` s on every channel but that of the device itself."""
+        surface_c = self.source.surface_measured_c(t)
+        return [self.sensor_c if signal.name == "sensor" else surface_c for signal in self._signals]
+
+
+def _most_counts(signal: Signal) -> float:
+    """Return the counts at the end of a load cell's channel; those of 32 bits where the profile states none."""
+    return float(round(signal.greatest / signal.scale)) if signal.greatest < inf else LIMITS["i32"][1]
