@@ -12,12 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
+    from tester.base.screen import Check
     from tester.inputs.recipe.plan import Plan
     from tester.inputs.rig import Rig
     from tester.machine.ports import Ports
     from tester.machine.prompts import Prompts
     from tester.machine.run import Run
-    from tester.machine.served import History
+    from tester.machine.served import History, Left
     from tester.store.recorder import Recorder
     from tester.store.records import Calibration
     from tester.store.resume import ResumePoint
@@ -35,6 +36,18 @@ class Part:
     last_mounted: int = 0
     """The highest number of what is mounted that is taken before this part mounts something that the plan did not
     foresee."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoHistory:
+    """The ``History`` of a kind of which earlier runs make nothing known."""
+
+    lines: tuple[Check, ...] = ()
+    """Of the list before a start."""
+
+    def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
+        """Return these lines, whatever is on the rig."""
+        return self.lines
 
 
 class KindRun(Protocol):

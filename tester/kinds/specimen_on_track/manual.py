@@ -5,18 +5,9 @@ from __future__ import annotations
 from math import isfinite, nan
 from typing import Final
 
-from tester.inputs.recipe.plan import Plan
-from tester.kinds.specimen_on_track.axes import NAME
-from tester.kinds.specimen_on_track.build import build_run
-from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
+from tester.kinds.specimen_on_track.context import TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import TakeTrackTare, still_m_s
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.manual import NAME as MANUAL
-from tester.machine.manual import ManualExecutor
-from tester.machine.ports import Ports
-from tester.machine.prompts import Prompts
-from tester.machine.served import ByHand
-from tester.store.recorder import Recorder
 
 STEPS: Final = 10.0
 """Steps from standstill to the greatest speed."""
@@ -80,13 +71,3 @@ class TrackHand:
             from_c = self.chamber_c if isfinite(self.chamber_c) else float(round(ctx.readings.air_c))
             self.chamber_c = min(max(from_c + sign * CHAMBER_STEP_K, limits.air_low_c), limits.air_high_c)
         return ""
-
-
-def by_hand(rig: TrackConfig, ports: Ports, attendant: TrackAttendant, record: Recorder) -> ByHand:
-    """Return manual mode on a rig, with a new specimen on a simulated one."""
-    run = build_run(rig, Plan(MANUAL, (), (), 1, kind=NAME), ports, attendant, record, Prompts())
-    executor = ManualExecutor(TrackHand(rig))
-    run.engine.executor = executor
-    run.engine.ctx.devices.by_hand_mm = rig.arm.raised_mm
-    attendant.install(1, 1, next(iter(rig.sim.rubbers), ""), new_specimen=True)
-    return ByHand(run, executor, "whatever is on the arm")

@@ -3,34 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Final
 
 from tester.base.screen import Check
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
-from tester.kinds.specimen_on_track.axes import NAME
-from tester.kinds.specimen_on_track.build import build_run
-from tester.kinds.specimen_on_track.context import TrackAttendant
+from tester.inputs.rig.sensors import quantities_on
+from tester.kinds.specimen_on_track.axes import NAME, held_by
+from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
+from tester.kinds.specimen_on_track.control import TrackControl
+from tester.kinds.specimen_on_track.devices import TrackDevices
+from tester.kinds.specimen_on_track.procedures.arming import TrackArming
+from tester.kinds.specimen_on_track.procedures.condition import TrackResults
+from tester.kinds.specimen_on_track.procedures.steps import TrackProcedures
+from tester.kinds.specimen_on_track.process import TrackDemand
 from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.machine.connect import Connector
+from tester.machine.engine import Engine
+from tester.machine.executor import Executor
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
-from tester.machine.run_parts import KindRun, Part
+from tester.machine.run_parts import KindRun, NoHistory, Part
+from tester.machine.sampler import Sampler
 from tester.machine.served import History
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
 from tester.store.resume import ResumePoint
-
-
-@dataclass(frozen=True, slots=True)
-class NoTrackHistory:
-    """Nothing is known of earlier runs: every run begins with a specimen of its own and a zero of its own."""
-
-    def checks(self, rig: Rig, left: object, now_utc: str) -> tuple[Check, ...]:
-        """Return the lines of the pre-flight list that are this kind's."""
-        return (Check("zero of the load cell", None, "taken anew before every repeat"),)
 
 
 class TrackRuns:
@@ -54,15 +55,30 @@ class TrackRuns:
         history: History | None = None,
     ) -> Run:
         """Return a run that is ready to be ticked."""
-        return build_run(TrackConfig.of(rig), plan, ports, attendant, recorder, prompts, point)
+        own = TrackConfig.of(rig)
+        devices = TrackDevices(own, ports)
+        speeds = [held_by(step.setpoint).track_m_s for step in plan.conditions()]
+        # A linear track is brought to its place at half its greatest speed, whatever the recipe asks for.
+        most_m_s = (
+            max([0.5 * own.limits.track_speed_m_s if own.linear else 0.0, *speeds], default=0.0) if speeds else inf
+        )
+        control = TrackControl(own, most_m_s)
+        quantities = quantities_on(own)
+        ctx = TrackContext(own, TrackDemand(), prompts, recorder, attendant, devices, quantities)
+        results = TrackResults(recorder)
+        if point is not None:
+            results.earlier = dict(point.conditions)
+            results.pool = point.pool
+        engine = Engine(devices, control, Executor(plan, TrackProcedures(results)), ctx, Sampler(recorder, quantities))
+        return Run(Connector(devices, own, TrackArming(devices, own), own.arming.listen_s), engine)
 
     def mount(self, attendant: TrackAttendant, compound: str) -> None:
         """Put a new specimen on; "" is SBR."""
         attendant.install(1, 1, compound or "SBR", new_specimen=True)
 
-    def history(self, runs: Path, rig: Rig) -> NoTrackHistory:
-        """Return that nothing is known."""
-        return NoTrackHistory()
+    def history(self, runs: Path, rig: Rig) -> NoHistory:
+        """Return that every run begins with a specimen and a zero of its own."""
+        return NoHistory((Check("zero of the load cell", None, "taken anew before every repeat"),))
 
     def calibration(self, rig: Rig) -> Iterator[Calibration]:
         """Yield the weights."""

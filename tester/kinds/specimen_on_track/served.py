@@ -6,17 +6,22 @@ from typing import Final
 
 from tester.base.quantities import Quantities
 from tester.base.screen import MachineView
-from tester.inputs.recipe.plan import Step
+from tester.inputs.recipe.plan import Plan, Step
 from tester.inputs.rig import Rig
-from tester.kinds.specimen_on_track import manual
+from tester.kinds.specimen_on_track.axes import NAME
 from tester.kinds.specimen_on_track.context import TrackAttendant
+from tester.kinds.specimen_on_track.manual import TrackHand
 from tester.kinds.specimen_on_track.procedures.steps import title
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.kinds.specimen_on_track.runs import RUNS
 from tester.kinds.specimen_on_track.screen import MACHINE, TrackPanel
 from tester.machine.engine import Engine
+from tester.machine.manual import NAME as MANUAL
+from tester.machine.manual import ManualExecutor
 from tester.machine.panel import NotReused, drives_alone
 from tester.machine.ports import Ports
+from tester.machine.prompts import Prompts
 from tester.machine.served import ByHand, History, Left, ServedKind
 from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
@@ -49,8 +54,14 @@ class SpecimenOnTrack:
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: TrackAttendant, record: Recorder, left: Left | None, history: History
     ) -> ByHand:
-        """Put a person in the place of a recipe."""
-        return manual.by_hand(TrackConfig.of(rig), ports, attendant, record)
+        """Put a person in the place of a recipe, with a new specimen on a simulated rig."""
+        own = TrackConfig.of(rig)
+        run = RUNS.build(own, Plan(MANUAL, (), (), 1, kind=NAME), ports, attendant, record, Prompts())
+        executor = ManualExecutor(TrackHand(own))
+        run.engine.executor = executor
+        run.engine.ctx.devices.by_hand_mm = own.arm.raised_mm
+        attendant.install(1, 1, next(iter(own.sim.rubbers), ""), new_specimen=True)
+        return ByHand(run, executor, "whatever is on the arm")
 
 
 SERVED: Final[ServedKind] = SpecimenOnTrack()

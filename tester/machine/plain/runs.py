@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import nan
 from pathlib import Path
 
 from tester.base.axes import Setpoint
-from tester.base.screen import Check
 from tester.inputs.recipe.plain import Mount, PlainPart
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
@@ -27,21 +26,12 @@ from tester.machine.plain.procedures import PlainProcedures, PlainResults
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
-from tester.machine.run_parts import Part
+from tester.machine.run_parts import NoHistory, Part
 from tester.machine.sampler import Sampler
-from tester.machine.served import History, Left
+from tester.machine.served import History
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
 from tester.store.resume import ResumePoint
-
-
-@dataclass(frozen=True, slots=True)
-class NoHistory:
-    """Earlier runs make nothing known of a plain machine."""
-
-    def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
-        """Return no line."""
-        return ()
 
 
 class PlainRuns:

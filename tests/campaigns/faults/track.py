@@ -14,11 +14,11 @@ from sim.machines.specimen_on_track.rig import TrackRig
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
-from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.recipe.steps import Temper
 from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.kinds.specimen_on_track.runs import RUNS
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.run.simulated import simulated_ports
@@ -71,7 +71,7 @@ class TrackStage(Stage):
         self.ledger = self.tares = TrackLedger()
         assert isinstance(world, TrackRig)
         self.rig = world
-        self.run: Run = build_run(config, self.plan, ports, attendant, self.ledger, Prompts(automatic=True))
+        self.run: Run = RUNS.build(config, self.plan, ports, attendant, self.ledger, Prompts(automatic=True))
         self.observer = TrackHarmObserver(world)
         self.invariants = TrackInvariants()
         self.begin(config)

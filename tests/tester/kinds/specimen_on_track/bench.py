@@ -11,9 +11,9 @@ from tester.analysis.results import Burst, RepeatResult
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
-from tester.kinds.specimen_on_track.build import build_run
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.kinds.specimen_on_track.runs import RUNS
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import next_tick
@@ -87,7 +87,7 @@ class TrackBench:
         self.world = world
         self.kept = Kept()
         self.prompts = Prompts(automatic=True)
-        self.run: Run = build_run(self.config, self.plan, ports, attendant, self.kept, self.prompts)
+        self.run: Run = RUNS.build(self.config, self.plan, ports, attendant, self.kept, self.prompts)
         self.now = 0.0
 
     def tick(self) -> None:

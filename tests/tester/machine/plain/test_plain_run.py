@@ -9,10 +9,10 @@ from sim.faults import FaultScript
 from sim.faults.can import FaultyCanWire
 from tester.base.source import InvalidSource
 from tester.machine.manual import ManualExecutor
-from tester.machine.plain.runs import NoHistory
 from tester.machine.plain.served import PlainServed, SpeedHand
 from tester.machine.ports import Ports
 from tester.machine.run import Outcome
+from tester.machine.run_parts import NoHistory
 from tester.machine.state import Mode
 from tester.run.fault_injection import FaultyRun
 from tester.store.recorder import NullRecorder
