@@ -1,7 +1,7 @@
 """What a system without POSIX can do: modules that Windows lacks are blocked, and the program is used as there.
 
 It shows that nothing needs them before it says so; what Windows itself does with sockets, files and signals it cannot
-show. Untried there: docs/how-to/windows.md.
+show. Untried there: docs/windows.md.
 """
 
 from __future__ import annotations

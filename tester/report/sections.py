@@ -201,7 +201,6 @@ def provenance_section(record: RunRecord, key: str) -> ReportSection:
         if not found.problems
         else Paragraph(f"Not as it was left: {counted(len(found.problems), 'finding')}.", "bad"),
         *([Listing(found.problems, "bad")] if found.problems else []),
-        *([Listing(found.notes, "small")] if found.notes else []),
         FactSheet([(name, value or NONE) for name, value in _hashes(record)]),
     ]
     rows = [ReportRow((name, sha)) for name, sha in sorted(record.files.items())]
