@@ -1,16 +1,18 @@
 """Blocks of one whole turn: the unit in which samples are counted and averaged.
 
-Runout of what turns modulates the load once a revolution, so only means over whole revolutions are free of it. What
-does not turn is counted in stretches of way or of time: which channel is counted by, and how much of it is one block,
-is a role in the table of channels (``Roles.turn``, ``Roles.block``).
+Runout of the wheel modulates the load once a revolution, so only means over whole revolutions are free of it. On a
+machine without a turning part, a block is a length of travel or of time. The table of channels defines both: the
+channel that counts (``Roles.turn``) and the size of a block on it (``Roles.block``).
 
 A *stretch* is a series of accepted samples (gate 0, in a burst) of the same burst and repeat in which no step of that
 position exceeds ``MAX_STEP`` of a block. The position p0 of its first sample is its origin; block k holds the samples
-with k <= |p - p0| / block < k + 1, and exists once an accepted sample of the same stretch lies beyond its end. What is
-left at the end of a stretch, less than a block, is not counted. Blocks are anchored to the stretch's origin, so
-rounding to whole samples does not accumulate.
+with k <=
+p - p0
+/ block < k + 1, and exists once an accepted sample of the same stretch lies beyond its end. The remainder at the end of
+a stretch, less than a block, is not counted. Blocks are anchored to the stretch's origin, so rounding to whole samples
+does not accumulate.
 
-Two implementations of this one definition: ``BlockCounter`` is fed sample by sample in the scan (plain Python),
+Two implementations of this definition: ``BlockCounter`` takes sample by sample in the scan (plain Python),
 ``blocks_from_samples`` works on stored arrays (NumPy).
 """
 
@@ -29,13 +31,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MAX_STEP: Final = 0.25
-"""A wider step of the position, in blocks, ends a stretch: the ripple of the runout would not be sampled. At 20 Hz and
-1.1 m/s, the slowest sampling in contact and the fastest wheel of 88 mm, a step is 0.20 revolutions."""
+"""A wider step of the position, in blocks, ends a stretch: samples that far apart do not resolve the ripple of the
+runout. At 20 Hz and 1.1 m/s, the slowest sampling in contact and the fastest wheel of 88 mm, a step is 0.20
+revolutions."""
 
 
 @dataclass(slots=True)
 class Block:
-    """Means over one whole accepted block; not changed once made.
+    """Means over one whole accepted block; immutable by convention.
 
     ``started_s`` and ``ended_s`` are rig seconds of its first sample and of the first sample after it, ``position`` the
     counted position at its start, ``mu`` the resultant coefficient hypot(along, across) / normal of its mean forces.
@@ -62,8 +65,7 @@ def _block(burst: int, samples: int, t0: float, t1: float, position: float, mean
 class BlockCounter:
     """Collects the blocks of one repeat, sample by sample.
 
-    Fed with the rows that are recorded, so that what is counted live is what the store can be asked about
-    later.
+    It takes the recorded rows, so the store reproduces the live count exactly.
     """
 
     __slots__ = (
@@ -85,7 +87,7 @@ class BlockCounter:
         self._burst_at = quantities.index(BURST)
         self._key_at = quantities.index(KEY)
         self._counted_at = quantities.index(quantities.roles.turn)
-        self._averaged: list[int] = [quantities.index(one.name) for one in quantities.averaged]
+        self._averaged: list[int] = [quantities.index(quantity.name) for quantity in quantities.averaged]
         self._block = quantities.roles.block
         self._step = MAX_STEP * quantities.roles.block
         self._rows: list[tuple[float, ...]] = []
@@ -98,7 +100,7 @@ class BlockCounter:
     def add(self, sample: tuple[float, ...]) -> Block | None:
         """Take in one sample (a value for each recorded channel) and return the block that it completed, if any.
 
-        Every scan is to be given, also those whose gates are closed: they end a stretch.
+        Pass every scan, including those with closed gates: they end a stretch.
         """
         rows = self._rows
         burst, key = sample[self._burst_at], sample[self._key_at]
@@ -178,7 +180,7 @@ def blocks_from_samples(
     origins = np.flatnonzero(accepted & ~joined)
     ends = np.append(origins, len(at))[1:]
     times = columns[TIME]
-    averaged = np.stack([columns[one.name] for one in quantities.averaged])
+    averaged = np.stack([columns[quantity.name] for quantity in quantities.averaged])
     blocks: list[Block] = []
     for first, end in zip(origins.tolist(), ends.tolist(), strict=True):
         stop = first + 1 + int(np.argmin(np.append(joined[first + 1 : end], False)))
@@ -196,7 +198,7 @@ def blocks_from_samples(
 def _take_in(
     trace: Trace, columns: Mapping[str, NDArray[np.float64]], quantities: Quantities, first: int, end: int
 ) -> None:
-    """Let a trace take in a stretch of samples."""
+    """Append a stretch of samples to a trace."""
     trace.starts.append(len(trace.time_s))
     into = (trace.time_s, trace.position, trace.along, trace.across, trace.normal)
     for column, name in zip(into, columns_of(quantities), strict=True):

@@ -1,4 +1,4 @@
-"""The paper's way of combining three repeats, the mean of the closest two: by name (``combine: paper``) only.
+"""The paper's mean of the closest two of three repeats, used only by request (``combine: paper``).
 
 Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0), 2.2.2. It looks more precise and is less: the mean of
 the closest two of three scatters 1.38 times as much as the mean of all, and those two differ by a third of the true
@@ -13,12 +13,12 @@ from typing import Final, Literal
 Combining = Literal["mean", "paper"]
 
 KEY: Final = "combine"
-"""Of a run's metadata, where its recipe says it."""
+"""Key of a run's metadata that stores the recipe's choice."""
 OF: Final = 3
-"""Repeats of which two are taken; with any other number the mean is that of all."""
+"""Number of repeats of which two are taken; any other number is averaged in full."""
 STANDARD: Final = 0.798
-"""Standard deviation of the mean of the closest two of three normal values, where that of one is 1 (400,000 draws); of
-the mean of all three it is 0.577."""
+"""Standard deviation of the mean of the closest two of three normal values, relative to that of a single value (400,000
+draws); for the mean of all three it is 0.577."""
 
 
 def combining_of(metadata: Mapping[str, str]) -> Combining:
@@ -27,7 +27,7 @@ def combining_of(metadata: Mapping[str, str]) -> Combining:
 
 
 def taken(values: Sequence[float], combining: Combining) -> list[int]:
-    """Return the positions of the values that enter the mean; all of three where their distances are the same."""
+    """Return the positions of the values that enter the mean: all of three where their distances are equal."""
     every = list(range(len(values)))
     if combining != "paper" or len(values) != OF:
         return every

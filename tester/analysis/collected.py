@@ -11,10 +11,10 @@ from tester.analysis.stability import filled
 def collected(
     counter: BlockCounter, revolutions: float | None, seconds: float | None, extend_to: float, *, alone: bool
 ) -> bool:
-    """Tell whether a repeat goes on no longer; of ``revolutions`` and ``seconds`` one is the window, one None.
+    """Return whether a repeat is complete; one of ``revolutions`` and ``seconds`` is the window, the other is None.
 
-    ``extend_to``: the most it collects, in the window's unit. ``alone``: it has no siblings that it is judged with, so
-    it goes on until its drift is shown to be small.
+    ``extend_to``: the most it collects, in the window's unit. ``alone``: it has no siblings to be judged with, so it is
+    extended until its drift is shown to be small.
     """
     blocks = counter.blocks
     have = float(len(blocks)) if revolutions is not None else counter.seconds

@@ -1,16 +1,16 @@
-"""Adhesion and hysteresis of a specimen from its coefficients dry and with the contact kept apart by a film.
+"""Adhesion and hysteresis of a specimen from its coefficients dry and with a film between the surfaces.
 
 With a film, of water or of powder, that takes all adhesion away, leaves all hysteresis and does nothing else, at one
 speed, load and temperature
 
-    hysteresis = mu_film,  adhesion = mu_dry - mu_film,  share = mu_film / mu_dry  (of hysteresis).
+  hysteresis = mu_film,  adhesion = mu_dry - mu_film,  share = mu_film / mu_dry  (of hysteresis).
 
-Both coefficients are of one specimen on one rig. What they have in common (the terms of the budget that are the
-rig's or the piece's, ``Contribution.common``) moves both the same way, and only what it moves a component by is left;
-what is each one's own adds in squares. The contact is warmer dry than with a film. mu_film is taken to the temperature
-of the dry contact with the sensitivity c = d ln mu / dT that is known of it, mu_film exp(c (T_dry - T_film)). What is
-not known of c adds its uncertainty times that difference, which is itself not known better than ``RUBBER_K``. The
-expanded uncertainty is of 95 %, with Welch and Satterthwaite's degrees of freedom.
+Both coefficients are of one specimen on one rig. Common errors (terms of the budget that belong to the rig or the
+piece, ``Contribution.common``) move both the same way, so only their effect on a component remains; independent errors
+add in squares. The contact is warmer dry than with a film. mu_film is taken to the temperature of the dry contact with
+the sensitivity c = d ln mu / dT, mu_film exp(c (T_dry - T_film)). The uncertainty of c acts over that difference, whose
+own uncertainty is at least ``RUBBER_K``. The expanded uncertainty is of 95 %, with Welch and Satterthwaite's degrees of
+freedom.
 """
 
 from __future__ import annotations
@@ -27,18 +27,19 @@ from tester.analysis.results import NAN
 from tester.analysis.uncertainty import CONFIDENCE, Contribution, effective_df
 
 SENSITIVITY: Final = "sensitivity to temperature"
-"""Name of what the difference of the contact's temperatures contributes."""
+"""Name of the contribution of the difference between the contact's temperatures."""
 RUBBER_K: Final = 1.0
-"""Standard uncertainty of the difference between the rubber's temperatures, K, beside what the thermometer shows of it
-[A]: that sees the track where it leaves the contact, and the rubber is warm from what was measured before."""
+"""Standard uncertainty of the difference between the rubber's temperatures, K, beyond the thermometer's [A]: the
+thermometer sees the track as it leaves the contact, and the rubber is still warm from earlier conditions."""
 
 
 @dataclass(frozen=True, slots=True)
 class PartValue:
-    """A value and what makes it uncertain.
+    """A value with its uncertainty.
 
-    ``own``: standard uncertainties and degrees of freedom of what is nothing else's. ``common``: by how much, with its
-    sign, it is off where a cause that others have too is off by its standard uncertainty; and the degrees of freedom.
+    ``own``: standard uncertainties and degrees of freedom of errors that no other value shares. ``common``: by cause,
+    the error of the value, with its sign, when the cause is off by its standard uncertainty; and the degrees of
+    freedom.
     """
 
     value: float
@@ -51,12 +52,12 @@ class PartValue:
 
     @property
     def standard(self) -> float:
-        """Return the standard uncertainty; NaN where a part is not known."""
+        """Return the standard uncertainty; NaN where a part is unknown."""
         return sqrt(sum(u * u for u, _ in self._parts))
 
     @property
     def expanded(self) -> float:
-        """Return the expanded uncertainty, 95 %; NaN where a part is not known."""
+        """Return the expanded uncertainty, 95 %; NaN where a part is unknown."""
         standard = self.standard
         if not isfinite(standard):
             return NAN
@@ -65,7 +66,8 @@ class PartValue:
 
 @dataclass(frozen=True, slots=True)
 class ByFilm:
-    """Components of one condition; ``warmer_k``: by how much the dry contact was warmer than that with the film."""
+    """Components of one condition; ``warmer_k``: temperature of the dry contact less that of the contact with the film.
+    """
 
     adhesion: PartValue
     hysteresis: PartValue
@@ -77,7 +79,7 @@ class ByFilm:
 def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm:
     """Return the components of a condition from its results on one specimen; ``slope``: of the film's coefficient.
 
-    Uncertainties are NaN where a result has no budget, or no repeats to tell its repeatability.
+    Uncertainties are NaN where a result has no budget, or no repeats to derive its repeatability from.
     """
     warmer_k = dry.measured.temperature - film.measured.temperature
     apart_k = warmer_k if isfinite(warmer_k) else 0.0
@@ -87,18 +89,18 @@ def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm
     both = (dry.budget.contributions, film.budget.contributions)
 
     def combined(value: float, to_dry: float, to_film: float) -> PartValue:
-        """Return a component by its derivatives to both coefficients."""
+        """Return a component from its derivatives with respect to both coefficients."""
         scales = (to_dry, to_film * factor)
-        known = [(one, scale) for found, scale in zip(both, scales, strict=True) for one in found]
-        own = [(abs(scale) * one.standard, one.df) for one, scale in known if not one.common]
+        scaled = [(term, scale) for contributions, scale in zip(both, scales, strict=True) for term in contributions]
+        independent = [(abs(scale) * term.standard, term.df) for term, scale in scaled if not term.common]
         common: dict[str, tuple[float, float]] = {SENSITIVITY: (to_film * unknown, inf)}
-        for one, scale in known:
-            if one.common:
-                so_far, df = common.get(one.name, (0.0, inf))
-                common[one.name] = so_far + scale * _error(one), min(df, one.df)
+        for term, scale in scaled:
+            if term.common:
+                so_far, df = common.get(term.name, (0.0, inf))
+                common[term.name] = so_far + scale * _error(term), min(df, term.df)
         if not all(both):
-            own.append((NAN, inf))
-        return PartValue(value, tuple(own), common)
+            independent.append((NAN, inf))
+        return PartValue(value, tuple(independent), common)
 
     return ByFilm(
         adhesion=combined(mu_d - mu_f, 1.0, -1.0),
@@ -108,26 +110,27 @@ def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm
     )
 
 
-def _error(one: Contribution) -> float:
-    """Return by how much mu is off, with its sign, where the cause is off by its standard uncertainty."""
-    return one.input_u * one.sensitivity
+def _error(contribution: Contribution) -> float:
+    """Return the error of mu, with its sign, when the cause is off by its standard uncertainty."""
+    return contribution.input_u * contribution.sensitivity
 
 
 def mean_of(values: Sequence[PartValue]) -> PartValue:
-    """Return the mean of values of one rig and compound, weighted by 1 / u^2; NaN where none is certain to some degree.
+    """Return the mean of values of one rig and compound, weighted by 1 / u^2; NaN where none has an uncertainty above
+    0.
 
-    What they have in common does not average out.
+    Common errors do not average out.
     """
-    kept = [one for one in values if isfinite(one.value) and one.standard > 0.0]
-    if not kept:
+    certain = [one for one in values if isfinite(one.value) and one.standard > 0.0]
+    if not certain:
         return PartValue(NAN, ((NAN, inf),))
-    weights = [1.0 / one.standard**2 for one in kept]
+    weights = [1.0 / one.standard**2 for one in certain]
     shares = [weight / sum(weights) for weight in weights]
     common: dict[str, tuple[float, float]] = {}
-    for one, share in zip(kept, shares, strict=True):
+    for one, share in zip(certain, shares, strict=True):
         for name, (u, df) in one.common.items():
             so_far, least = common.get(name, (0.0, inf))
             common[name] = so_far + share * u, min(least, df)
-    value = sum(share * one.value for one, share in zip(kept, shares, strict=True))
-    own = tuple((share * u, df) for one, share in zip(kept, shares, strict=True) for u, df in one.own)
-    return PartValue(value, own, common)
+    value = sum(share * one.value for one, share in zip(certain, shares, strict=True))
+    independent = tuple((share * u, df) for one, share in zip(certain, shares, strict=True) for u, df in one.own)
+    return PartValue(value, independent, common)

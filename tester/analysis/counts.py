@@ -1,7 +1,7 @@
-"""How many of a condition's repeats were asked for, made and valid, and which were made up: the one place that counts.
+"""How many of a condition's repeats were requested, made and valid, and which replace refused ones.
 
-What is counted is whatever makes a value: repeats; pairs of repeats where both directions are measured; replicates for
-the row that stands for them.
+Every count in the program comes from here. It counts whatever makes a value: repeats; pairs of repeats where both
+directions are measured; replicates for the row of their mean.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ REPLICATES: Final = "replicates"
 class Counts:
     """Counts of a condition: ``made`` is always ``valid`` plus ``left_out``.
 
-    ``asked``: what the recipe asks for at least. ``valid``: those in the mean. ``make_ups`` are the places, from 0, of
-    those made in place of refused ones; they are among ``made``.
+    ``asked``: the least number that the recipe requests. ``valid``: those in the mean. ``make_ups`` are the places,
+    from 0, of those made in place of refused ones; they are among ``made``.
     """
 
     asked: int = 0
@@ -31,7 +31,7 @@ class Counts:
 
     @property
     def left_out(self) -> int:
-        """Return how many of those made are in no mean: refused, left out by hand, or not chosen."""
+        """Return how many are in no mean: refused, left out by hand, or not chosen."""
         return self.made - self.valid
 
     @property
@@ -41,7 +41,7 @@ class Counts:
 
     @property
     def words(self) -> str:
-        """Return what is in the mean, of what was asked for: ``3 of 3``."""
+        """Return valid of requested, as text: ``3 of 3``."""
         return f"{self.valid} of {self.asked}"
 
 
@@ -49,9 +49,9 @@ NO_COUNTS: Final = Counts()
 
 
 def make_ups_of(asked: int, made: int, refused: Collection[int]) -> tuple[int, ...]:
-    """Return the places, from 0, of make-ups among ``made``: each stands in place of a refused one before it.
+    """Return the places, from 0, of make-ups among ``made``: each replaces a refused one before it.
 
-    What is made beyond ``asked`` while none is owed is for precision, or to show that a drift is small: no make-up.
+    Extra ones beyond ``asked``, made while none is owed, serve precision or the test for drift: they are no make-ups.
     """
     owed, make_ups = 0, list[int]()
     for place in range(made):

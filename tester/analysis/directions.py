@@ -1,14 +1,14 @@
-"""A coefficient from both directions of sliding: what each showed, and what their difference is free of.
+"""A coefficient from both directions of sliding: the result of each, and the errors that their difference removes.
 
-With the cell's axes turned by theta against those of the contact, load shows as friction. It does so whichever way the
-rubber slides, while friction turns round with the sliding. Of signed coefficients l = Fx / Fz
+With the cell's axes turned by theta against those of the contact, load shows as friction. Its sign does not depend on
+the direction of sliding, while friction reverses. Of signed coefficients l = Fx / Fz
 
-    half difference (l+ - l-) / 2 = mu (1 + theta^2 (1 + mu^2)),      half sum (l+ + l-) / 2 = theta (1 + mu^2),
+  half difference (l+ - l-) / 2 = mu (1 + theta^2 (1 + mu^2)),      half sum (l+ + l-) / 2 = theta (1 + mu^2),
 
-so half the difference is the coefficient, and half the sum tells the angle. A share of the load that the friction
-channel sees, and of friction that the load channel sees (crosstalk), goes the same ways, and is in that angle.
+so half the difference is the coefficient, and half the sum yields the angle. Crosstalk (a share of the load on the
+friction channel, or of friction on the load channel) behaves the same way and is part of that angle.
 
-Repeats alternate + - - +: what changes evenly with time drops out of every two pairs.
+Repeats alternate + - - +: a linear change in time drops out of every two pairs.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from tester.base.quantities import Means, mean_of
 
 
 def is_reversed(repeat: int) -> bool:
-    """Tell whether a repeat, counted from 1, slides against the direction that is asked for: no, yes, yes, no, ..."""
+    """Return whether a repeat, counted from 1, slides against the requested direction: no, yes, yes, no, ..."""
     return repeat % 4 in (2, 3)
 
 
 @dataclass(frozen=True, slots=True)
 class SlidingWay:
-    """What the repeats of one direction show: how many, mean and standard deviation of the coefficient, the mean along
-    the sliding with its sign, their drift (per cent a window), and the means of what was measured."""
+    """Result of the repeats of one direction: number, mean and standard deviation of the coefficient, the mean along
+    the sliding with its sign, their drift (per cent a window), and the means of the channels."""
 
     n: int
     mu: float
@@ -44,8 +44,8 @@ class SlidingWay:
 
 @dataclass(frozen=True, slots=True)
 class BothWays:
-    """Both directions of a condition. ``half_sum``: of the signed coefficients, with the standard deviation between
-    its ``pairs``."""
+    """Both directions of a condition. ``half_sum``: of the signed coefficients, with the standard deviation between its
+    ``pairs``."""
 
     forward: SlidingWay
     backward: SlidingWay
@@ -55,52 +55,61 @@ class BothWays:
 
     @property
     def difference_percent(self) -> float:
-        """Return by how much the direction that is asked for shows more, per cent of the mean of both."""
+        """Return the excess of the requested direction over the reverse, per cent of the mean of both."""
         mean = 0.5 * (self.forward.mu + self.backward.mu)
         return 100.0 * (self.forward.mu - self.backward.mu) / mean if mean > 0.0 else float("nan")
 
     @property
     def turning(self) -> dict[str, float]:
-        """Return half the difference of the channels' means: how much of each turns round with the sliding."""
+        """Return half the difference of the channels' means: the part of each that reverses with the sliding."""
         backward = self.backward.means
         return {name: 0.5 * (value - backward[name]) for name, value in self.forward.means.items()}
 
 
 def both_ways(pairs: Sequence[tuple[RepeatResult, RepeatResult]]) -> BothWays:
-    """Return what at least one pair shows, each a repeat as asked for and one reversed."""
-    sums = [0.5 * (one.mu_longitudinal + other.mu_longitudinal) for one, other in pairs]
+    """Return the result of at least one pair, each a repeat in the requested direction and one in the reverse."""
+    sums = [
+        0.5 * (forward_repeat.mu_longitudinal + reverse_repeat.mu_longitudinal)
+        for forward_repeat, reverse_repeat in pairs
+    ]
     forward, backward = (_way([pair[side] for pair in pairs]) for side in (0, 1))
     return BothWays(forward, backward, len(pairs), sum(sums) / len(sums), standard_deviation(sums))
 
 
 def _way(repeats: Sequence[RepeatResult]) -> SlidingWay:
     n = len(repeats)
-    values, drifts = [one.mu_resultant for one in repeats], [one.drift_percent for one in repeats]
-    along = sum(one.mu_longitudinal for one in repeats) / n
+    values, drifts = [repeat.mu_resultant for repeat in repeats], [repeat.drift_percent for repeat in repeats]
+    along = sum(repeat.mu_longitudinal for repeat in repeats) / n
     return SlidingWay(n, sum(values) / n, standard_deviation(values), along, sum(drifts) / n,
-                      mean_of(one.means for one in repeats))  # fmt: skip
+                      mean_of(repeat.means for repeat in repeats))  # fmt: skip
 
 
-def mean_of_both_ways(given: Sequence[BothWays]) -> BothWays:
-    """Return what stands for replicates, each of equal weight; deviations between pairs are pooled."""
-    forward, backward = _mean_way([one.forward for one in given]), _mean_way([one.backward for one in given])
-    df = [one.pairs - 1 for one in given]
-    squares = sum(n * one.half_sum_s**2 for n, one in zip(df, given, strict=True) if n)
+def mean_of_both_ways(replicates: Sequence[BothWays]) -> BothWays:
+    """Return the mean over replicates, each of equal weight; deviations between pairs are pooled."""
+    forward, backward = (
+        _mean_way([replicate.forward for replicate in replicates]),
+        _mean_way([replicate.backward for replicate in replicates]),
+    )
+    df = [replicate.pairs - 1 for replicate in replicates]
+    squares = sum(n * replicate.half_sum_s**2 for n, replicate in zip(df, replicates, strict=True) if n)
     spread = (squares / sum(df)) ** 0.5 if sum(df) else float("nan")
-    half_sum = sum(one.half_sum for one in given) / len(given)
-    return BothWays(forward, backward, sum(one.pairs for one in given), half_sum, spread)
+    half_sum = sum(replicate.half_sum for replicate in replicates) / len(replicates)
+    return BothWays(forward, backward, sum(replicate.pairs for replicate in replicates), half_sum, spread)
 
 
-def _mean_way(given: Sequence[SlidingWay]) -> SlidingWay:
-    n = len(given)
-    values = [one.mu for one in given]
-    along, drift = sum(one.along for one in given) / n, sum(one.drift_percent for one in given) / n
-    return SlidingWay(sum(one.n for one in given), sum(values) / n, standard_deviation(values), along, drift,
-                      mean_of(one.means for one in given))  # fmt: skip
+def _mean_way(ways: Sequence[SlidingWay]) -> SlidingWay:
+    n = len(ways)
+    values = [way.mu for way in ways]
+    along, drift = (
+        sum(way.along for way in ways) / n,
+        sum(way.drift_percent for way in ways) / n,
+    )
+    return SlidingWay(sum(way.n for way in ways), sum(values) / n, standard_deviation(values), along, drift,
+                      mean_of(way.means for way in ways))  # fmt: skip
 
 
 def halves(results: Sequence[RepeatResult], pair: int) -> tuple[int, int]:
-    """Return where the repeats of a pair (from 0) are: the one as asked for, and the reversed one."""
+    """Return the places of the repeats of a pair (from 0): the one in the requested direction, then the reverse."""
     first = 2 * pair
     return (first + 1, first) if is_reversed(first + 1) else (first, first + 1)
 
@@ -108,7 +117,7 @@ def halves(results: Sequence[RepeatResult], pair: int) -> tuple[int, int]:
 def as_pairs(results: Sequence[RepeatResult], *, whole: bool = False) -> list[RepeatResult]:
     """Return a result for each pair: half the difference of its repeats, valid where both are.
 
-    ``whole``: leave out a last pair of which one repeat is not there.
+    ``whole``: leave out a last pair that lacks a repeat.
     """
     count = len(results) // 2 if whole else (len(results) + 1) // 2
     return [_as_one(results, pair) for pair in range(count)]
@@ -157,11 +166,10 @@ def _as_one(results: Sequence[RepeatResult], pair: int) -> RepeatResult:
 
 
 def _half_difference(forward: Means, backward: Means) -> Means:
-    """Return the means over both directions; friction, which turns round, by half the difference."""
+    """Return the means over both directions; for friction, which reverses, half the difference."""
     table = forward.table
     turning = table.roles.friction if table is not None else ()
     values = (
-        0.5 * (value - backward[name] if name in turning else value + backward[name])
-        for name, value in forward.items()
+        0.5 * (value - backward[name] if name in turning else value + backward[name]) for name, value in forward.items()
     )
     return Means(table, values)

@@ -1,29 +1,34 @@
-"""Whether a condition's coefficient stands still: one fit over all its repeats.
+"""Whether a condition's coefficient is steady: one fit over all its repeats.
 
 For block i of repeat r, of accepted time t (s), surface temperature T (degC) and coefficient mu,
 
-    y_ri = mu_ri / mean_r - 1 = m_r + d (t_ri - t_r) / w + c (T_ri - T_r) + e
+  y_ri = mu_ri / mean_r - 1 = m_r + d (t_ri - t_r) / w + c (T_ri - T_r) + e
 
 with one drift d for each window w of accepted time and one sensitivity c for the condition. Within a repeat time and
-temperature often rise together and cannot be told apart; c has the prior 0 +- 2.6 %/K (the range over the three
-compounds of doi 10.3390/polym16050596 at 25 to 85 degC), and its uncertainty is part of that of d.
+temperature often rise together, and the fit cannot separate them; c has the prior 0 +- 2.6 %/K (the range over the
+three compounds of doi 10.3390/polym16050596 at 25 to 85 degC), and its uncertainty is part of that of d.
 
 Noise. Rubber's coefficient wanders as a first-order autoregressive process (AR(1)) of time constant tau. Means of it
 over revolutions of length h are ARMA(1,1): with x = h / tau and phi = exp(-x) their correlation at lag k is
 
-    rho_k = rho_1 phi^(k - 1),   rho_1 = (1 - phi)^2 / (2 (x - 1 + phi)),
+  rho_k = rho_1 phi^(k - 1),   rho_1 = (1 - phi)^2 / (2 (x - 1 + phi)),
 
-so rho_1, pooled over neighbours within bursts, gives phi, and with it how many blocks say as much as one independent
-one: ``inflation``, the mean over bursts of m blocks of 1 + 2 sum_k (1 - k/m) rho_k. (An AR(1) law for the blocks
-themselves, phi = rho_1, takes 2.95 for 2.43 at 0.35 s and 0.3 s.) Bursts are apart by seconds and independent; with
-sideslip each is a contact of its own. The residual degrees of freedom are N / inflation - (repeats + 2).
+so rho_1, pooled over neighbours within bursts, gives phi, and with it how many blocks carry the information of one
+independent block: ``inflation``, the mean over bursts of m blocks of 1 + 2 sum_k (1 - k/m) rho_k. (An AR(1) law for the
+blocks themselves, phi = rho_1, takes 2.95 for 2.43 at 0.35 s and 0.3 s.) Bursts are apart by seconds and independent;
+with sideslip each is a contact of its own. The residual degrees of freedom are N / inflation - (repeats + 2).
 
-The condition is stable when |d| + t(0.9875) se(d) <= 2 %, an equivalence test that is made again with every repeat
-more: each of four looks has a quarter of the level of 5 %. A repeat is refused only where it is shown to drift by
-itself (|d_r| > 2 %, |d_r| - t(0.95) se_r > 0), or to differ from three or more siblings (F test, 0.1 %); after a
-refusal the fit is done again without it.
+The condition is stable when
+d
++ t(0.9875) se(d) <= 2 %, an equivalence test that is repeated with every further repeat: each of four looks has a
+quarter of the level of 5 %. A repeat is refused only where it drifts significantly by itself (
+d_r
+> 2 %,
+d_r
+- t(0.95) se_r > 0), or differs from three or more siblings (F test, 0.1 %); after a refusal the fit is done again
+without it.
 
-Plain Python: asked once a repeat, at most 2 ms.
+Plain Python: it runs once a repeat, in at most 2 ms.
 """
 
 from __future__ import annotations
@@ -41,19 +46,19 @@ from tester.analysis.stability import MIN_BLOCKS
 from tester.base.quantities import temperatures
 
 DRIFT_LIMIT_PERCENT = 2.0
-"""Largest drift over a window that counts as standing still, per cent of the coefficient [A]."""
+"""Largest drift over a window that counts as steady, per cent of the coefficient [A]."""
 
 PER_KELVIN_PERCENT = 2.6
 """Standard deviation of the prior of the sensitivity to temperature, %/K."""
 
 CONFIDENCE = 0.95
 LOOK_CONFIDENCE = 1.0 - (1.0 - CONFIDENCE) / 4.0
-"""Of each look at the repeats of a condition: three to six of them, as most recipes have it, are looked at four times,
-and the level of the test is shared out, so that all looks together give away no more than it."""
+"""Of each look at the repeats of a condition. Most recipes have three to six repeats, which makes four looks; they
+share the level of the test."""
 SIBLINGS = 3
-"""A repeat is compared with its siblings where there are this many."""
+"""A repeat is compared with its siblings where there are at least this many."""
 DIFFERENT_LEVEL = 0.001
-"""Level of the F test against them."""
+"""Level of the F test against the siblings."""
 
 _MOST_CORRELATION = 0.95
 _DF_GRID = 0.5
@@ -61,7 +66,7 @@ _DF_GRID = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """What one fit found. Drift, its standard error and bound: per cent of the coefficient, per window."""
+    """Result of one fit. Drift, its standard error and bound: per cent of the coefficient, per window."""
 
     drift_percent: float
     error_percent: float
@@ -70,9 +75,9 @@ class Drift:
     correlation: float
     """Between neighbouring blocks, 0..0.95."""
     inflation: float
-    """Blocks that say as much about the mean as one independent block."""
+    """Number of correlated blocks that carry the information of one independent block."""
     shown: bool = False
-    """The drift is other than zero, by ``CONFIDENCE``."""
+    """Whether the drift differs from zero, at ``CONFIDENCE``."""
     repeats: tuple[OneDrift, ...] = ()
 
     @property
@@ -85,7 +90,7 @@ class Drift:
 class OneDrift:
     """The drift of one repeat with the condition's sensitivity to temperature; per cent, per window.
 
-    ``excess`` > 0: by how many standard errors it is beyond what is allowed for one; ``reason`` says so.
+    ``excess`` > 0: standard errors by which it exceeds what is allowed; ``reason`` gives it in words.
     """
 
     drift_percent: float
@@ -115,7 +120,7 @@ class _Series:
 
 @lru_cache(maxsize=512)
 def decay(correlation: float) -> float:
-    """Return phi for the correlation of neighbouring block means, 0..0.95: the decay from lag 1 to lag 2, and on."""
+    """Return phi for the correlation of neighbouring block means, 0..0.95: the decay from each lag to the next."""
     if correlation <= 0.0:
         return 0.0
     low, high = 1e-3, 60.0
@@ -130,7 +135,7 @@ def decay(correlation: float) -> float:
 
 
 def inflation(bursts: Sequence[int], correlation: float) -> float:
-    """Return by how much correlated blocks in bursts of these lengths widen the variance of a mean."""
+    """Return the factor by which correlated blocks in bursts of these lengths widen the variance of a mean."""
     if correlation <= 0.0:
         return 1.0
     phi = decay(round(correlation, 4))
@@ -201,21 +206,21 @@ class _Noise:
 
 
 def _noise(series: Sequence[_Series], slopes: Sequence[float], per_kelvin: float, parameters: int) -> _Noise:
-    """Return the noise of what a fit leaves over."""
+    """Return the noise in the residuals of a fit."""
     squares = products = 0.0
     count = pairs = 0
     lengths: list[int] = []
-    for one, slope in zip(series, slopes, strict=True):
-        rest = [y - slope * t - per_kelvin * c for y, t, c in zip(one.y, one.t, one.c, strict=True)]
+    for repeat, slope in zip(series, slopes, strict=True):
+        rest = [y - slope * t - per_kelvin * c for y, t, c in zip(repeat.y, repeat.t, repeat.c, strict=True)]
         squares += _dot(rest, rest)
         products += _dot(rest[:-1], rest[1:])
         at = 0
-        for m in one.bursts[:-1]:
+        for m in repeat.bursts[:-1]:
             at += m
             products -= rest[at - 1] * rest[at]
         count += len(rest)
-        pairs += len(rest) - len(one.bursts)
-        lengths += one.bursts
+        pairs += len(rest) - len(repeat.bursts)
+        lengths += repeat.bursts
     correlation = 0.0
     if squares > 0.0 and pairs >= 3:
         raw = products / pairs * count / squares
@@ -223,7 +228,7 @@ def _noise(series: Sequence[_Series], slopes: Sequence[float], per_kelvin: float
         corrected = (raw + parameters / count) / max(1.0 - 2.0 * parameters / count, 0.1)
         correlation = min(max(corrected, 0.0), _MOST_CORRELATION)
     widened = inflation(lengths, correlation)
-    # At least one is granted, with its t of 6.3: residuals that are smooth and small are no reason to refuse.
+    # Keep at least one degree of freedom (t of 6.3): smooth, small residuals are no reason to refuse.
     df = max(floor((count / widened - parameters) / _DF_GRID) * _DF_GRID, 1.0)
     return _Noise(squares / df, correlation, widened, df)
 
@@ -239,7 +244,7 @@ class _Fit:
 
 
 def _fit(series: Sequence[_Series]) -> _Fit:
-    """Fit one slope and one sensitivity; the weight of the sensitivity's prior follows from the noise found."""
+    """Fit one slope and one sensitivity; the noise sets the weight of the sensitivity's prior."""
     tt, tc, cc = sum(s.tt for s in series), sum(s.tc for s in series), sum(s.cc for s in series)
     ty, cy = sum(s.ty for s in series), sum(s.cy for s in series)
     count = sum(len(s.y) for s in series)
@@ -247,11 +252,11 @@ def _fit(series: Sequence[_Series]) -> _Fit:
     slope = per_kelvin = slope_of = 0.0
     noise = _Noise(variance, 0.0, 1.0, 1.0)
     for _ in range(3):
-        held = cc + variance / (0.01 * PER_KELVIN_PERCENT) ** 2
-        determinant = tt * held - tc * tc
-        if determinant > 1e-9 * tt * held:
-            slope, per_kelvin = (ty * held - cy * tc) / determinant, (cy * tt - ty * tc) / determinant
-            slope_of = held / determinant
+        information = cc + variance / (0.01 * PER_KELVIN_PERCENT) ** 2
+        determinant = tt * information - tc * tc
+        if determinant > 1e-9 * tt * information:
+            slope, per_kelvin = (ty * information - cy * tc) / determinant, (cy * tt - ty * tc) / determinant
+            slope_of = information / determinant
         else:
             slope, per_kelvin, slope_of = ty / tt, 0.0, 1.0 / tt
         noise = _noise(series, [slope] * len(series), per_kelvin, len(series) + 2)
@@ -260,19 +265,19 @@ def _fit(series: Sequence[_Series]) -> _Fit:
 
 
 def _singles(series: Sequence[_Series], fit: _Fit) -> tuple[OneDrift, ...]:
-    """Return every repeat's own drift, with a sensitivity pooled over them.
+    """Return the drift of each repeat, with a sensitivity pooled over them.
 
-    The sensitivity is fitted beside a slope for each, so that the drift of one does not pass for an effect of
-    temperature, nor for noise.
+    The sensitivity is fitted together with a slope for each repeat, so the drift of a single one passes neither for an
+    effect of temperature nor for noise.
     """
-    held = sum(s.cc - s.tc * s.tc / s.tt for s in series) + fit.noise.variance / (0.01 * PER_KELVIN_PERCENT) ** 2
-    per_kelvin = sum(s.cy - s.tc * s.ty / s.tt for s in series) / held if held > 0.0 else 0.0
+    information = sum(s.cc - s.tc * s.tc / s.tt for s in series) + fit.noise.variance / (0.01 * PER_KELVIN_PERCENT) ** 2
+    per_kelvin = sum(s.cy - s.tc * s.ty / s.tt for s in series) / information if information > 0.0 else 0.0
     slopes = [(s.ty - per_kelvin * s.tc) / s.tt for s in series]
     noise = _noise(series, slopes, per_kelvin, 2 * len(series) + 1)
-    kelvin_variance = noise.variance / held if held > 0.0 else 0.0
+    kelvin_variance = noise.variance / information if information > 0.0 else 0.0
     tt, tc = sum(s.tt for s in series), sum(s.tc for s in series)
     total = sum(slope * s.tt for slope, s in zip(slopes, series, strict=True))
-    found: list[OneDrift] = []
+    drifts: list[OneDrift] = []
     for s, slope in zip(series, slopes, strict=True):
         error = sqrt(noise.variance / s.tt + (s.tc / s.tt) ** 2 * kelvin_variance)
         drift = 100.0 * slope
@@ -289,8 +294,8 @@ def _singles(series: Sequence[_Series], fit: _Fit) -> tuple[OneDrift, ...]:
             if abs(slope - at) > t_quantile(1.0 - 0.5 * DIFFERENT_LEVEL, noise.df) * error_of:
                 excess = abs(slope - at) / error_of if error_of > 0.0 else abs(drift)
                 reason = f"drifts by {drift:+.1f} % a window, the other repeats by {100.0 * at:+.1f} %"
-        found.append(OneDrift(drift, 100.0 * error, bound, excess, reason))
-    return tuple(found)
+        drifts.append(OneDrift(drift, 100.0 * error, bound, excess, reason))
+    return tuple(drifts)
 
 
 def fit_drift(
@@ -299,12 +304,13 @@ def fit_drift(
     seconds: float | None = None,
     confidence: float = CONFIDENCE,
 ) -> Drift:
-    """Return the drift of repeats, each its blocks that count, per window of ``revolutions`` or accepted ``seconds``.
+    """Return the drift of repeats, each given by its valid blocks, per window of ``revolutions`` or accepted
+    ``seconds``.
 
     ``confidence``: of the bound, one-sided.
 
-    Neither: the window is the length of each repeat. Repeats of fewer than six blocks or without a coefficient are
-    not looked at; ``repeats`` of the result then has NaN for them.
+    Without either, the window is the length of each repeat. Repeats of fewer than six blocks or without a coefficient
+    are ignored; ``repeats`` of the result then has NaN for them.
     """
     usable = [
         len(blocks) >= MIN_BLOCKS and all(isfinite(b.mu) for b in blocks) and sum(b.mu for b in blocks) > 0.0
@@ -331,16 +337,16 @@ def fit_drift(
 def refusals(
     repeats: Sequence[Sequence[Block]], revolutions: float | None = None, seconds: float | None = None
 ) -> tuple[Drift, dict[int, OneDrift]]:
-    """Return the drift of the repeats that stay, and those refused, by position: the worst first, one at a time.
+    """Return the drift of the repeats that remain, and those refused, by position: the worst first, one at a time.
 
-    ``repeats`` of the drift stands for those that stay, in order.
+    ``repeats`` of the drift lists those that remain, in order.
     """
     left = list(range(len(repeats)))
     refused: dict[int, OneDrift] = {}
     while left:
-        found = fit_drift([repeats[i] for i in left], revolutions, seconds, LOOK_CONFIDENCE)
-        worst = max(range(len(left)), key=lambda i: found.repeats[i].excess if found.repeats else 0.0)
-        if not found.repeats or not found.repeats[worst].reason:
-            return found, refused
-        refused[left.pop(worst)] = found.repeats[worst]
+        drift = fit_drift([repeats[i] for i in left], revolutions, seconds, LOOK_CONFIDENCE)
+        worst = max(range(len(left)), key=lambda i: drift.repeats[i].excess if drift.repeats else 0.0)
+        if not drift.repeats or not drift.repeats[worst].reason:
+            return drift, refused
+        refused[left.pop(worst)] = drift.repeats[worst]
     return NOTHING, refused

@@ -1,7 +1,7 @@
-"""The flags a repeat or a condition can carry: word, meaning, remedy, and whether a flag is a doubt.
+"""The flags of a repeat or a condition: word, meaning, remedy, and whether a flag is a doubt.
 
-This is the one list. A record stores the words; the end of a run, ``tester show``, the tables, the report, the screens
-and the glossary take sentence and remedy from here. A new flag is one entry.
+Records store the words; the end of a run, ``tester show``, the tables, the report, the screens and the glossary take
+sentence and remedy from this list. A new flag is an entry here.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """A flag: the ``word`` that records and tables hold, its meaning and remedy in words, and its weight."""
+    """A flag: the ``word`` in records and tables, its meaning and remedy in words, and its weight."""
 
     word: str
     meaning: str
-    """What the flag says of the value, a sentence."""
+    """Meaning for the value, a sentence."""
     remedy: str = ""
-    """What to do about it, an instruction without a full stop; "" where nothing needs doing."""
+    """What to do about it, an instruction without a full stop; "" where no action is needed."""
     doubt: bool = False
-    """Whether the value is to be taken with care. The others are notes."""
+    """Whether the value needs care. The others are notes."""
 
 
 NOT_SHOWN: Final = "drift not shown"
@@ -45,7 +45,7 @@ CLOSEST_TWO: Final = "closest two of three"
 FLAGS: Final[Mapping[str, Flag]] = {
     flag.word: flag
     for flag in (
-        # The order is that of remedies: of several doubts the first one is what to mend first.
+        # In order of remedies: of several doubts the first is mended first.
         Flag(
             CARRY_OVER,
             "The coefficient was still settling from repeat to repeat: the rubber was running in.",
@@ -135,5 +135,5 @@ def flags_in(text: str) -> list[str]:
 
 def remedy_of(flags: Iterable[str]) -> str:
     """Return what to do about the first doubt among ``flags``; "" where there is none."""
-    held = set(flags)
-    return next((flag.remedy for flag in FLAGS.values() if flag.doubt and flag.word in held), "")
+    present = set(flags)
+    return next((flag.remedy for flag in FLAGS.values() if flag.doubt and flag.word in present), "")

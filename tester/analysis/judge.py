@@ -1,11 +1,11 @@
-"""A condition's repeats judged together: which are refused, whether the coefficient stands still, what carries over.
+"""A condition's repeats judged together: refusals, steadiness of the coefficient, carry-over.
 
-Make-up repeats must not launder a run-in: a coefficient that settles while it is measured loses its first repeats to
-the drift test, and what is left looks steady at a value that depends on when it was looked at. Such a condition
-carries ``carry-over``: when two or more repeats were refused for drift of the same sign, or the first, where a run-in
-is at its worst; when the means fall or rise with the sliding distance, or the drift itself dies away along it (both at
-1 %); or when what stays drifts the way of those that were refused (5 %). The tests of the trend look at all repeats,
-the refused ones too.
+Make-up repeats must not launder a run-in: a coefficient that settles during the measurement loses its first repeats to
+the drift test, and the rest look steady at a value that depends on when it was measured. Such a condition carries
+``carry-over``: when two or more repeats were refused for drift of the same sign, or the first, where a run-in is at its
+worst; when the means fall or rise with the sliding distance, or the drift itself dies away along it (both at 1 %); or
+when the remaining repeats drift in the direction of the refused ones (5 %). The tests of the trend use all repeats,
+including refused ones.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tester.analysis.stability import seconds_of
 from tester.base.quantities import temperatures
 
 ALONE = 2
-"""Up to this many repeats are judged each alone: there is nothing to pool."""
+"""Up to this many repeats are judged separately: there is nothing to pool."""
 
 TREND_LEVEL = 0.01
 """Level of the tests for a trend over the repeats."""
@@ -43,11 +43,11 @@ def judge(
     revolutions: float | None,
     seconds: float | None,
 ) -> tuple[list[RepeatResult], Judgement]:
-    """Return a condition's repeats as judged, and what they say together.
+    """Return a condition's repeats as judged, and the judgement on all of them.
 
-    ``results`` are its committed repeats in order, ``blocks`` of each those that count (not needed of a repeat that is
-    not valid). ``planned`` repeats were asked for, each with a window of ``revolutions`` or accepted ``seconds``. Those
-    that count are judged; drift and bound of each are then those of the common fit.
+    ``results`` are its committed repeats in order, ``blocks`` the valid blocks of each (not needed of a repeat that is
+    not valid). The recipe requests ``planned`` repeats, each with a window of ``revolutions`` or accepted ``seconds``.
+    Valid repeats are judged; their drift and bound are then those of the common fit.
     """
     judged = list(results)
     valid = [i for i, result in enumerate(results) if result.valid]
@@ -55,15 +55,15 @@ def judge(
         return judged, NOT_JUDGED
     if planned <= ALONE and valid:
         return judged, _each_alone([results[i] for i in valid], [blocks[i] for i in valid], revolutions, seconds)
-    # Drift first: what drifts fluctuates, too, and is to be called by its name.
-    found = _refuse(judged, valid, blocks, revolutions, seconds)
+    # Drift first: a drifting repeat also fluctuates, and the reason must be the drift.
+    drift = _refuse(judged, valid, blocks, revolutions, seconds)
     kept = counting(judged)
     if any(judged[i].valid and i not in kept for i in valid):
-        found = _refuse(judged, kept, blocks, revolutions, seconds)
+        drift = _refuse(judged, kept, blocks, revolutions, seconds)
         kept = counting(judged)
     if not kept:
         return judged, _left_with_refused(judged, blocks, revolutions, seconds)
-    return judged, _judgement(judged, found, [blocks[i] for i in kept], revolutions, seconds)
+    return judged, _judgement(judged, drift, [blocks[i] for i in kept], revolutions, seconds)
 
 
 def _refuse(
@@ -74,16 +74,18 @@ def _refuse(
     seconds: float | None,
 ) -> Drift:
     """Put the drift of the repeats at some positions into their results, refuse those that drift; return the fit."""
-    found, refused = refusals([blocks[i] for i in positions], revolutions, seconds)
-    singles = iter(found.repeats)
+    drift, refused = refusals([blocks[i] for i in positions], revolutions, seconds)
+    singles = iter(drift.repeats)
     for position, index in enumerate(positions):
-        one = refused[position] if position in refused else next(singles, None)
-        if one is None:
-            continue  # too little was measured for a fit: nothing is known of its drift
-        judged[index] = replace(judged[index], drift_percent=one.drift_percent, bound_percent=one.bound_percent)
+        own_drift = refused[position] if position in refused else next(singles, None)
+        if own_drift is None:
+            continue  # too little was measured for a fit: its drift is unknown
+        judged[index] = replace(
+            judged[index], drift_percent=own_drift.drift_percent, bound_percent=own_drift.bound_percent
+        )
         if position in refused:
-            judged[index] = replace(judged[index], status=RepeatStatus.REFUSED, reason=one.reason)
-    return found
+            judged[index] = replace(judged[index], status=RepeatStatus.REFUSED, reason=own_drift.reason)
+    return drift
 
 
 def _judgement(
@@ -108,10 +110,10 @@ def _judgement(
 
 
 def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
-    """Tell whether a run-in is what refused repeats tell of: the first is one of them, or those that stay drift, too.
+    """Return whether the refused repeats indicate a run-in: the first is among them, or the others drift as well.
 
-    A run-in is at its worst in the first repeat; where only later ones were refused, the drift of the others has to be
-    shown, and to go the same way.
+    A run-in is at its worst in the first repeat; where only later ones were refused, the drift of the others must be
+    significant and of the same sign.
     """
     if (first := next((r for r in results if r.valid or r.drifts), None)) is not None and first.drifts:
         return True
@@ -125,13 +127,13 @@ def _left_with_refused(
     revolutions: float | None,
     seconds: float | None,
 ) -> Judgement:
-    """Return what is known where no repeat is left: the drift of all that were refused for it."""
+    """Return the judgement where no repeat is left: the drift of all that were refused for it."""
     drifting = [i for i, result in enumerate(results) if result.drifts and blocks[i]]
     if not drifting:
         return NOT_JUDGED
     left = [blocks[i] for i in drifting]
-    found = fit_drift(left, revolutions, seconds, LOOK_CONFIDENCE)
-    judgement = _judgement(results, found, left, revolutions, seconds)
+    drift = fit_drift(left, revolutions, seconds, LOOK_CONFIDENCE)
+    judgement = _judgement(results, drift, left, revolutions, seconds)
     return replace(judgement, flags=joined([NOT_SHOWN, *flags_in(judgement.flags)]))
 
 
@@ -141,12 +143,12 @@ def _each_alone(
     revolutions: float | None,
     seconds: float | None,
 ) -> Judgement:
-    """Return the judgement of repeats that have no siblings to speak of: the worst of them stands for all."""
-    found = max((fit_drift([one], revolutions, seconds) for one in blocks), key=_bound)
+    """Return the judgement of repeats without siblings: that of the worst."""
+    drift = max((fit_drift([block], revolutions, seconds) for block in blocks), key=_bound)
     flags = [NOT_SHOWN] if any(NOT_SHOWN in flags_in(result.flags) for result in results) else []
     windows = _windows(blocks, revolutions, seconds)
     return Judgement(
-        found.drift_percent, found.error_percent, found.bound_percent, found.per_kelvin_percent, windows,
+        drift.drift_percent, drift.error_percent, drift.bound_percent, drift.per_kelvin_percent, windows,
         flags=joined(flags),
     )  # fmt: skip
 
@@ -156,24 +158,24 @@ def _bound(found: Drift) -> float:
 
 
 def _windows(blocks: Sequence[Sequence[Block]], revolutions: float | None, seconds: float | None) -> float:
-    """Return how many windows a repeat collected, in the mean."""
+    """Return the mean number of windows that a repeat collected."""
     if revolutions is not None:
-        return sum(len(one) for one in blocks) / (revolutions * len(blocks))
-    return sum(seconds_of(one) for one in blocks) / (seconds * len(blocks)) if seconds else 1.0
+        return sum(len(block) for block in blocks) / (revolutions * len(blocks))
+    return sum(seconds_of(repeat) for repeat in blocks) / (seconds * len(blocks)) if seconds else 1.0
 
 
 def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tuple[float, bool]:
-    """Return by how many per cent the coefficient changes from first repeat to last, and whether it carries over.
+    """Return the change of the coefficient from first repeat to last, per cent, and whether it carries over.
 
     ``results``: all committed repeats in order; of those without a value only the sliding distance counts.
     """
     middles: list[float] = []
     slid = 0.0
     for result in results:
-        own = abs(result.means.sliding) * result.window_s
-        own = own if isfinite(own) and own > 0.0 else 1.0
-        middles.append(slid + 0.5 * own)
-        slid += own
+        distance = abs(result.means.sliding) * result.window_s
+        distance = distance if isfinite(distance) and distance > 0.0 else 1.0
+        middles.append(slid + 0.5 * distance)
+        slid += distance
     seen = [i for i, result in enumerate(results) if result.valid or result.drifts]
     signs = [results[i].drift_percent > 0.0 for i in seen if results[i].drifts]
     carries = max(signs.count(True), signs.count(False)) >= 2
@@ -187,8 +189,7 @@ def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tupl
     surface = temperatures(results[i].means for i in seen)
     middle = sum(surface) / len(surface)
     values = [
-        results[i].mu_resultant * (1.0 - 0.01 * kelvin * (at_c - middle))
-        for i, at_c in zip(seen, surface, strict=True)
+        results[i].mu_resultant * (1.0 - 0.01 * kelvin * (at_c - middle)) for i, at_c in zip(seen, surface, strict=True)
     ]
     mean = sum(values) / len(values)
     y = [100.0 * (value / mean - 1.0) for value in values]
@@ -207,7 +208,7 @@ def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tupl
 
 
 def _dies_away(x: Sequence[float], results: Sequence[RepeatResult]) -> bool:
-    """Tell whether the drift becomes less from repeat to repeat, and is shown to."""
+    """Return whether the drift decreases significantly from repeat to repeat."""
     drifts = [result.drift_percent for result in results]
     if not all(map(isfinite, drifts)):
         return False
@@ -216,7 +217,7 @@ def _dies_away(x: Sequence[float], results: Sequence[RepeatResult]) -> bool:
     squares = sum(a * a for a in x)
     mean = sum(drifts) / len(drifts)
     per_m = sum(a * b for a, b in zip(x, drifts, strict=True)) / squares
-    # What scatters about the line, too: one odd repeat among steady ones is no drift that dies away.
+    # Scatter about the line counts as well: a single odd repeat among steady ones is no drift that dies away.
     rest = sum((d - mean - per_m * a) ** 2 for a, d in zip(x, drifts, strict=True)) / max(len(x) - 2, 1)
     error = sqrt(sum(a * a * max(e * e, rest) for a, e in zip(x, errors, strict=True))) / squares
     first, last = mean + per_m * x[0], mean + per_m * x[-1]

@@ -1,12 +1,12 @@
-"""How the coefficient depends on temperature, and what it would be at the temperature that was asked for.
+"""Sensitivity of the coefficient to temperature, and its value at the requested temperature.
 
 The relative sensitivity c = d ln(mu) / dT of a condition comes from the run's own pairs first: conditions that differ
-in nothing but temperature. Where there are none it is what is known of the compound, and where nothing is, it is
-0 +- 2.6 %/K (the range over the three compounds of doi 10.3390/polym16050596 at 25 to 85 degC), with no correction.
+only in temperature. Without such pairs it is the compound's known sensitivity, and without that 0 +- 2.6 %/K (the range
+over the three compounds of doi 10.3390/polym16050596 at 25 to 85 degC), with no correction.
 
-    mu(T0) = mu exp(-c (T + lag dT/dt - T0)),
+  mu(T0) = mu exp(-c (T + lag dT/dt - T0)),
 
-T the mean of what the thermometer showed, which lags behind a surface that warms.
+T the mean of the thermometer's readings, which lag behind a surface that warms.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ CONDITION_SCATTER: Final = 0.044
 """Relative scatter of a condition about any smooth law of temperature: the middle of 3.2, 4.2 and 5.9 %, residual
 standard deviations of the best separable law for the three compounds of doi 10.3390/polym16050596 [A]."""
 TEMPERATURE_SENSITIVITY: Final = "temperature sensitivity"
-"""Name of the contribution of what is not known of it."""
+"""Name of the contribution of the uncertainty of the sensitivity."""
 LEAST_STEP_K: Final = 5.0
-"""Closer temperatures say more of scatter than of a sensitivity [A]."""
+"""Differences of closer temperatures are dominated by scatter [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ UNKNOWN: Final = Slope(0.0, 0.01 * PER_KELVIN_PERCENT, f"unknown: 0 +- {PER_KELV
 
 @dataclass(frozen=True, slots=True)
 class KnownSlope:
-    """What is known of a compound near a temperature (degC), as a run's record keeps it; %/K."""
+    """A compound's known sensitivity near a temperature (degC), as a run's record keeps it; %/K."""
 
     compound: str
     temperature_c: float
@@ -62,12 +62,12 @@ class KnownSlope:
 def slope_of_pairs(at_c: float, points: Sequence[tuple[float, float]]) -> Slope | None:
     """Return the sensitivity at a temperature from conditions that differ in temperature alone; None without a pair.
 
-    ``points``: temperature in degC and coefficient (> 0) of each, that of the condition itself among them. The slope at
-    ``at_c`` of a parabola through the three nearest temperatures, of two the chord. Its uncertainty: the scatter of
-    conditions, and as curvature what a parabola differs from the chord by (of a chord, half of it).
+    ``points``: temperature in degC and coefficient (> 0) of each, including the condition itself. The slope at ``at_c``
+    of a parabola through the three nearest temperatures, of two the chord. Its uncertainty: the scatter of conditions,
+    and for curvature the difference between parabola and chord (of a chord, half of it).
     """
     apart: list[tuple[float, float]] = []
-    for point in sorted(points, key=lambda one: abs(one[0] - at_c)):
+    for point in sorted(points, key=lambda candidate: abs(candidate[0] - at_c)):
         if all(abs(point[0] - other) >= LEAST_STEP_K for other, _ in apart):
             apart.append(point)
     near = sorted(apart[:3])
@@ -88,13 +88,13 @@ def slope_of_pairs(at_c: float, points: Sequence[tuple[float, float]]) -> Slope 
         chord = (y[2] - y[0]) / (x[2] - x[0])
         curved = abs(parabola - chord) / sqrt(3.0)
     scattered = CONDITION_SCATTER * sqrt(sum(w * w for w in weights))
-    told = ", ".join(f"{t:.0f}" for t in x)
-    return Slope(parabola, hypot(scattered, curved), f"the run's own conditions at {told} degC")
+    nearby = ", ".join(f"{t:.0f}" for t in x)
+    return Slope(parabola, hypot(scattered, curved), f"the run's own conditions at {nearby} degC")
 
 
 @dataclass(frozen=True, slots=True)
 class SurfaceWarmth:
-    """A condition's temperatures, degC: what was asked for, what the thermometer showed, how fast that rose (K/s)."""
+    """A condition's temperatures, degC: nominal, shown by the thermometer, and the rate of the latter (K/s)."""
 
     nominal_c: float = NAN
     shown_c: float = NAN
@@ -102,20 +102,19 @@ class SurfaceWarmth:
     slope: Slope = UNKNOWN
 
     def offset_k(self, terms: Sequence[Term]) -> float:
-        """Return by how much the surface was warmer than asked for, the thermometer's lag included; 0 if unknown."""
-        lag_s = sum(one.factor for one in terms if one.acts is Acts.LAG)
+        """Return the surface's temperature less the nominal one, K, the thermometer's lag included; 0 if unknown."""
+        lag_s = sum(term.factor for term in terms if term.acts is Acts.LAG)
         offset = self.shown_c + lag_s * self.rate_k_s - self.nominal_c
         return offset if isfinite(offset) else 0.0
 
     def correction(self, terms: Sequence[Term]) -> float:
-        """Return what a coefficient as measured is multiplied by to be at the temperature that was asked for; 1 where
-        no sensitivity is known."""
+        """Return the factor that takes a coefficient as measured to the nominal temperature; 1 where no sensitivity is
+        known."""
         return exp(-self.slope.per_kelvin * self.offset_k(terms)) if self.slope.known else 1.0
 
     def contribution(self, mu: float, terms: Sequence[Term]) -> Contribution:
-        """Return what the uncertainty of the sensitivity contributes: over the offset, and what the thermometer is off
-        by."""
-        thermometer_k = sqrt(sum(one.standard**2 for one in terms if one.acts is Acts.TEMPERATURE))
+        """Return the contribution of the sensitivity's uncertainty, over the offset and the thermometer's error."""
+        thermometer_k = sqrt(sum(term.standard**2 for term in terms if term.acts is Acts.TEMPERATURE))
         over_k = hypot(self.offset_k(terms), thermometer_k)
         return contribution(TEMPERATURE_SENSITIVITY, self.slope.u_per_kelvin, mu * over_k, unit="1/K",
                             source=self.slope.source)  # fmt: skip

@@ -1,12 +1,12 @@
-"""By what angle the load cell's axes seem to be off, from conditions that were measured in both directions.
+"""Apparent misalignment of the load cell's axes, from conditions measured in both directions.
 
 Half the sum of a pair's signed coefficients is theta (1 + mu^2) (``tester.analysis.directions``). One condition of
-three pairs knows it to some 0.2 degrees, because repeats differ by 2 %; so it is pooled over the session, which has one
-cell as it stands. Each condition weighs by its uncertainty, for which the relative scatter between pairs is pooled:
+three pairs resolves it to some 0.2 degrees, because repeats differ by 2 %; so it is pooled over the session, in which
+the cell is not moved. Each condition weighs by its uncertainty, for which the relative scatter between pairs is pooled:
 
-    u_i = s mu_i / ((1 + mu_i^2) sqrt(n_i)),      theta = sum(theta_i / u_i^2) / sum(1 / u_i^2),      u^-2 = sum u_i^-2
+  u_i = s mu_i / ((1 + mu_i^2) sqrt(n_i)),      theta = sum(theta_i / u_i^2) / sum(1 / u_i^2),      u^-2 = sum u_i^-2
 
-Crosstalk between load and friction looks the same, and is in it: the angle is what the budget calls misalignment and
+Crosstalk between load and friction looks the same, and is part of it: the angle is the budget's misalignment and
 crosstalk together. It corrects nothing; the coefficients from both directions are free of it.
 """
 
@@ -24,7 +24,7 @@ from tester.analysis.uncertainty import CONFIDENCE
 
 @dataclass(frozen=True, slots=True)
 class Misalignment:
-    """An apparent angle and its standard uncertainty, degrees, the degrees of freedom, and how many pairs it is of."""
+    """An apparent angle and its standard uncertainty, degrees, the degrees of freedom, and the number of pairs."""
 
     deg: float = NAN
     standard_deg: float = NAN
@@ -41,8 +41,10 @@ NOT_KNOWN = Misalignment()
 
 
 def misalignment(results: Iterable[ConditionResult]) -> Misalignment:
-    """Return the angle pooled over conditions; those without a value, or of one direction, say nothing."""
-    found = [(one.mu_resultant, one.both_ways) for one in results if one.ok and one.both_ways is not None]
+    """Return the angle pooled over conditions; those without a value, or of one direction, are ignored."""
+    found = [
+        (result.mu_resultant, result.both_ways) for result in results if result.ok and result.both_ways is not None
+    ]
     found = [(mu, ways) for mu, ways in found if mu > 0.0]
     if not found:
         return NOT_KNOWN

@@ -16,7 +16,7 @@ _EPSILON = 1e-14
 _TINY = 1e-300
 _NORMAL = NormalDist()
 _LARGE_DF = 1e4
-"""From here on the expansion in 1/df is exact to 1e-13; the tail's logarithms of gamma lose more than that."""
+"""Above this the expansion in 1/df is exact to 1e-13; the tail's logarithms of gamma lose more than that."""
 
 
 def _continued_fraction(a: float, b: float, x: float) -> float:
@@ -77,10 +77,10 @@ def _t_expansion(p: float, df: float) -> float:
 
 @lru_cache(maxsize=4096)
 def t_quantile(p: float, df: float) -> float:
-    """Return the quantile of Student's t: the value that is not exceeded with probability ``p``.
+    """Return the quantile of Student's t at probability ``p``.
 
-    ``p`` in (0, 1); ``df`` >= 0.5, need not be whole (an effective number of degrees of freedom is not),
-    may be inf. Raises ValueError outside. Costs about 50 us, nothing when asked again.
+    ``p`` in (0, 1); ``df`` >= 0.5, may be fractional (an effective number of degrees of freedom is) or inf. Raises
+    ValueError outside. Costs about 50 us, nothing on a repeated call.
     """
     if not (0.0 < p < 1.0 and df >= 0.5):
         raise ValueError(f"t quantile: p {p} must lie within 0..1 and df {df} be >= 0.5")
@@ -129,7 +129,7 @@ def _f_upper_tail(f: float, df1: float, df2: float) -> float:
 def f_quantile(p: float, df1: float, df2: float) -> float:
     """Return the quantile of Fisher's F with ``df1``, ``df2`` > 0 degrees of freedom, ``p`` in (0, 1).
 
-    Raises ValueError outside. Costs about 1 ms, nothing when asked again.
+    Raises ValueError outside. Costs about 1 ms, nothing on a repeated call.
     """
     if not (0.0 < p < 1.0 and df1 > 0.0 and df2 > 0.0):
         raise ValueError(f"F quantile: p {p} must lie within 0..1, df {df1} and {df2} be > 0")

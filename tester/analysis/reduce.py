@@ -2,15 +2,15 @@
 
 mu is a ratio of means, which noise of the forces does not bias (a mean of ratios is biased by noise of Fz):
 
-    longitudinal = mean(Fx) / mean(Fz)    lateral = mean(Fy) / mean(Fz)    resultant = hypot of the two
+  longitudinal = mean(Fx) / mean(Fz)    lateral = mean(Fy) / mean(Fz)    resultant = hypot of the two
 
 with Fx along the sliding, Fy across it and the measured load Fz (``tester.base.quantities.Roles``), over the whole
-revolutions that are left after truncation, each of equal weight. The tare was subtracted before the samples were
-recorded. The paper's tabulated coefficient is the resultant.
+revolutions that remain after truncation, each of equal weight. The recorded samples are net of the tare. The paper's
+tabulated coefficient is the resultant.
 
-The uncertainty comes from 10 batch means: consecutive revolutions correlate, so s / sqrt(n) of raw samples
-covers 33 % where 95 % is claimed. Where the blocks' own standard error, their correlation allowed for, is larger, it
-is that (AR(1) noise of 1 % and 0.3 s).
+The uncertainty comes from 10 batch means: consecutive revolutions correlate, so s / sqrt(n) of raw samples covers 33 %
+of cases instead of 95 %. The blocks' own standard error, with allowance for their correlation, replaces it where that
+is larger (AR(1) noise of 1 % and 0.3 s).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ BATCHES = 10
 
 
 def batch_means(blocks: Sequence[Block]) -> list[float]:
-    """Return the resultant coefficients of up to 10 consecutive batches, as equal in length as they can be."""
+    """Return the resultant coefficients of up to 10 consecutive batches, of as equal length as possible."""
     n = len(blocks)
     count = min(BATCHES, n)
     edges = [i * n // count for i in range(count + 1)]
@@ -46,7 +46,7 @@ def _resultant(blocks: Sequence[Block]) -> float:
 
 
 def standard_deviation(values: Sequence[float]) -> float:
-    """Return the sample standard deviation (n - 1) of at least two values, NaN of fewer."""
+    """Return the sample standard deviation (n - 1) of at least two values, NaN for fewer."""
     n = len(values)
     if n < 2:
         return NAN
@@ -55,24 +55,24 @@ def standard_deviation(values: Sequence[float]) -> float:
 
 
 def bursts_of(blocks: Sequence[Block]) -> list[Burst]:
-    """Return one record for every burst that gave at least one whole revolution, in order."""
-    found: list[Burst] = []
+    """Return one record for every burst with at least one whole revolution, in order."""
+    bursts: list[Burst] = []
     first = 0
     for end in range(1, len(blocks) + 1):
         if end == len(blocks) or blocks[end].burst != blocks[first].burst:
             a, b = blocks[first], blocks[end - 1]
-            found.append(Burst(a.burst, end - first, a.started_s, b.ended_s, a.means.temperature, b.means.temperature))
+            bursts.append(Burst(a.burst, end - first, a.started_s, b.ended_s, a.means.temperature, b.means.temperature))
             first = end
-    return found
+    return bursts
 
 
 def without_value(status: RepeatStatus, reason: str, started_s: float = NAN, ended_s: float = NAN) -> RepeatResult:
-    """Return the result of a repeat that gave no coefficient, with the reason for people; rig seconds."""
+    """Return the result of a repeat without a coefficient, with the reason for people; rig seconds."""
     return RepeatResult(status=status, reason=reason, started_s=started_s, ended_s=ended_s)
 
 
 def counted(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> Sequence[Block]:
-    """Return the blocks of a repeat that count: without the transient at its beginning."""
+    """Return the blocks of a repeat that count: those after the transient at its beginning."""
     return blocks[left_out(blocks, revolutions, seconds) :]
 
 
@@ -90,8 +90,8 @@ def reduce_repeat(
     ``revolutions`` or ``seconds`` is the nominal window of accepted samples (both None: any length will do).
     ``rolling`` marks a condition of 0 mm/s, whose drift is not judged: its coefficient is rolling resistance, next to
     nothing. ``alone``: no siblings to be judged with, so a drift that is not shown to be small is flagged here.
-    ``swing``: what the samples say of friction within a revolution; None where nothing looked at them.
-    Status: VALID, TOO_FEW when the window is not full, REFUSED without a coefficient; the latter carry their figures.
+    ``swing``: the swing of friction within a revolution; None where it was not analysed. Status: VALID, TOO_FEW when
+    the window is not full, REFUSED without a coefficient; the latter two keep their figures.
     """
     if not blocks:
         return without_value(RepeatStatus.TOO_FEW, "not one whole accepted revolution")

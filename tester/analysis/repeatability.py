@@ -1,8 +1,8 @@
-"""Repeatability pooled over conditions (ISO 5725-2, 7.4.4): what a few repeats of one cannot know by themselves.
+"""Repeatability pooled over conditions (ISO 5725-2, 7.4.4), which the few repeats of one condition cannot estimate.
 
 The expanded repeatability of a mean of n repeats is t(0.975, df) s / sqrt(n), per cent of the coefficient, with s
-pooled over the conditions of the run so far. Stopping on a condition's own s at n = 3 would cover 71 % where 95 % is
-meant: it stops where s happens to be small.
+pooled over the conditions of the run so far. Stopping on a condition's own s at n = 3 would cover 71 % instead of 95 %:
+it stops where s happens to be small.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ class Pool:
     df: int = 0
 
     def with_condition(self, values: Sequence[float], repeats_each: int = 1) -> Pool:
-        """Return the pool with the coefficients of one more condition; fewer than two say nothing.
+        """Return the pool with the coefficients of one more condition; fewer than two are ignored.
 
-        ``repeats_each``: of how many repeats each value is the mean; the pool is that of single ones.
+        ``repeats_each``: number of repeats behind each value; the pool is that of single repeats.
         """
         n = len(values)
         mean = sum(values) / n if n else 0.0
@@ -42,7 +42,7 @@ class Pool:
 
     @property
     def s_percent(self) -> float:
-        """Return the pooled standard deviation between repeats, per cent; inf where nothing is known."""
+        """Return the pooled standard deviation between repeats, per cent; inf where unknown."""
         return 100.0 * sqrt(self.squares / self.df) if self.df else inf
 
     def expanded_percent(self, n: int) -> float:

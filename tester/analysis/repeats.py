@@ -1,10 +1,10 @@
-"""From repeats to a condition's coefficient, and from replicates on several wheels to one.
+"""From repeats to a condition's coefficient, and from replicates on several wheels to a common one.
 
-By itself a repeat is left out only on objective grounds: a gate or the drift test (module ``judge``) made it not
-valid, or it fluctuates in excess, by Cochran's C (1 %) and by a variation within its window of more than three times
-its siblings' median and of more than 1 %. A value far from the others is flagged and stays: leaving out what does not
-agree makes any machine look precise (the closest two of three show a third of the true scatter). Both means are given.
-What a person leaves out, for a reason that is on record, is flagged ``excluded``.
+A repeat is left out automatically only on objective grounds: a gate or the drift test (module ``judge``) made it
+invalid, or it fluctuates in excess, by Cochran's C (1 %) and by a variation within its window of more than three times
+its siblings' median and of more than 1 %. A value far from the others is flagged and stays: leaving out values that
+disagree makes any machine look precise (the closest two of three show a third of the true scatter). Both means are
+reported. Repeats that a person leaves out, with the reason on record, are flagged ``excluded``.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ COCHRAN_ALPHA = 0.01
 """Level at which ISO 5725-2 calls a variance an outlier."""
 
 EXCESS_FACTOR = 3.0
-"""A repeat that varies by more than this times its siblings' median [A]."""
+"""A repeat fluctuates in excess if it varies by more than this times its siblings' median [A] ..."""
 
 EXCESS_PERCENT = 1.0
-"""... and by more than this: on a quiet rig three times next to nothing is nothing [A]."""
+"""... and by more than this, per cent: on a quiet rig three times next to nothing is nothing [A]."""
 
 BY_HAND = "excluded by hand"
-"""Begins the reason of an exclusion that a person has made."""
+"""Begins the reason of a person's exclusion."""
 NOT_CLOSEST = "not one of the closest two of three"
 """Why a valid repeat is in no mean where the recipe combines the paper's way."""
 
@@ -59,7 +59,7 @@ REPEATABILITY = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Exclusion:
-    """One repeat that does not enter the mean: its position in the sequence given, from 0, and why."""
+    """A repeat left out of the mean: its position in the sequence, from 0, and the reason."""
 
     position: int
     reason: str
@@ -69,19 +69,18 @@ class Exclusion:
 class ConditionResult:
     """A condition's coefficient. ``s``: standard deviation between its ``n_valid`` values.
 
-    ``mu`` is the coefficient: at the temperature that was asked for, as its components ``longitudinal`` and
-    ``lateral`` are, and as both budgets. ``mu_resultant``, ``mu_longitudinal`` and ``mu_lateral`` are as measured, at
-    the mean temperature that was measured; ``correction`` leads from these to those.
+    ``mu`` is the coefficient at the nominal temperature, as are its components ``longitudinal`` and ``lateral`` and
+    both budgets. ``mu_resultant``, ``mu_longitudinal`` and ``mu_lateral`` are as measured, at the mean measured
+    temperature; ``correction`` leads from these to those.
 
-    ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n). ``budget`` is that of what was
-    mounted, in this condition, ``compound_budget`` that of the compound (module ``measurand``, which makes both);
-    ``standard``, ``coverage`` and ``expanded`` (95 %) are the former's. Drift and its bound (one-sided, 98.75 %;
-    of repeats judged alone 95 %) are per window, the trend over the repeats, all per cent of the coefficient
-    (``Judgement``); ``unsteady`` is what they add to the budget. ``change_percent`` is the greatest change of level at
-    once, within a repeat or from one to the next, ``swing_percent`` and ``swing_hz`` those of the repeat that swings
-    most (``RepeatResult``). ``measured`` holds the means over
-    the valid repeats of what a block averages. ``mu_without_flagged`` leaves
-    out flagged outliers.
+    ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n). ``budget`` is that of the mounted
+    piece in this condition, ``compound_budget`` that of the compound (module ``measurand`` makes both); ``standard``,
+    ``coverage`` and ``expanded`` (95 %) are the former's. Drift and its bound (one-sided, 98.75 %; of repeats judged
+    alone 95 %) are per window, the trend over the repeats, all per cent of the coefficient (``Judgement``);
+    ``unsteady`` is their addition to the budget. ``change_percent`` is the greatest sudden change of level, within a
+    repeat or from one to the next, ``swing_percent`` and ``swing_hz`` those of the repeat that swings most
+    (``RepeatResult``). ``measured`` has the means over the valid repeats of the averaged channels.
+    ``mu_without_flagged`` leaves out flagged outliers.
     """
 
     status: ConditionStatus
@@ -107,15 +106,15 @@ class ConditionResult:
     swing_hz: float = NAN
     unsteady: Unsteadiness = STEADY
     correction: float = 1.0
-    """The coefficient at the temperature that was asked for, over that as measured; 1 where none is made."""
+    """The coefficient at the nominal temperature, over that as measured; 1 without a correction."""
     budget: Budget = NO_BUDGET
     compound_budget: Budget = NO_BUDGET
     both_ways: BothWays | None = None
-    """What each direction of sliding shows, where it was measured in both; values are then those of pairs."""
+    """Result of each direction of sliding, where both were measured; values are then those of pairs."""
 
     @property
     def mu(self) -> float:
-        """Return the coefficient at the temperature that was asked for: the one that every output calls mu."""
+        """Return the coefficient at the nominal temperature: the one that every output calls mu."""
         return self.correction * self.mu_resultant
 
     @property
@@ -135,12 +134,12 @@ class ConditionResult:
 
     @property
     def repeats_each(self) -> int:
-        """Return how many repeats make one of its values."""
+        """Return the number of repeats behind each of its values."""
         return 1 if self.both_ways is None else 2
 
     @property
     def standard(self) -> float:
-        """Return the standard uncertainty of what was mounted, in this condition."""
+        """Return the standard uncertainty of the mounted piece in this condition."""
         return self.budget.standard
 
     @property
@@ -155,12 +154,12 @@ class ConditionResult:
 
     @property
     def ok(self) -> bool:
-        """Return whether there is a coefficient; ``doubts`` says with what care it is to be taken."""
+        """Return whether there is a coefficient; ``doubts`` lists reasons for care."""
         return self.status is ConditionStatus.OK
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Return the flags that say that the value is to be taken with care."""
+        """Return the flags that call for care with the value."""
         return tuple(flag for flag in flags_in(self.flags) if flag in DOUBTS)
 
 
@@ -173,7 +172,7 @@ def cochran_critical(groups: int, df: float, alpha: float = COCHRAN_ALPHA) -> fl
 def excess_fluctuation(results: Sequence[RepeatResult]) -> int | None:
     """Return the position of the repeat that fluctuates in excess of its siblings, None if there is none.
 
-    Needs three repeats: of two nobody can say which one is odd.
+    Needs three repeats: of two, neither can be identified as the odd one.
     """
     spreads = [result.fluctuation_percent * result.mu_resultant for result in results]
     df = min((result.batches for result in results), default=0) - 1
@@ -236,15 +235,14 @@ def combine_repeats(
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
-    ``planned`` repeats were asked for: where in the end fewer count, the value is flagged ``short``. Valid ones that a
-    person left out are not missed, as long as ``min_valid`` are left, the least for a value without that flag. Where
-    all repeats were refused for their drift, the value is theirs, flagged. ``ended`` and ``reason``
-    are what the run said when it left the condition (None: it has not), ``judged`` what its repeats say of its drift.
-    ``by_hand``: positions that a person has left
-    out, each with the reason. ``repeatability`` is the historic standard deviation between repeats as a share of mu.
-    ``combining``: the mean of all that count, or the paper's way (``tester.analysis.closest``). ``changed_percent``:
-    the greatest change at once, where it is not that between ``results`` (pairs of repeats). ``counted``: what
-    ``results`` are, of ``tester.analysis.counts``.
+    The recipe requests ``planned`` repeats: where in the end fewer count, the value is flagged ``short``. Valid ones
+    that a person left out are not missed, as long as ``min_valid`` remain, the least for a value without that flag.
+    Where all repeats were refused for their drift, the value is theirs, flagged. ``ended`` and ``reason`` are the
+    status with which the run left the condition (None: it has not), ``judged`` the judgement of its drift. ``by_hand``:
+    positions that a person has left out, each with the reason. ``repeatability`` is the historic standard deviation
+    between repeats as a share of mu. ``combining``: the mean of all that count, or the paper's way
+    (``tester.analysis.closest``). ``changed_percent``: the greatest sudden change, where it is not that between
+    ``results`` (pairs of repeats). ``counted``: the unit of ``results``, of ``tester.analysis.counts``.
     """
     refused = {exclusion.position for exclusion in _exclusions(results, _NOTHING)}
     counts = Counts(planned, len(results), make_ups=make_ups_of(planned, len(results), refused), of=counted)
@@ -252,7 +250,7 @@ def combine_repeats(
     left_out = {exclusion.position for exclusion in excluded}
     kept = [i for i in range(len(results)) if i not in left_out]
     if not kept:
-        # Nothing that stands still: what there is, flagged, rather than nothing.
+        # No repeat is steady: a flagged value is better than none.
         kept = [i for i, result in enumerate(results) if result.drifts and i not in by_hand]
         excluded = [exclusion for exclusion in excluded if exclusion.position not in kept]
     status, why = _condition_status(results, excluded, counts, ended, reason)
@@ -295,13 +293,13 @@ def combine_repeats(
 
 def with_coefficient(results: Sequence[RepeatResult], by_hand: Mapping[int, str] = _NOTHING) -> list[RepeatResult]:
     """Return the repeats that show friction: those that count, and those refused for their drift."""
-    return [one for i, one in enumerate(results) if (one.valid or one.drifts) and i not in by_hand]
+    return [result for i, result in enumerate(results) if (result.valid or result.drifts) and i not in by_hand]
 
 
 def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
-    """Return one result for a condition measured on several wheels, from the results of the wheels.
+    """Return a common result for a condition measured on several wheels, from the results of the wheels.
 
-    The wheels' means count alike; ``s`` is the deviation between wheels. OK needs two wheels that are.
+    The wheels' means have equal weight; ``s`` is the deviation between wheels. OK needs two wheels that are OK.
     """
     kept = [result for result in results if result.ok]
     missing = [f"replicate {i}: {result.status.value}" for i, result in enumerate(results, 1) if not result.ok]
@@ -324,7 +322,7 @@ def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
         mu_lateral=_mean([result.mu_lateral for result in kept]),
         counts=counts,
         measured=mean_of(result.measured for result in kept),
-        # Wheels run in alike: what drifts on one drifts on the others, the same way.
+        # Wheels run in alike: a drift on one appears on the others, in the same direction.
         unsteady=Unsteadiness(*(_mean(values) for values in zip(*(astuple(r.unsteady) for r in kept), strict=True))),
         both_ways=_both_ways(kept),
         change_percent=greatest(result.change_percent for result in kept),
@@ -335,8 +333,8 @@ def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
 
 
 def _both_ways(kept: Sequence[ConditionResult]) -> BothWays | None:
-    found = [one.both_ways for one in kept if one.both_ways is not None]
-    return mean_of_both_ways(found) if found and len(found) == len(kept) else None
+    both = [condition_result.both_ways for condition_result in kept if condition_result.both_ways is not None]
+    return mean_of_both_ways(both) if both and len(both) == len(kept) else None
 
 
 def _mean(values: Sequence[float]) -> float:

@@ -1,6 +1,6 @@
-"""What the analysis finds: the statuses and the result of a repeat. Plain values, shared with the store.
+"""Results of the analysis: the statuses and the result of a repeat. Plain values, shared with the store.
 
-Units are in the names. NaN stands for a value that does not exist; the store keeps it as NULL.
+Units are in the names. NaN marks a missing value; the store keeps it as NULL.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tester.base.quantities import Means
 
 NAN = float("nan")
 NO_MEANS: Final = Means()
-"""Of a repeat in which nothing was measured."""
+"""Of a repeat without measurements."""
 
 
 class RepeatStatus(StrEnum):
@@ -25,7 +25,7 @@ class RepeatStatus(StrEnum):
     """
 
     OPEN = "open"
-    """Begun and not committed: under way, or cut off."""
+    """Begun and not committed: in progress, or cut off."""
     VALID = "valid"
     REFUSED = "refused"
     """It drifts, or differs from its siblings; it keeps its figures, and the reason."""
@@ -37,7 +37,7 @@ class RepeatStatus(StrEnum):
 
 
 class ConditionStatus(StrEnum):
-    """Whether a condition has a value that can be trusted, and why not."""
+    """Whether a condition has a trustworthy value, and if not, why."""
 
     OK = "ok"
     PENDING = "not measured"
@@ -49,11 +49,11 @@ class ConditionStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Swing:
-    """How friction swings within a revolution, off the wheel's orders (``tester.analysis.swing``).
+    """Swing of friction within a revolution, apart from the wheel's orders (``tester.analysis.swing``).
 
-    ``percent``: to either side of the mean, in per cent of it, 0 where it does not; at ``hz``; ``skewness`` of the
-    differences between neighbouring samples. NaN where that is not known. ``seen_percent`` is what the samples show of
-    a swing that is too fast for them to have an amplitude: at least so much.
+    ``percent``: amplitude in per cent of the mean, 0 where there is none; at ``hz``; ``skewness`` of the differences
+    between neighbouring samples. NaN where unknown. ``seen_percent``: least amplitude, of a swing that is too fast for
+    the samples to have a proper one.
     """
 
     percent: float = NAN
@@ -64,14 +64,14 @@ class Swing:
 
 @dataclass(frozen=True, slots=True)
 class RepeatResult:
-    """One repeat's coefficient and what was measured with it.
+    """One repeat's coefficient and the channels measured with it.
 
     The coefficients are ratios of means (module ``reduce``); times are rig seconds. ``uncertainty`` is the standard
-    uncertainty of ``mu_resultant`` from ``batches`` batch means, ``fluctuation_percent`` the batch means'
-    standard deviation in per cent of it. ``drift_percent`` and ``bound_percent`` (90 %) are per window, in
-    per cent of the coefficient: of the repeat alone until its condition is judged, then with the condition's
-    sensitivity to temperature. ``change_percent`` is the greatest change of level within it, in per cent of the
-    coefficient, with the revolutions that are left out as transient.
+    uncertainty of ``mu_resultant`` from ``batches`` batch means, ``fluctuation_percent`` the batch means' standard
+    deviation in per cent of it. ``drift_percent`` and ``bound_percent`` (90 %) are per window, in per cent of the
+    coefficient: of the repeat alone until its condition is judged, then with the condition's sensitivity to
+    temperature. ``change_percent`` is the greatest change of level within it, in per cent of the coefficient, including
+    the revolutions left out as transient.
     """
 
     status: RepeatStatus
@@ -88,20 +88,20 @@ class RepeatResult:
     bound_percent: float = NAN
     change_percent: float = NAN
     swing_percent: float = NAN
-    """Friction swings by so much to either side within a revolution, in per cent of it (``Swing``), ..."""
+    """Amplitude of the swing of friction within a revolution, in per cent of it (``Swing``), ..."""
     swing_hz: float = NAN
-    """... so often a second, ..."""
+    """... its frequency, ..."""
     swing_skewness: float = NAN
-    """... with differences between neighbouring samples as skew as this."""
+    """... and the skewness of its differences between neighbouring samples."""
     revolutions: int = 0
-    """Whole accepted revolutions that the coefficient rests on."""
+    """Whole accepted revolutions behind the coefficient."""
     truncated: int = 0
     """Whole accepted revolutions left out as transient."""
     window_s: float = NAN
-    """Accepted seconds that the coefficient rests on."""
+    """Accepted seconds behind the coefficient."""
     bursts: int = 0
     means: Means = NO_MEANS
-    """Of what a block averages, over the blocks that count."""
+    """Of the averaged channels, over the blocks that count."""
     started_s: float = NAN
     ended_s: float = NAN
 
@@ -117,16 +117,16 @@ class RepeatResult:
 
 
 class Swings(Protocol):
-    """What has a swing of friction: a repeat, or a condition."""
+    """Anything with a swing of friction: a repeat, or a condition."""
 
     @property
     def swing_percent(self) -> float:
-        """To either side of the mean, per cent."""
+        """Return the amplitude, per cent of the mean."""
         ...
 
     @property
     def swing_hz(self) -> float:
-        """So often a second."""
+        """Return the frequency, Hz."""
         ...
 
 
@@ -134,16 +134,16 @@ SwingsT = TypeVar("SwingsT", bound=Swings)
 
 
 def most_swinging(given: Iterable[SwingsT]) -> SwingsT:
-    """Return that whose friction swings most; one of which it is not known comes last. At least one is given."""
+    """Return the item whose friction swings most; an unknown swing ranks last. Needs at least one item."""
     return max(given, key=lambda one: one.swing_percent if one.swing_percent >= 0.0 else -1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What all repeats of a condition say of its drift; NaN where it was not judged (0 mm/s).
+    """The drift of a condition from all its repeats; NaN where it was not judged (0 mm/s).
 
     Drift, standard error and bound (90 %) in per cent of the coefficient a window, the sensitivity in %/K.
-    ``repeat_windows``: windows that a repeat collected, in the mean. ``trend_percent``: change of the coefficient
+    ``repeat_windows``: mean number of windows that a repeat collected. ``trend_percent``: change of the coefficient
     from the first repeat to the last along the sliding distance. ``flags``: NOT_SHOWN, CARRY_OVER, IMPRECISE.
     """
 
@@ -157,7 +157,7 @@ class Judgement:
 
     @property
     def made(self) -> bool:
-        """Return whether there is one."""
+        """Return whether the drift was judged."""
         return isfinite(self.drift_percent)
 
 

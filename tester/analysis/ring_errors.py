@@ -1,9 +1,9 @@
 """Whether the errors of a line through a slip ring gather at an angle of the wheel, and at which.
 
 The angle comes from the wheel's speed, whose scale is off by up to a per cent: over a thousand turns it runs through
-the whole circle. So the scale is looked for at which the errors lie closest together: the length R of the mean of the
-unit vectors at their angles (the vector strength, 1 = all at one angle) is greatest there. For n errors spread evenly
-the chance of a length of R or more is exp(-n R^2) (Rayleigh's test), times the number of scales tried.
+the whole circle. So the search varies the scale and maximises the length R of the mean of the unit vectors at the
+errors' angles (the vector strength, 1 = all at one angle). For n errors spread evenly the chance of a length of R or
+more is exp(-n R^2) (Rayleigh's test), times the number of scales tried.
 """
 
 from __future__ import annotations
@@ -14,20 +14,21 @@ from math import exp, nan
 from typing import Final
 
 SCALE_OFF: Final = 0.01
-"""Greatest error of the scale of the wheel's speed that is looked for [A]."""
+"""Greatest error of the scale of the wheel's speed that is searched [A]."""
 STEP_REV: Final = 0.1
-"""The scales tried turn the last error by so much each, rev: nearer ones give nearly the same R [A]."""
+"""Step between the scales tried: each turns the last error by this much, rev; nearer ones have nearly the same R [A].
+"""
 LEAST_ERRORS: Final = 8
-"""Fewer errors say nothing about an angle [A]."""
+"""Fewer errors carry no information about an angle [A]."""
 CHANCE: Final = 0.001
-"""Errors gather where chance alone would make as much of it in at most this share of cases [A]."""
+"""Errors gather where chance alone produces such a strength in at most this share of cases [A]."""
 SPEEDS_REV_S: Final = (0.02, 1.0, 2.0, 4.0)
-"""Classes of wheel speed begin at these, below the first the wheel stands, rev/s [A]; 0.8 m/s are 3.2 rev/s."""
+"""Lower ends of the classes of wheel speed, below the first the wheel is at rest, rev/s [A]; 0.8 m/s are 3.2 rev/s."""
 
 
 @dataclass(slots=True)
 class RingSegment:
-    """What was noted of one wheel, from when it was put on."""
+    """Requests and errors of one wheel, since it was mounted."""
 
     turns: float = 0.0
     requests: list[int] = field(default_factory=lambda: [0] * (len(SPEEDS_REV_S) + 1))
@@ -39,30 +40,30 @@ class RingSegment:
 
 @dataclass(frozen=True, slots=True)
 class RingSector:
-    """Where errors gather on the ring, counted from where the wheel stood when it was put on."""
+    """Angle at which errors gather on the ring, counted from the wheel's position when it was mounted."""
 
     errors: int
     centre_deg: float
-    """0 to 360; NaN where too few errors are there."""
+    """0 to 360; NaN for too few errors."""
     half_deg: float
-    """Half of the errors lie this near to the centre."""
+    """Half of the errors lie within this angle of the centre."""
     strength: float
     """The vector strength R, 0 to 1."""
     chance: float
-    """How likely errors that lie anywhere look like that."""
+    """Probability of such a strength for errors at random angles."""
     off: float
-    """By what share the wheel's speed was taken as too small."""
+    """Share by which the wheel's speed was underestimated."""
     sectors: tuple[int, ...]
     """Errors in twelve sectors of 30 degrees, the first from 0."""
 
     @property
     def found(self) -> bool:
-        """They do gather."""
+        """Return whether they gather."""
         return self.errors >= LEAST_ERRORS and self.chance <= CHANCE
 
 
 def sector_of(at_rev: Sequence[float]) -> RingSector:
-    """Return where the errors gather that came at these turns of the wheel."""
+    """Return the angle at which errors gather; ``at_rev``: turns of the wheel at each."""
     import numpy as np
 
     if not at_rev:
@@ -84,12 +85,12 @@ def sector_of(at_rev: Sequence[float]) -> RingSector:
         strength=strength,
         chance=min(1.0, len(scales) * exp(-len(turns) * strength * strength)),
         off=off,
-        sectors=tuple(int(one) for one in counts),
+        sectors=tuple(int(count) for count in counts),
     )
 
 
 def _strongest(turns: object, scales: object) -> tuple[float, float]:
-    """Return the greatest vector strength of some scales, and at which it is."""
+    """Return the greatest vector strength of some scales, and its scale."""
     import numpy
 
     at, tried = numpy.asarray(turns), numpy.asarray(scales)
@@ -99,7 +100,7 @@ def _strongest(turns: object, scales: object) -> tuple[float, float]:
 
 
 def speed_class(rev_s: float) -> int:
-    """Return the class of a speed of the wheel, rev/s: 0 = it stands."""
+    """Return the class of a speed of the wheel, rev/s: 0 = at rest."""
     return sum(rev_s >= least for least in SPEEDS_REV_S)
 
 

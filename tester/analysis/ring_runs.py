@@ -1,4 +1,5 @@
-"""What runs have on record of a ring that carries a device's line to a turning part, and its trend from run to run."""
+"""Statistics of a slip ring with a device's line to a turning part, from the records of runs, and the trend between
+runs."""
 
 from __future__ import annotations
 
@@ -12,7 +13,7 @@ from tester.analysis.ring_errors import SPEEDS_REV_S, RingSector, RingSegment, s
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 
 GROWS_Z = 2.0
-"""A slope of this many standard uncertainties or more is no chance alone (95 %)."""
+"""A slope of this many standard uncertainties or more is more than chance (95 %)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,22 +27,22 @@ class RingRun:
 
     @property
     def turns(self) -> float:
-        """Of the wheel in this run."""
-        return sum(one.turns for one in self.segments)
+        """Return the turns of the wheel in this run."""
+        return sum(segment.turns for segment in self.segments)
 
     @property
     def requests(self) -> int:
-        """To the device beyond the ring."""
-        return sum(sum(one.requests) for one in self.segments)
+        """Return the requests to the device beyond the ring."""
+        return sum(sum(segment.requests) for segment in self.segments)
 
     @property
     def errors(self) -> int:
-        """Of these requests: without a good reply."""
-        return sum(sum(one.errors) for one in self.segments)
+        """Return the requests without a good reply."""
+        return sum(sum(segment.errors) for segment in self.segments)
 
     @property
     def per_thousand(self) -> float:
-        """Errors of a thousand requests; NaN without any."""
+        """Return errors per thousand requests; NaN without any."""
         return 1e3 * self.errors / self.requests if self.requests else nan
 
     def by_speed(self) -> list[tuple[str, int, int]]:
@@ -49,18 +50,18 @@ class RingRun:
         return [
             (
                 speed_words(place),
-                sum(one.requests[place] for one in self.segments),
-                sum(one.errors[place] for one in self.segments),
+                sum(segment.requests[place] for segment in self.segments),
+                sum(segment.errors[place] for segment in self.segments),
             )
             for place in range(len(SPEEDS_REV_S) + 1)
         ]
 
     def sectors(self) -> list[RingSector]:
-        """Return where errors gather, for each wheel that was on."""
-        return [sector_of(one.at_rev) for one in self.segments]
+        """Return where errors gather, for each wheel that was mounted."""
+        return [sector_of(segment.at_rev) for segment in self.segments]
 
     def as_json(self) -> dict[str, Json]:
-        """Return what there is to tell."""
+        """Return the statistics as plain data."""
         return {
             "run": self.name,
             "started": self.started,
@@ -72,13 +73,13 @@ class RingRun:
             ],
             "wheels": [
                 {
-                    "errors": one.errors,
-                    "gather": one.found,
-                    "centre_deg": one.centre_deg if one.found else None,
-                    "half_deg": one.half_deg if one.found else None,
-                    "sectors": list(one.sectors),
+                    "errors": sector.errors,
+                    "gather": sector.found,
+                    "centre_deg": sector.centre_deg if sector.found else None,
+                    "half_deg": sector.half_deg if sector.found else None,
+                    "sectors": list(sector.sectors),
                 }
-                for one in self.sectors()
+                for sector in self.sectors()
             ],
         }
 
@@ -86,29 +87,29 @@ class RingRun:
 def ages_of(runs: Sequence[RingRun], before: float = 0.0) -> list[float]:
     """Return the turns of the ring until the end of each run, in order of time; ``before``: those before the first."""
     ages: list[float] = []
-    for one in runs:
-        before += one.turns
+    for run in runs:
+        before += run.turns
         ages.append(before)
     return ages
 
 
 @dataclass(frozen=True, slots=True)
 class RingTrend:
-    """How the share of failed requests goes with the age of the ring."""
+    """Trend of the share of failed requests with the age of the ring."""
 
     per_thousand_turns: float
-    """Errors of 1000 requests more for every 1000 turns; NaN where nothing can be said."""
+    """Slope in errors per 1000 requests for every 1000 turns; NaN where unknown."""
     z: float
     """The slope over its standard uncertainty."""
 
     @property
     def grows(self) -> bool:
-        """More errors with age, beyond chance."""
+        """Return whether errors increase with age, beyond chance."""
         return self.z >= GROWS_Z
 
     @property
     def words(self) -> str:
-        """Return it for people, "" where nothing can be said."""
+        """Return it in words, "" where unknown."""
         if not isfinite(self.per_thousand_turns):
             return ""
         grows = "grows" if self.grows else "falls" if self.z <= -GROWS_Z else "no trend beyond chance"

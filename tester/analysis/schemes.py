@@ -1,6 +1,6 @@
-"""How a condition's repeats make its values: each repeat one, or each pair of repeats that slide opposite ways.
+"""How a condition's repeats make its values: each repeat by itself, or each pair of repeats that slide opposite ways.
 
-What measures, stores and shows a condition asks here and need not know which.
+Code that measures, stores and shows a condition calls a scheme and need not know which.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ HALF: Final = "the other repeat of its pair is not made"
 
 
 class Scheme(Protocol):
-    """From a condition's repeats, in order, to its values."""
+    """Turns a condition's repeats, in order, into its values."""
 
     repeats_each: int
-    """Repeats that make one value."""
+    """Repeats behind one value."""
 
     def valid(self, results: Sequence[RepeatResult]) -> int:
-        """Return how many values there are of valid repeats."""
+        """Return the number of values from valid repeats."""
         ...
 
     def values(self, results: Sequence[RepeatResult]) -> list[float]:
@@ -55,7 +55,7 @@ class Scheme(Protocol):
         revolutions: float | None,
         seconds: float | None,
     ) -> tuple[list[RepeatResult], Judgement]:
-        """Return repeats as judged, and what they say together (``tester.analysis.judge``)."""
+        """Return repeats as judged, and the judgement on all of them (``tester.analysis.judge``)."""
         ...
 
     def combine(
@@ -75,7 +75,7 @@ class Scheme(Protocol):
 
 
 class EachRepeat:
-    """A value is a repeat."""
+    """Each repeat is a value."""
 
     repeats_each = 1
 
@@ -92,10 +92,11 @@ class EachRepeat:
 
 
 class OppositePairs:
-    """A value is half the difference of a repeat as asked for and a reversed one; planned and least are pairs.
+    """A value is half the difference of a repeat in the requested direction and a reversed one; planned and least are
+    pairs.
 
-    A pair of which one repeat does not count does not: another pair makes up for it, so that as many repeats slide
-    either way. Each direction has a drift of its own.
+    A pair counts only if both its repeats do. Another pair makes up for it, so both directions keep the same number of
+    repeats. Each direction has a drift of its own.
     """
 
     repeats_each = 2
@@ -117,18 +118,18 @@ class OppositePairs:
         revolutions: float | None,
         seconds: float | None,
     ) -> tuple[list[RepeatResult], Judgement]:
-        """Judge each direction by its own repeats; return all of them, and what both say together."""
-        judged, said = list(results), list[Judgement]()
+        """Judge each direction by its own repeats; return all of them, and the common judgement."""
+        judged, judgements = list(results), list[Judgement]()
         for backward in (False, True):
             places = [i for i in range(len(results)) if is_reversed(i + 1) == backward]
             if not places:
                 continue
-            own, judgement = judge([results[i] for i in places], [blocks[i] for i in places], planned, revolutions,
+            repeats, judgement = judge([results[i] for i in places], [blocks[i] for i in places], planned, revolutions,
                                    seconds)  # fmt: skip
-            said.append(judgement)
-            for place, one in zip(places, own, strict=True):
-                judged[place] = one
-        return judged, _together(said)
+            judgements.append(judgement)
+            for place, repeat in zip(places, repeats, strict=True):
+                judged[place] = repeat
+        return judged, _together(judgements)
 
     def combine(
         self,
@@ -142,13 +143,13 @@ class OppositePairs:
         by_hand: Mapping[int, str] = _NOTHING,
         combining: Combining = "mean",
     ) -> ConditionResult:
-        """Return the result of a condition from its pairs; ``by_hand`` and what is excluded are places of repeats."""
+        """Return the result of a condition from its pairs; ``by_hand`` and the exclusions are places of repeats."""
         pairs = as_pairs(results, whole=ended is None)
         hands = {place // 2: why for place, why in by_hand.items() if place // 2 < len(pairs)}
-        found = combine_repeats(pairs, planned, min_valid, ended, reason, judged=judged, by_hand=hands,
+        result = combine_repeats(pairs, planned, min_valid, ended, reason, judged=judged, by_hand=hands,
                                 combining=combining, changed_percent=_changed(results, by_hand),
                                 counted=COUNTED)  # fmt: skip
-        out = {one.position: one.reason for one in found.excluded}
+        out = {one.position: one.reason for one in result.excluded}
         kept = [halves(results, pair) for pair in range(len(pairs)) if pair not in out]
         kept = [(a, b) for a, b in kept if max(a, b) < len(results)]
         excluded = [
@@ -160,17 +161,18 @@ class OppositePairs:
         half = range(2 * len(pairs), len(results))
         excluded += [Exclusion(place, _why(results, place, HALF, by_hand)) for place in half]
         return replace(
-            found,
+            result,
             excluded=tuple(excluded),
-            flagged=tuple(place for pair in found.flagged for place in sorted(halves(results, pair))),
+            flagged=tuple(place for pair in result.flagged for place in sorted(halves(results, pair))),
             both_ways=both_ways([(results[a], results[b]) for a, b in kept]) if kept else None,
         )
 
 
 def _changed(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> float:
-    """Return the greatest change at once within one direction: misaligned axes part the two, whatever friction does."""
+    """Return the greatest sudden change within one direction: misaligned axes separate the two, whatever friction does.
+    """
     ways = (
-        [one for i, one in enumerate(results) if is_reversed(i + 1) == backward and i not in by_hand]
+        [result for i, result in enumerate(results) if is_reversed(i + 1) == backward and i not in by_hand]
         for backward in (False, True)
     )
     return greatest(change_of(with_coefficient(way), REPEATABILITY) for way in ways)
@@ -180,29 +182,29 @@ def _why(results: Sequence[RepeatResult], place: int, of_pair: str, by_hand: Map
     """Return why a repeat of a pair that does not count is not in the mean."""
     if place in by_hand:
         return f"{BY_HAND}: {by_hand[place]}"
-    one = results[place]
-    if not one.valid:
-        return f"{one.status.value}{': ' + one.reason if one.reason else ''}"
+    repeat = results[place]
+    if not repeat.valid:
+        return f"{repeat.status.value}{': ' + repeat.reason if repeat.reason else ''}"
     other = place ^ 1
     if other in by_hand or other >= len(results) or not results[other].valid:
         return OTHER_HALF
     return of_pair
 
 
-def _together(said: Sequence[Judgement]) -> Judgement:
-    """Return what both directions say: of their mean the drift, of the less steady one the bound."""
-    made = [one for one in said if one.made]
-    flags = joined(flag for one in said for flag in flags_in(one.flags))
+def _together(judgements: Sequence[Judgement]) -> Judgement:
+    """Return the judgement of both directions: the drift of their mean, the bound of the less steady one."""
+    made = [judgement for judgement in judgements if judgement.made]
+    flags = joined(flag for judgement in judgements for flag in flags_in(judgement.flags))
     if len(made) < 2:
         return replace(made[0] if made else NOT_JUDGED, flags=flags)
-    one, other = made
+    forward, backward = made
     return Judgement(
-        drift_percent=0.5 * (one.drift_percent + other.drift_percent),
-        drift_error_percent=0.5 * hypot(one.drift_error_percent, other.drift_error_percent),
-        drift_bound_percent=max(one.drift_bound_percent, other.drift_bound_percent),
-        per_kelvin_percent=0.5 * (one.per_kelvin_percent + other.per_kelvin_percent),
-        repeat_windows=0.5 * (one.repeat_windows + other.repeat_windows),
-        trend_percent=0.5 * (one.trend_percent + other.trend_percent),
+        drift_percent=0.5 * (forward.drift_percent + backward.drift_percent),
+        drift_error_percent=0.5 * hypot(forward.drift_error_percent, backward.drift_error_percent),
+        drift_bound_percent=max(forward.drift_bound_percent, backward.drift_bound_percent),
+        per_kelvin_percent=0.5 * (forward.per_kelvin_percent + backward.per_kelvin_percent),
+        repeat_windows=0.5 * (forward.repeat_windows + backward.repeat_windows),
+        trend_percent=0.5 * (forward.trend_percent + backward.trend_percent),
         flags=flags,
     )
 

@@ -1,21 +1,22 @@
-"""One setting that a run measures several times: whether its values agree, and by how much two of them differ.
+"""One setting that a run measures several times: whether its values agree, and the difference of any two.
 
-A setting (a compound, and what it is held at) has one coefficient. Measurements of it, on one piece or on several, are
-values x_i with the covariance
+A setting (a compound and its setpoints) has one coefficient. Measurements of it, on one piece or on several, are values
+x_i with the covariance
 
-    C_ij = sum over causes e_ik e_jk,
+  C_ij = sum over causes e_ik e_jk,
 
-e_ik the standard uncertainty in measurement i of cause k, with its sign. What is each measurement's own
-(repeatability, drift, the cell's zero) is in the diagonal alone. What a piece brings (its own factor, its diameter,
-what is believed to be worn off it) is shared by the measurements on it, by each as much as it has then. What the rig
-brings is shared by all, and drops out of differences but for what it moves them by differently. The sensitivity to
-temperature is the same for all: its error counts as far as their temperatures differ.
+e_ik the standard uncertainty in measurement i of cause k, with its sign. Independent causes (repeatability, drift, the
+cell's zero) appear in the diagonal alone. Errors of a piece (its own factor, its diameter, its estimated wear) are
+common to the measurements on it, each by its size at that time. Errors of the rig are common to all, and drop out of
+differences except for the difference of their effects. The sensitivity to temperature is the same for all: its error
+counts as far as their temperatures differ.
 
 One test judges the whole setting. With the generalised mean m (Aitken), chi2 = (x - m)' C^-1 (x - m) of k measurements
-has k - 1 degrees of freedom. Where repeatability comes from few repeats, chi2 / (k - 1) is held against Fisher's F. Its
-degrees of freedom are those of the repeatability over the root of its greatest share in the variance of any contrast.
-Welch and Satterthwaite divide by the square, which so far out in the tail gives up to 0.7 % of false alarms with 4
-degrees of freedom, and 2 % with 2 (Monte Carlo); with the root, and with fewer than 4 without it, no more than 0.2 %.
+has k - 1 degrees of freedom. Where repeatability comes from few repeats, chi2 / (k - 1) is compared with Fisher's F.
+Its degrees of freedom are those of the repeatability over the root of its greatest share in the variance of any
+contrast. Welch and Satterthwaite divide by the square, which so far out in the tail gives up to 0.7 % of false alarms
+with 4 degrees of freedom, and 2 % with 2 (Monte Carlo); with the root, and with fewer than 4 without it, no more than
+0.2 %.
 """
 
 from __future__ import annotations
@@ -39,21 +40,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LEVEL: Final = 0.002
-"""Chance of a false alarm for a setting whose measurements do agree."""
+"""Probability of a false alarm for a setting whose measurements do agree."""
 PIECE: Final = "piece"
-"""Of errors that all measurements on what is mounted have (``Contribution.common``)."""
+"""Marks errors common to all measurements on a mounted piece (``Contribution.common``)."""
 _FEW_DF: Final = 4.0
-"""With fewer degrees of freedom than these, what is known beside an estimate does not count."""
+"""With fewer degrees of freedom than these, prior knowledge beside an estimate does not count."""
 _MANY_DF: Final = 1e5
-"""Degrees of freedom of a standard uncertainty that is taken as known, as far as a quantile tells."""
+"""Degrees of freedom of a standard uncertainty taken as known: for a quantile as good as infinite."""
 
 
 @dataclass(frozen=True, slots=True)
 class ErrorPart:
-    """What one cause adds to a measurement: its standard uncertainty in mu, with its sign.
+    """Contribution of one cause to a measurement: its standard uncertainty in mu, with its sign.
 
-    ``common``: RIG (all measurements have the same error), PIECE (those on one piece), "" (none other). ``estimate``:
-    errors whose size is known from the same repeats share one, with ``df`` degrees of freedom.
+    ``common``: RIG (all measurements have the same error), PIECE (those on one piece), "" (independent). ``estimate``:
+    name shared by errors whose size is estimated from the same repeats, with ``df`` degrees of freedom.
     """
 
     cause: str
@@ -65,7 +66,7 @@ class ErrorPart:
 
 @dataclass(frozen=True, slots=True)
 class SettingMeasurement:
-    """One measurement of a setting: its condition and piece by number, the coefficient at the temperature asked for."""
+    """One measurement of a setting: its condition and piece by number, the coefficient at the nominal temperature."""
 
     condition: int
     piece: int
@@ -75,43 +76,44 @@ class SettingMeasurement:
     @property
     def usable(self) -> bool:
         """Return whether coefficient and uncertainty are known."""
-        return self.mu > 0.0 and all(isfinite(one.value) for one in self.errors)
+        return self.mu > 0.0 and all(isfinite(error.value) for error in self.errors)
 
 
 def measurement(condition: int, piece: int, result: ConditionResult, by: Surroundings) -> SettingMeasurement:
     """Return a condition's result, with its budgets, as one measurement of its setting.
 
-    What the counterface has changed is left out: a setting that it has changed does not agree.
+    The change of the counterface is left out on purpose: a setting that it has changed must not agree.
     """
-    shared = {one.name: _shared(one, by) for one in by.terms}
+    shared = {term.name: _shared(term, by) for term in by.terms}
     errors = [
-        _part(one, condition, shared.get(one.name, one.common), by)
-        for one in result.compound_budget.contributions
-        if one.name not in (COUNTERFACE, TEMPERATURE_SENSITIVITY)
+        _part(contribution, condition, shared.get(contribution.name, contribution.common), by)
+        for contribution in result.compound_budget.contributions
+        if contribution.name not in (COUNTERFACE, TEMPERATURE_SENSITIVITY)
     ]
     errors.append(_of_sensitivity(result.mu, by.warmth, by.terms))
     return SettingMeasurement(condition, piece, result.mu if result.ok else float("nan"), tuple(errors))
 
 
 def _shared(term: Term, by: Surroundings) -> str:
-    """Return what has a term's error in common."""
+    """Return the measurements that share a term's error: RIG, PIECE or ""."""
     if term.acts is Acts.PIECE:
         return PIECE
-    # A check of the diameter is off by itself. What the checks of a series share makes U rather too large.
+    # A check of the diameter has an error of its own. The common error of a series of checks makes U slightly too
+    # large.
     return "" if term.acts is Acts.LOSS and by.size.checked else term.common
 
 
-def _part(one: Contribution, condition: int, common: str, by: Surroundings) -> ErrorPart:
-    signed = one.input_u * one.sensitivity
-    value = signed if isfinite(signed) else one.standard
+def _part(contribution: Contribution, condition: int, common: str, by: Surroundings) -> ErrorPart:
+    signed = contribution.input_u * contribution.sensitivity
+    value = signed if isfinite(signed) else contribution.standard
     estimate = ""
-    if one.name == REPEATABILITY:
-        estimate = "pool" if one.df == float(by.pool.df) else f"condition {condition}"
-    return ErrorPart(one.name, value, common, estimate, one.df)
+    if contribution.name == REPEATABILITY:
+        estimate = "pool" if contribution.df == float(by.pool.df) else f"condition {condition}"
+    return ErrorPart(contribution.name, value, common, estimate, contribution.df)
 
 
 def _of_sensitivity(mu: float, warmth: SurfaceWarmth, terms: Sequence[Term]) -> ErrorPart:
-    """Return what the error of the sensitivity to temperature does; with the thermometer's bias it moves all alike."""
+    """Return the error of the sensitivity to temperature; with the thermometer's bias it moves all alike."""
     return ErrorPart(TEMPERATURE_SENSITIVITY, mu * warmth.slope.u_per_kelvin * warmth.offset_k(terms), RIG)
 
 
@@ -119,14 +121,14 @@ def difference_of(first: SettingMeasurement, second: SettingMeasurement) -> Diff
     """Return the second measurement less the first, with its standard uncertainty and degrees of freedom."""
     shared = RIG if first.piece != second.piece else (RIG, PIECE)
     mine, other = (
-        {(one.cause, one.common): one for one in each.errors if one.common and one.common in shared}
+        {(error.cause, error.common): error for error in each.errors if error.common and error.common in shared}
         for each in (first, second)
     )
     parts = [
-        (one.value, one.estimate, one.df)
+        (error.value, error.estimate, error.df)
         for each in (first, second)
-        for one in each.errors
-        if not (one.common and one.common in shared)
+        for error in each.errors
+        if not (error.common and error.common in shared)
     ]
     for key in dict.fromkeys([*mine, *other]):
         found = [each.get(key) for each in (mine, other)]
@@ -137,17 +139,17 @@ def difference_of(first: SettingMeasurement, second: SettingMeasurement) -> Diff
 
 
 def _by_estimate(parts: Sequence[tuple[float, str, float]]) -> list[tuple[float, float]]:
-    """Return standard uncertainties with their degrees of freedom, those of one estimate as one."""
-    found = [(abs(value), df) for value, estimate, df in parts if not estimate]
+    """Return standard uncertainties with their degrees of freedom, those of one estimate combined."""
+    independent = [(abs(value), df) for value, estimate, df in parts if not estimate]
     for name in dict.fromkeys(estimate for _, estimate, _ in parts if estimate):
         listed = [(value, df) for value, estimate, df in parts if estimate == name]
-        found.append((sqrt(sum(value * value for value, _ in listed)), listed[0][1]))
-    return found
+        independent.append((sqrt(sum(value * value for value, _ in listed)), listed[0][1]))
+    return independent
 
 
 @dataclass(frozen=True, slots=True)
 class SettingAgreement:
-    """The test of a setting: ``chi2`` of its measurements about their mean, and the ``limit`` of it at ``LEVEL``."""
+    """The test of a setting: ``chi2`` of its measurements about their mean, and its ``limit`` at ``LEVEL``."""
 
     measurements: tuple[SettingMeasurement, ...]
     mean: float
@@ -155,7 +157,7 @@ class SettingAgreement:
     chi2: float
     limit: float
     off: tuple[float, ...]
-    """By how much each measurement differs from what all others together say it should be."""
+    """Difference of each measurement from its prediction by all others together."""
     off_standard: tuple[float, ...]
     """Standard uncertainty of each."""
 
@@ -171,20 +173,21 @@ class SettingAgreement:
 
     @property
     def outstanding(self) -> int | None:
-        """Return which measurement stands out most, from 0; None of two, where each differs from the other alike."""
+        """Return the position of the most deviant measurement, from 0; None for two, where each differs from the other
+        alike."""
         if self.df < 2:
             return None
         return max(range(len(self.off)), key=lambda i: abs(self.off[i]) / self.off_standard[i])
 
 
 def agreement(measurements: Sequence[SettingMeasurement]) -> SettingAgreement | None:
-    """Return whether measurements of one setting agree; None with fewer than two whose uncertainty is known."""
+    """Return whether measurements of one setting agree; None with fewer than two of known uncertainty."""
     import numpy as np  # only runs that measure a setting several times pay for it
 
-    used = tuple(one for one in measurements if one.usable)
+    used = tuple(measurement for measurement in measurements if measurement.usable)
     if len(used) < 2:
         return None
-    values = np.array([one.mu for one in used])
+    values = np.array([value.mu for value in used])
     covariance, parts = _covariance(used)
     weights = np.linalg.pinv(covariance, hermitian=True)
     ones = np.ones(len(used))
@@ -192,7 +195,7 @@ def agreement(measurements: Sequence[SettingMeasurement]) -> SettingAgreement | 
     mean = float(ones @ weights @ values) / total
     left = weights - np.outer(weights @ ones, ones @ weights) / total
     chi2 = float(values @ left @ values)
-    own = np.diag(left)
+    diagonal = np.diag(left)
     contrasts = len(used) - 1
     df = _known_df(covariance, parts)
     limit = contrasts * f_quantile(1.0 - LEVEL, float(contrasts), min(max(df, 1.0), _MANY_DF))
@@ -201,8 +204,8 @@ def agreement(measurements: Sequence[SettingMeasurement]) -> SettingAgreement | 
         mean,
         chi2,
         limit,
-        tuple(float(one) for one in (left @ values) / own),
-        tuple(float(one) for one in 1.0 / np.sqrt(own)),
+        tuple(float(value) for value in (left @ values) / diagonal),
+        tuple(float(value) for value in 1.0 / np.sqrt(diagonal)),
     )
 
 
@@ -222,27 +225,29 @@ def _covariance(used: Sequence[SettingMeasurement]) -> tuple[NDArray[np.float64]
     }
     covariance = np.zeros((count, count))
     estimated: dict[str, Estimated] = {}
-    for cause, common in dict.fromkeys((one.cause, one.common) for each in used for one in each.errors):
-        found = [_named(each, cause, common) for each in used]
-        off = np.array([one.value if one is not None else 0.0 for one in found])
+    for cause, common in dict.fromkeys(
+        (error.cause, error.common) for setting_measurement in used for error in setting_measurement.errors
+    ):
+        parts = [_named(setting_measurement, cause, common) for setting_measurement in used]
+        off = np.array([error.value if error is not None else 0.0 for error in parts])
         mask = np.array([[together[common](i, j) for j in range(count)] for i in range(count)])
         covariance += np.outer(off, off) * mask
-        for i, one in enumerate(found):
-            if one is not None and one.estimate:
-                part, _ = estimated.setdefault(one.estimate, (np.zeros((count, count)), one.df))
-                part[i, i] += one.value**2
+        for i, error in enumerate(parts):
+            if error is not None and error.estimate:
+                part, _ = estimated.setdefault(error.estimate, (np.zeros((count, count)), error.df))
+                part[i, i] += error.value**2
     return covariance, list(estimated.values())
 
 
 def _named(of: SettingMeasurement, cause: str, common: str) -> ErrorPart | None:
-    return next((one for one in of.errors if (one.cause, one.common) == (cause, common)), None)
+    return next((error for error in of.errors if (error.cause, error.common) == (cause, common)), None)
 
 
 def _known_df(covariance: NDArray[np.float64], parts: Sequence[Estimated]) -> float:
-    """Return the degrees of freedom that the test has of what is estimated.
+    """Return the degrees of freedom of the test due to estimated variances.
 
-    The greatest share of any contrast's variance that an estimate makes is the greatest eigenvalue of that estimate's
-    covariance where all contrasts are made independent, with variance 1.
+    The greatest share of an estimate in the variance of any contrast is the greatest eigenvalue of that estimate's
+    covariance after the contrasts are made independent, with variance 1.
     """
     import numpy as np
 

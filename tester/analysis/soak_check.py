@@ -1,4 +1,4 @@
-"""The thermometer of a surface against the sensor of what heats it, after a soak."""
+"""Compares the thermometer of a surface with the heater's sensor, after a soak."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SoakCheck:
-    """What the surface's thermometer shows at the end of a condition's soak, and what it should show.
+    """Reading of the surface's thermometer at the end of a condition's soak, and its expected value.
 
-    Temperatures in degC: ``surface_c`` by the thermometer, ``hub_c`` by the heater's sensor, ``model_c`` what a model
-    of the heat flow makes of the latter for the surface. ``allowed_k``: by how much both may part as far as sensors
-    and model are believed, K.
+    Temperatures in degC: ``surface_c`` by the thermometer, ``hub_c`` by the heater's sensor, ``model_c`` the surface's
+    by a model of the heat flow from the latter. ``allowed_k``: largest difference that the uncertainties of sensors and
+    model explain, K.
     """
 
     condition: int
@@ -23,10 +23,10 @@ class SoakCheck:
 
     @property
     def off_k(self) -> float:
-        """Return by how much the thermometer shows more than it should, K."""
+        """Return the thermometer's reading less its expected value, K."""
         return self.surface_c - self.model_c
 
     @property
     def agrees(self) -> bool:
-        """Return whether both are as near as they are believed."""
+        """Return whether the difference is within its limit."""
         return abs(self.off_k) <= self.allowed_k

@@ -1,14 +1,13 @@
-"""What of a repeat counts: how much it collects, and which revolutions at its beginning are left out as transient.
+"""The valid part of a repeat: its length, and the revolutions at its beginning that are left out as transient.
 
-A repeat collects 1.5 windows (45 revolutions for a window of 30) after its transient and is never reopened. Whether
-the coefficient stands still is asked of the condition, of all its repeats together (module ``drift``): one repeat
-alone cannot tell 2 % from chance.
+A repeat collects 1.5 windows (45 revolutions for a window of 30) after its transient and is never reopened. Steadiness
+is judged for the condition, over all its repeats (module ``drift``): one repeat alone cannot tell 2 % from chance.
 
-The transient is found by MSER (marginal standard error rule, White 1997) in the first 1.5 windows: leave out the
-first d blocks for which the squared standard error of the rest, sum((y - mean)^2) / (n - d)^2, is least, d up to half
-of them. A least value at the end of that range is a slope and no transient: nothing is left out, and the drift is
-judged with all of it. A truncation that moves the mean by less than 0.5 % is not made. In a repeat of several bursts
-MSER sees the values without the part that goes with the surface temperature.
+MSER (marginal standard error rule, White 1997) finds the transient in the first 1.5 windows: leave out the first d
+blocks for which the squared standard error of the rest, sum((y - mean)^2) / (n - d)^2, is least, d up to half of them.
+A least value at the end of that range is a slope and no transient: nothing is left out, and the drift is judged with
+all of it. A truncation that moves the mean by less than 0.5 % is not made. In a repeat of several bursts MSER uses the
+values after the part that follows the surface temperature is removed.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ REPEAT_WINDOWS = 1.5
 with 1.5 nearly never (python -m tests.campaigns.repeats)."""
 
 MIN_BLOCKS = 6
-"""Fewer blocks leave no degrees of freedom to speak of for trend, temperature and correlation."""
+"""Fewer blocks leave too few degrees of freedom for trend, temperature and correlation."""
 
 MATERIAL = 0.005
 """A truncation is made when it moves the mean by more than this share of it [A]: correlated noise by itself often seems
@@ -32,7 +31,7 @@ to have a transient of 0.1 to 0.3 %, and leaving out the steep beginning of a dr
 
 
 def truncation(values: Sequence[float]) -> int | None:
-    """Return how many leading values MSER leaves out; None when the least error is at the last one tried."""
+    """Return how many leading values MSER leaves out; None when the least error is at the last cut tried."""
     n = len(values)
     last = n // 2
     total = squares = 0.0
@@ -45,7 +44,7 @@ def truncation(values: Sequence[float]) -> int | None:
         squares += deviation * deviation
         if kept >= n - last:
             error = (squares - total * total / kept) / (kept * kept)
-            # <=: of equal errors (noise-free values) the one that keeps more blocks.
+            # <=: of equal errors (noise-free values) take the one that keeps more blocks.
             if error <= best:
                 best, best_at = error, n - kept
     return None if best_at == last and last > 0 else best_at
@@ -64,14 +63,14 @@ def enough(blocks: Sequence[Block], revolutions: float | None, seconds: float | 
 
 
 def filled(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> bool:
-    """Return whether what is left after the transient is all that a repeat of this window collects."""
+    """Return whether the blocks after the transient fill all that a repeat of this window collects."""
     wanted = revolutions and REPEAT_WINDOWS * revolutions, seconds and REPEAT_WINDOWS * seconds
     return enough(blocks, *wanted) and enough(blocks[left_out(blocks, revolutions, seconds) :], *wanted)
 
 
 def left_out(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> int:
-    """Return how many leading blocks are transient. Looks at the first 1.5 windows only, so that what a repeat
-    collects after them does not change it."""
+    """Return how many leading blocks are transient; only the first 1.5 windows count, so later blocks never change it.
+    """
     first = list(blocks)
     if revolutions is not None:
         first = first[: int(REPEAT_WINDOWS * revolutions)]
@@ -96,5 +95,5 @@ def _transient(blocks: Sequence[Block], mu: list[float]) -> int:
         if squares > 0.0:
             per_kelvin = sum(a * b for a, b in zip(surface, values, strict=True)) / squares
             values = [value - per_kelvin * kelvin for value, kelvin in zip(values, surface, strict=True)]
-    found = truncation(values) or 0
-    return 0 if abs(sum(values[found:])) <= MATERIAL * mean * (n - found) else found
+    cut = truncation(values) or 0
+    return 0 if abs(sum(values[cut:])) <= MATERIAL * mean * (n - cut) else cut

@@ -1,18 +1,18 @@
 """Whether friction swings within a revolution, as it does where the contact sticks and slips.
 
-The coefficient of every accepted sample is taken as a share of the mean. What goes with the turning of the wheel (its
-orders, a sine and a cosine of each) and a slow trend of each contact are fitted and taken out. What is left has a
-spectrum, averaged over stretches of up to ``LONGEST_S``. Where its level within an octave is exceeded ``PROMINENCE``
-times, between ``LOWEST_HZ`` and a tenth of the rate of samples, friction swings: with the frequency of the highest of
-these peaks, and an amplitude of sqrt(2) times the root mean square of that peak and its multiples. So a sine's is as it
-is, and that of a saw-tooth reads 18 % low. A faster swing, up to what the rate of samples shows at all, has a frequency
-and no amplitude: at least so much as is seen.
+The coefficient of every accepted sample is taken as a share of the mean. The part in step with the wheel's rotation
+(its orders, a sine and a cosine of each) and a slow trend of each contact are fitted and removed. The remainder has a
+spectrum, averaged over stretches of up to ``LONGEST_S``. Where it exceeds its level within an octave ``PROMINENCE``
+times, between ``LOWEST_HZ`` and a tenth of the sampling rate, friction swings: with the frequency of the highest of
+these peaks, and an amplitude of sqrt(2) times the root mean square of that peak and its multiples. So a sine reads
+true, and a saw-tooth 18 % low. A faster swing, up to the highest frequency that the sampling rate resolves, has a
+frequency and no amplitude: only a lower limit of it.
 
-The skewness of the differences between neighbouring samples says what kind of swing it is: friction that rises slowly
-and falls fast has one far below 0, a vibration none.
+The skewness of the differences between neighbouring samples tells the kinds of swing apart: friction that rises slowly
+and falls fast has a skewness far below 0, a vibration none.
 
-What is not known is NaN and never 0: no contact is long enough, or what goes with the wheel's turning swings so much
-that it may be stick-slip beside an order.
+An unknown swing is NaN and never 0: no contact is long enough, or the part in step with the wheel is so large that it
+may be stick-slip beside an order.
 """
 
 from __future__ import annotations
@@ -30,35 +30,35 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 LOWEST_HZ: Final = 0.8
-"""Slower than this is drift, which other tests judge [A]."""
+"""Slower swings are drift, which other tests judge [A]."""
 FASTEST: Final = 0.45
-"""Nothing faster is looked for, as a share of the rate of samples: half of it is where frequencies fold [A]."""
+"""Highest frequency of the search, as a share of the sampling rate: at half of it frequencies fold [A]."""
 PER_PERIOD: Final = 10.0
-"""Samples in a period of the fastest swing that has an amplitude: 10 Hz of 100 Hz. Load cell and polling take more of a
-faster one than is known [A]."""
+"""Samples in a period of the fastest swing that has an amplitude: 10 Hz of 100 Hz. Load cell and polling attenuate a
+faster one by an unknown amount [A]."""
 SHORTEST_S: Final = 2.5
-"""A shorter contact has less than two periods of the slowest swing, and tells nothing from an order of the wheel that
-is 0.3 Hz away [A]."""
+"""A shorter contact has less than two periods of the slowest swing, and cannot be told from an order of the wheel 0.3
+Hz away [A]."""
 LONGEST_S: Final = 8.0
-"""Length of the stretches that spectra are averaged over, s [A]: their frequencies are 0.25 Hz apart."""
+"""Length of the stretches over which spectra are averaged, s [A]: their frequencies are 0.25 Hz apart."""
 MOST_STRETCHES: Final = 40
-"""More of them are not looked at: they say no more, and take time in which the rig is not scanned [A]."""
+"""Most stretches analysed: more add no information, and take time in which the rig is not scanned [A]."""
 PROMINENCE: Final = 12.0
-"""Power of a peak over the median of what lies within an octave of it [A]. Of a single stretch of noise one frequency
-in 4,000 has that much (exp(-12 ln 2)); of the mean of two, one in 100,000."""
+"""Power of a peak over the median of the power within an octave of it [A]. In a single stretch of noise one frequency
+in 4,000 has that much (exp(-12 ln 2)); in the mean of two, one in 100,000."""
 LEAST_PERCENT: Final = 1.0
-"""A swing of less is noise to whoever reads it [A]."""
+"""A smaller swing is noise for any reader [A]."""
 LIMIT_PERCENT: Final = 5.0
 """Friction that swings by more than this to either side carries a doubt [A]."""
 MOST_HZ: Final = 15.0
-"""Orders of the wheel are taken out up to this frequency: runout, flats and seams of a tread have no more [A]."""
+"""Orders of the wheel are removed up to this frequency: runout, flats and seams of a tread have no more [A]."""
 _LOBE: Final = 0.1
-"""Half the width of a peak, as a share of its frequency: the periods of stick-slip are not alike [A]."""
+"""Half the width of a peak, as a share of its frequency: the periods of stick-slip vary [A]."""
 _MULTIPLES: Final = 4
 _LEVELS: Final = 16
-"""Frequencies at which the level around is worked out; between them it is a straight line."""
+"""Frequencies at which the surrounding level is computed; between them it is a straight line."""
 _POINTS: Final = 2048
-"""Of a Fourier transform: frequencies 0.05 Hz apart at 100 Hz."""
+"""Points of a Fourier transform: frequencies 0.05 Hz apart at 100 Hz."""
 
 UNKNOWN: Final = Swing(NAN, NAN, NAN)
 NO_SWING: Final = Swing(0.0, NAN, NAN)
@@ -72,7 +72,7 @@ class _Stretch(NamedTuple):
 
 
 class _Spectrum(NamedTuple):
-    """Power, 1/Hz, over frequency, Hz; ``width_hz``: what the stretches tell apart."""
+    """Power, 1/Hz, over frequency, Hz; ``width_hz``: resolution of the stretches."""
 
     frequency_hz: Array
     power: Array
@@ -80,11 +80,11 @@ class _Spectrum(NamedTuple):
 
 
 def swing_of(trace: Trace) -> Swing:
-    """Return how friction swings: 0 where it does not, NaN where that is not known."""
+    """Return the swing of friction: 0 where there is none, NaN where it is unknown."""
     import numpy as np
 
-    contacts = [one for one in trace.contacts() if len(one["time_s"]) > 1]
-    steps = np.concatenate([np.diff(one["time_s"]) for one in contacts]) if contacts else np.array([])
+    contacts = [contact for contact in trace.contacts() if len(contact["time_s"]) > 1]
+    steps = np.concatenate([np.diff(contact["time_s"]) for contact in contacts]) if contacts else np.array([])
     step_s = float(np.median(steps)) if len(steps) else inf
     if not (step_s > 0.0 and FASTEST / step_s > 2.0 * LOWEST_HZ):
         return UNKNOWN
@@ -104,16 +104,16 @@ def swing_of(trace: Trace) -> Swing:
 
 
 def _orders(contacts: list[dict[str, Array]], highest_hz: float) -> int:
-    """Return how many orders of the wheel are taken out."""
+    """Return how many orders of the wheel are removed."""
     import numpy as np
 
-    slopes = [abs(np.ptp(one["position"]) / np.ptp(one["time_s"])) for one in contacts]
+    slopes = [abs(np.ptp(contact["position"]) / np.ptp(contact["time_s"])) for contact in contacts]
     turn_hz = float(np.median(slopes))
     return int(highest_hz / turn_hz) if turn_hz > 0.0 else 0
 
 
 def _stretches(contacts: list[dict[str, Array]], step_s: float, orders: int) -> list[_Stretch]:
-    """Return the stretches that are long enough, evenly spread where there are more than are looked at."""
+    """Return the stretches of sufficient length, evenly spread where there are more than ``MOST_STRETCHES``."""
     import numpy as np
 
     cut: list[dict[str, Array]] = []
@@ -140,14 +140,14 @@ def _stretch(one: dict[str, Array], step_s: float, orders: int) -> _Stretch:
     waves: list[Array] = []
     for order in range(1, orders + 1):
         waves += [np.cos(order * turned), np.sin(order * turned)]
-    held: Array = np.column_stack([friction / float(np.mean(friction)), *waves])
+    columns: Array = np.column_stack([friction / float(np.mean(friction)), *waves])
     trend = np.linalg.qr(np.vander(np.linspace(-1.0, 1.0, len(times)), 3))[0]
-    held -= trend @ (trend.T @ held)
-    return _Stretch(held[:, 0], held[:, 1:])
+    columns -= trend @ (trend.T @ columns)
+    return _Stretch(columns[:, 0], columns[:, 1:])
 
 
 def _at(times: Array, there: Array, values: Array) -> Array:
-    """Return values at other times, by straight lines between those where they are known."""
+    """Return values at other times, interpolated linearly."""
     import numpy as np
 
     found: Array = np.asarray(np.interp(times, there, values), dtype=np.float64)  # pyright: ignore[reportUnknownMemberType]
@@ -155,16 +155,16 @@ def _at(times: Array, there: Array, values: Array) -> Array:
 
 
 def _without_orders(stretches: list[_Stretch]) -> tuple[list[Array], float]:
-    """Return the stretches without what goes with the wheel's turning, and by how much that swings, per cent."""
+    """Return the stretches without the part in step with the wheel's rotation, and the amplitude of that, per cent."""
     import numpy as np
 
-    orders = np.vstack([one.orders for one in stretches])
-    friction = np.concatenate([one.friction for one in stretches])
+    orders = np.vstack([stretch.orders for stretch in stretches])
+    friction = np.concatenate([stretch.friction for stretch in stretches])
     if not orders.shape[1]:
-        return [one.friction for one in stretches], 0.0
-    found = np.linalg.lstsq(orders, friction, rcond=None)[0]
-    swing = 100.0 * sqrt(2.0 * float(np.mean((orders @ found) ** 2)))
-    return [one.friction - one.orders @ found for one in stretches], swing
+        return [stretch.friction for stretch in stretches], 0.0
+    fitted = np.linalg.lstsq(orders, friction, rcond=None)[0]
+    swing = 100.0 * sqrt(2.0 * float(np.mean((orders @ fitted) ** 2)))
+    return [stretch.friction - stretch.orders @ fitted for stretch in stretches], swing
 
 
 def _spectrum(rests: list[Array], step_s: float) -> _Spectrum:
@@ -182,8 +182,8 @@ def _spectrum(rests: list[Array], step_s: float) -> _Spectrum:
 
 
 def _swing(spectrum: _Spectrum, lowest_hz: float, highest_hz: float) -> tuple[float, float] | None:
-    """Return amplitude (per cent) and frequency (Hz) of the highest peak between two frequencies that stands out; None
-    where none does, or there is nothing between them."""
+    """Return amplitude (per cent) and frequency (Hz) of the highest prominent peak between two frequencies; None where
+    there is none, or nothing between them."""
     import numpy as np
 
     if lowest_hz >= highest_hz:
@@ -191,10 +191,10 @@ def _swing(spectrum: _Spectrum, lowest_hz: float, highest_hz: float) -> tuple[fl
     frequency, power = spectrum.frequency_hz, spectrum.power
     marks = np.geomspace(lowest_hz, highest_hz, _LEVELS)
     level = np.interp(frequency, marks, [_level(spectrum, float(mark)) for mark in marks])
-    stands_out = (frequency >= lowest_hz) & (frequency <= highest_hz) & (power > PROMINENCE * level)
-    if not stands_out.any():
+    prominent = (frequency >= lowest_hz) & (frequency <= highest_hz) & (power > PROMINENCE * level)
+    if not prominent.any():
         return None
-    at_hz = float(frequency[np.argmax(np.where(stands_out, power, 0.0))])
+    at_hz = float(frequency[np.argmax(np.where(prominent, power, 0.0))])
     variance = 0.0
     for multiple in range(1, _MULTIPLES + 1):
         middle = multiple * at_hz

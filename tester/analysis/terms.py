@@ -1,13 +1,13 @@
-"""Terms of the budget that the machine brings: what its measuring chain may be off by, as data.
+"""Terms of the budget from the machine: the possible errors of its measuring chain, as data.
 
-A kind of rig says its terms (``tester.machine.run_parts``), a run's record keeps them, and here they become
-contributions to the uncertainty of one coefficient. How an error reaches mu is one of a few ways (``Acts``), each a
-formula of the coefficient and of what was measured with it.
+A kind of rig supplies its terms (``tester.machine.run_parts``), a run's record keeps them, and this module turns them
+into contributions to the uncertainty of one coefficient. An error reaches mu in one of a few ways (``Acts``), each a
+formula of the coefficient and the channels measured with it.
 
-Of a coefficient from both directions of sliding (``tester.analysis.directions``) what does not turn round with the
-sliding drops out. Left of a rotation theta is its square: mu (1 + mu^2) theta^2; of crosstalk the same. A speed that
-adds to the sliding one way takes from it the other way: what counts of its channel is half the difference of the
-directions. What differs each time is halved in square. The rest acts the same both ways, and stays.
+In a coefficient from both directions of sliding (``tester.analysis.directions``) errors that do not reverse with the
+sliding drop out. Of a rotation theta its square remains: mu (1 + mu^2) theta^2; of crosstalk the same. A speed that
+adds to the sliding one way reduces it the other way: its channel counts with half the difference of the directions. The
+variance of independent errors is halved. The rest acts the same both ways, and stays.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tester.analysis.results import NAN
 from tester.analysis.uncertainty import Contribution, contribution
 
 SLOWEST_M_S: Final = 0.1
-"""Below it the coefficient hardly depends on speed any more; keeps the relative error of sliding finite [A]."""
+"""Below it the coefficient hardly depends on speed; keeps the relative error of sliding finite [A]."""
 
 SPREADS: Final[Mapping[str, float]] = MappingProxyType(
     {"rectangular": 1.0 / sqrt(3.0), "U-shaped": 1.0 / sqrt(2.0), "normal": 1.0}
@@ -33,11 +33,11 @@ either sign, GUM H.1.3.4 for its case); of a normal one the bound is the standar
 
 _NO_SETTINGS: Mapping[str, str] = MappingProxyType({})
 PREFIX: Final = "uncertainty."
-"""Of a recipe's free fields that replace a bound or a factor."""
+"""Prefix of a recipe's free fields that replace a bound or a factor."""
 
 
 class Acts(StrEnum):
-    """How an error reaches the coefficient mu = Ft / Fz; its sensitivity, per unit of the error."""
+    """How an error reaches the coefficient mu = Ft / Fz; each entry lists the sensitivity, per unit of the error."""
 
     FRICTION = "friction force"
     """N, of Ft: 1 / Fz."""
@@ -46,7 +46,7 @@ class Acts(StrEnum):
     ROTATION = "rotation"
     """degrees between the axes of the cell and those of the contact: load becomes friction and back, 1 + mu^2."""
     CROSSTALK = "crosstalk"
-    """Share of one force that the channel of the other sees, two independent ones: sqrt(1 + mu^4)."""
+    """Share of one force that appears in the channel of the other, two independent ones: sqrt(1 + mu^4)."""
     TEMPERATURE = "temperature"
     """K, of the surface: mu times its relative sensitivity."""
     LAG = "lag"
@@ -54,24 +54,24 @@ class Acts(StrEnum):
     SLIDING = "sliding speed"
     """m/s: mu / v, times the exponent with which mu follows v."""
     SIZE = "size"
-    """mm, of the diameter from which a speed is reckoned: that speed's sensitivity."""
+    """mm, of the diameter from which a speed is computed: that speed's sensitivity."""
     LOSS = "loss"
-    """As SIZE; the bound is a share of what is believed to be worn off."""
+    """As SIZE; the bound is a share of the estimated wear."""
     COEFFICIENT = "coefficient"
     """Share of mu itself: mu."""
     PIECE = "piece"
-    """Share of mu by which one piece that is mounted differs from another of the same compound: mu. It is no error of
-    the coefficient of this piece, and one of the compound's."""
+    """Share of mu by which mounted pieces of the same compound differ: mu. It is no error of this piece's coefficient,
+    but one of the compound's."""
 
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """One thing that may be off: ``bound`` in ``unit``, how it is distributed, and how it reaches mu.
+    """A possible error: ``bound`` in ``unit``, its distribution, and how it reaches mu.
 
-    ``channel``: of whose mean the bound is a share; of SIZE and LOSS the speed that is reckoned from the diameter.
-    ``factor`` multiplies the sensitivity. ``common``: rig (the same in all conditions measured on it), piece (in all on
-    what is mounted), "" (each by itself). ``setting`` and ``factor_setting``: names under which a recipe's metadata
-    replaces bound and factor, as ``uncertainty.<name>``.
+    ``channel``: the bound is a share of its mean; for SIZE and LOSS the speed computed from the diameter. ``factor``
+    multiplies the sensitivity. ``common``: rig (the same in all conditions measured on it), piece (in all on the
+    mounted piece), "" (independent). ``setting`` and ``factor_setting``: names under which a recipe's metadata replaces
+    bound and factor, as ``uncertainty.<name>``.
     """
 
     name: str
@@ -88,7 +88,7 @@ class Term:
     factor_setting: str = ""
 
     def __post_init__(self) -> None:
-        """Raise ValueError for what is no term."""
+        """Raise ValueError for an unknown distribution, or a number out of range."""
         if self.distribution not in SPREADS:
             raise ValueError(f"{self.name}: {self.distribution!r} is none of {', '.join(SPREADS)}")
         if not (isfinite(self.bound) and self.bound >= 0.0 and isfinite(self.factor) and self.df > 0.0):
@@ -96,15 +96,15 @@ class Term:
 
     @property
     def standard(self) -> float:
-        """Return the standard uncertainty of what may be off, in its unit."""
+        """Return the standard uncertainty of the error, in its unit."""
         return self.bound * SPREADS[self.distribution]
 
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """The diameter of what is mounted: mm, what is believed to be worn off, and what a check has found.
+    """The diameter of the mounted piece: mm, its estimated wear, and the result of checks.
 
-    ``checked_u_mm``: standard uncertainty of the loss by checks, NaN where none was made; ``source``: by which.
+    ``checked_u_mm``: standard uncertainty of the loss by checks, NaN without a check; ``source``: which checks.
     """
 
     size_mm: float = NAN
@@ -123,7 +123,7 @@ NO_SIZE: Final = Size()
 
 @dataclass(frozen=True, slots=True)
 class BudgetPoint:
-    """Where a coefficient was measured: load in N, sliding speed in m/s, means of the channels by name.
+    """Conditions at a measured coefficient: load in N, sliding speed in m/s, means of the channels by name.
 
     ``per_kelvin``: relative sensitivity to temperature, 1/K; ``rate_k_s``: how fast the surface warmed.
     """
@@ -139,22 +139,22 @@ class BudgetPoint:
     """Of a coefficient from both directions: half the difference of the channels' means between them."""
 
     def speed(self, channel: str) -> float:
-        """Return how much of a speed's mean goes into the sliding speed, m/s."""
+        """Return the part of a speed's mean in the sliding speed, m/s."""
         return abs((self.means if self.turning is None else self.turning).get(channel, NAN))
 
 
 def with_settings(terms: Iterable[Term], settings: Mapping[str, str] = _NO_SETTINGS) -> tuple[Term, ...]:
-    """Return terms with the bounds and factors that ``settings`` names as ``uncertainty.<name>``.
+    """Return terms with the bounds and factors that ``settings`` replaces as ``uncertainty.<name>``.
 
-    Raises ValueError for a value that is no finite number >= 0; names that are no term's are ignored.
+    Raises ValueError for a value that is no finite number >= 0; names of no term are ignored.
     """
     return tuple(
         replace(
-            one,
-            bound=_set(one.setting, one.bound, settings),
-            factor=_set(one.factor_setting, one.factor, settings),
+            term,
+            bound=_set(term.setting, term.bound, settings),
+            factor=_set(term.factor_setting, term.factor, settings),
         )
-        for one in terms
+        for term in terms
     )
 
 
@@ -175,33 +175,40 @@ def setting_of(name: str, text: str) -> float:
 
 
 def contributions_of(terms: Sequence[Term], at: BudgetPoint) -> list[Contribution]:
-    """Return what terms contribute to the uncertainty of a coefficient; without a load NaN each."""
-    return [_contribution(one, at) for one in terms]
+    """Return the contributions of terms to the uncertainty of a coefficient; NaN each without a load."""
+    return [_contribution(term, at) for term in terms]
 
 
-def _contribution(one: Term, at: BudgetPoint) -> Contribution:
-    standard, source, distribution = one.standard, one.source, one.distribution
-    if one.acts is Acts.LOSS:
+def _contribution(term: Term, at: BudgetPoint) -> Contribution:
+    standard, source, distribution = term.standard, term.source, term.distribution
+    if term.acts is Acts.LOSS:
         standard *= abs(at.size.loss_mm)
         if at.size.checked:
             standard, source, distribution = at.size.checked_u_mm, at.size.source, "normal"
-    elif one.acts is Acts.SLIDING:
-        standard *= at.speed(one.channel) if one.channel else 1.0
-    elif one.channel and one.acts is not Acts.SIZE:
-        standard *= abs(at.means.get(one.channel, NAN))
-    found = sensitivity(one, at)
+    elif term.acts is Acts.SLIDING:
+        standard *= at.speed(term.channel) if term.channel else 1.0
+    elif term.channel and term.acts is not Acts.SIZE:
+        standard *= abs(at.means.get(term.channel, NAN))
+    per_unit = sensitivity(term, at)
     return contribution(
-        one.name, standard, found, unit=one.unit, df=one.df, source=source, distribution=distribution, common=one.common
+        term.name,
+        standard,
+        per_unit,
+        unit=term.unit,
+        df=term.df,
+        source=source,
+        distribution=distribution,
+        common=term.common,
     )
 
 
-def sensitivity(one: Term, at: BudgetPoint) -> float:
-    """Return by how much mu changes with a term's error, per unit; NaN without a load."""
+def sensitivity(term: Term, at: BudgetPoint) -> float:
+    """Return the change of mu per unit of a term's error; NaN without a load."""
     mu, load = at.mu, at.normal_n
     if not (isfinite(mu) and load > 0.0):
         return NAN
     sliding = max(abs(at.sliding_m_s), SLOWEST_M_S) if isfinite(at.sliding_m_s) else NAN
-    match one.acts:
+    match term.acts:
         case Acts.FRICTION:
             plain = 1.0 / load
         case Acts.NORMAL:
@@ -217,17 +224,17 @@ def sensitivity(one: Term, at: BudgetPoint) -> float:
         case Acts.SLIDING:
             plain = mu / sliding
         case Acts.SIZE | Acts.LOSS:
-            plain = mu * at.speed(one.channel) / (at.size.size_mm * sliding)
+            plain = mu * at.speed(term.channel) / (at.size.size_mm * sliding)
         case Acts.COEFFICIENT | Acts.PIECE:
             plain = mu
-    return one.factor * plain * (_left(one, mu) if at.turning is not None else 1.0)
+    return term.factor * plain * (_left(term, mu) if at.turning is not None else 1.0)
 
 
-def _left(one: Term, mu: float) -> float:
-    """Return the share of a sensitivity that is left by both directions of sliding."""
-    if one.acts is Acts.ROTATION:
-        return mu * radians(one.bound)
-    if one.acts is Acts.CROSSTALK:
-        return mu * one.bound
-    own = one.acts in (Acts.FRICTION, Acts.NORMAL) and not one.common
-    return sqrt(0.5) if own else 1.0
+def _left(term: Term, mu: float) -> float:
+    """Return the share of a sensitivity that remains in the mean of both directions of sliding."""
+    if term.acts is Acts.ROTATION:
+        return mu * radians(term.bound)
+    if term.acts is Acts.CROSSTALK:
+        return mu * term.bound
+    independent = term.acts in (Acts.FRICTION, Acts.NORMAL) and not term.common
+    return sqrt(0.5) if independent else 1.0

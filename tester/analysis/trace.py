@@ -1,4 +1,4 @@
-"""The samples that the blocks of a repeat are made of: what friction did within a revolution."""
+"""The samples in the blocks of a repeat: friction within a revolution."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 REVOLUTIONS: Final = "rev"
-"""Unit of the position that blocks are counted by where it is the angle of something that turns."""
+"""Unit of the position that counts blocks where it is a rotation angle."""
 
 
 class Trace:
     """Accepted samples of whole blocks, contact by contact, in order of time.
 
-    Columns of equal length: time (s), position (in units of the channel by which blocks are counted), forces along,
-    across (0 where it is not measured) and normal (N). ``starts`` has the index at which each contact begins.
+    Columns of equal length: time (s), position (in units of the channel that counts blocks), forces along, across (0
+    where it is not measured) and normal (N). ``starts`` has the index at which each contact begins.
     """
 
     __slots__ = ("across", "along", "normal", "position", "starts", "time_s", "turns")
 
     def __init__(self, quantities: Quantities) -> None:
-        """Take in nothing yet; ``turns``: the position is the angle of something that turns, in revolutions."""
+        """Start empty; ``turns``: the position is a rotation angle, in revolutions."""
         self.turns = quantities[quantities.roles.turn].unit == REVOLUTIONS
         self.starts: list[int] = []
         self.time_s = array("d")

@@ -1,4 +1,4 @@
-"""Whether a condition's value is trusted, and the mark that stands beside its number wherever it is shown."""
+"""Whether a condition's value is trustworthy, and the mark beside its number in every output."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tester.analysis.flags import DOUBTS, flags_in
 from tester.analysis.results import ConditionStatus
 
 NOT_TRUSTED: Final = "!"
-"""Mark of a number that is no value to be trusted."""
+"""Mark of a number without a trustworthy value."""
 WITH_CARE: Final = "?"
 """Mark of a value that carries a flag of DOUBTS."""
 
@@ -16,7 +16,7 @@ WITH_CARE: Final = "?"
 def mark_of(status: ConditionStatus | str, flags: str) -> str:
     """Return the mark of a condition's number: ``!`` not to be trusted, ``?`` with care, "" trusted.
 
-    ``flags`` as a condition's result holds them, one text.
+    ``flags`` as in a condition's result, one text.
     """
     if status != ConditionStatus.OK:
         return NOT_TRUSTED

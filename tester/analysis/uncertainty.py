@@ -19,11 +19,11 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Contribution:
-    """One cause: its standard uncertainty in mu and the degrees of freedom behind it (inf: taken as known).
+    """One cause: its standard uncertainty in mu and its degrees of freedom (inf: taken as known).
 
-    ``input_u`` is the standard uncertainty of what causes it, in ``unit``, ``sensitivity`` by how much mu changes with
-    that, per unit: ``standard`` is their product. ``common``: what else has the same error ("" nothing): conditions
-    measured with it are off together, and a difference between them is not.
+    ``input_u`` is the standard uncertainty of the cause, in ``unit``, ``sensitivity`` the change of mu per unit of it:
+    ``standard`` is the product of their sizes. ``common``: the measurements with the same error ("" none): conditions
+    in it are off together, and a difference between them is not.
     """
 
     name: str
@@ -73,7 +73,7 @@ NO_BUDGET = Budget((), NAN, NAN, NAN, NAN)
 
 @dataclass(frozen=True, slots=True)
 class Unsteadiness:
-    """What a coefficient that does not quite stand still adds to the budget: standard uncertainties, per cent of it."""
+    """Additions to the budget for a coefficient that is not quite steady: standard uncertainties, per cent of it."""
 
     drift_percent: float = 0.0
     carry_over_percent: float = 0.0
@@ -82,14 +82,17 @@ class Unsteadiness:
 STEADY = Unsteadiness()
 
 _SPREAD = 1.0 / sqrt(12.0)
-"""Standard deviation of what lies anywhere, evenly, in a range of 1."""
+"""Standard deviation of a uniform distribution over a range of 1."""
 
 
 def unsteadiness(judged: Judgement) -> Unsteadiness:
-    """Return what a condition's judgement adds: its drift always, with its own error; its trend where it carries over.
+    """Return the additions from a condition's judgement: its drift always, with its error; its trend where it carries
+    over.
 
-    The coefficient moves by (|d| + se(d)) times the windows of a repeat while that is measured, and by the trend over
-    the repeats; a mean taken somewhere in that range is off by 1 / sqrt(12) of it (GUM 4.3.7).
+    The coefficient moves by (
+    d
+    + se(d)) times the windows of a repeat during the measurement, and by the trend over the repeats; a mean from
+    somewhere in that range is off by 1 / sqrt(12) of it (GUM 4.3.7).
     """
     drift = (abs(judged.drift_percent) + judged.drift_error_percent) * judged.repeat_windows * _SPREAD
     carried = abs(judged.trend_percent) * _SPREAD if CARRY_OVER in flags_in(judged.flags) else 0.0
@@ -103,7 +106,7 @@ def effective_df(parts: Iterable[tuple[float, float]], standard: float) -> float
 
 
 def budget(contributions: Sequence[Contribution]) -> Budget:
-    """Combine contributions; NaN in any of them makes the sums NaN."""
+    """Return the budget of contributions; NaN in any of them makes the sums NaN."""
     standard = sqrt(sum(c.standard**2 for c in contributions))
     if not isfinite(standard):
         return Budget(tuple(contributions), NAN, NAN, NAN, NAN)

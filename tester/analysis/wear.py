@@ -1,12 +1,12 @@
 """Wear of a wheel from checks of its diameter: the rate k = V / (F s), with its uncertainty, after the GUM.
 
-V is the volume worn off, F the normal load, s the distance slid; the product F s is summed up as it slides. A roll
-check is held against the first one of its series (the press's place has no zero of its own), so all checks of a
-series share what that one was off by: they are fitted together with an offset (generalised least squares), and what
-two of them give alone uses the same covariance.
+V is the volume worn off, F the normal load, s the distance slid; the product F s is summed up during the sliding. A
+roll check is compared with the first of its series (the press's position has no zero of its own), so all checks of a
+series share the error of that one: they are fitted together with an offset (generalised least squares), and the rate
+from two of them alone uses the same covariance.
 
-Contributions (JCGM 100:2008, 5.2): of every check by itself, the place of the press and the load in it, and the
-rubber's mean temperature (``u_mm``); of all together, how much the tread grows per kelvin (``u_growth_mm_k``); of the
+Contributions (JCGM 100:2008, 5.2): independent for every check, the position of the press and the load in it, and the
+rubber's mean temperature (``u_mm``); common to all, the growth of the tread per kelvin (``u_growth_mm_k``); of the
 rate, load, slip and the tread's width (``u_rate_percent``).
 """
 
@@ -38,18 +38,18 @@ class WearRate:
 
     @property
     def expanded(self) -> float:
-        """Half the width of the interval that covers the rate with 95 %."""
+        """Return half the width of the interval that covers the rate with 95 %."""
         return COVERAGE * self.standard
 
     @property
     def resolved(self) -> bool:
-        """Tell whether the interval leaves out 0: the checks have seen wear."""
+        """Return whether the interval excludes 0: the checks show wear."""
         return self.rate > self.expanded
 
 
 @dataclass(frozen=True, slots=True)
 class ConditionWear:
-    """What one condition took off: the diameter before and after, mm, its standard uncertainty, and the rate."""
+    """Wear by one condition: the diameter before and after, mm, its standard uncertainty, and the rate."""
 
     before_mm: float
     after_mm: float
@@ -60,17 +60,17 @@ class ConditionWear:
 def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
     """Return the rate over a wheel's life: a line through the volume worn off against load times distance.
 
-    A rate that is not the same in all conditions scatters the checks about the line by more than they state; the
+    A rate that varies between conditions scatters the checks about the line by more than their uncertainties; the
     uncertainty of their mean is then widened by that scatter (Birge ratio).
     """
-    used = [one for one in checks if one.used]
-    references = sorted({one.reference_s for one in used})
+    used = [check for check in checks if check.used]
+    references = sorted({check.reference_s for check in used})
     count, unknown = len(used), len(references) + 1
-    if count < unknown or len({one.exposure_n_m for one in used}) < 2:
+    if count < unknown or len({check.exposure_n_m for check in used}) < 2:
         return WearRate(checks=count)
     import numpy as np  # only runs with checks pay for it
 
-    first = [next(one for one in used if one.reference_s == at) for at in references]
+    first = [next(check for check in used if check.reference_s == at) for at in references]
     volumes, covariance = _volumes(used, {one.reference_s: one for one in first})
     design = np.zeros((count, unknown))
     for i, one in enumerate(used):
@@ -80,24 +80,24 @@ def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
         return WearRate(checks=count)
     weights = np.linalg.inv(covariance)
     spread = np.linalg.inv(design.T @ weights @ design)
-    found = spread @ design.T @ weights @ volumes
-    off = volumes - design @ found
-    rate, variance = float(found[-1]), float(spread[-1, -1])
+    fitted = spread @ design.T @ weights @ volumes
+    off = volumes - design @ fitted
+    rate, variance = float(fitted[-1]), float(spread[-1, -1])
     if count > unknown:
         variance *= max(float(off @ weights @ off) / (count - unknown), 1.0)
-    relative = 0.01 * max(one.u_rate_percent for one in used)
+    relative = 0.01 * max(check.u_rate_percent for check in used)
     return WearRate(rate, hypot(sqrt(variance), relative * rate), count)
 
 
 def condition_wear(checks: Sequence[WearCheck], condition: int) -> ConditionWear | None:
-    """Return what a condition took off, from the check before it and the one after; None without both."""
-    used = [one for one in checks if one.used]
-    after = next((one for one in used if one.after == condition), None)
+    """Return the wear by a condition, from the check before it and the one after; None without both."""
+    used = [check for check in checks if check.used]
+    after = next((check for check in used if check.after == condition), None)
     if condition == NO_CONDITION or after is None:
         return None
     earlier = [
-        one for one in used
-        if one.before == condition and one.reference_s == after.reference_s and one.piece == after.piece
+        check for check in used
+        if check.before == condition and check.reference_s == after.reference_s and check.piece == after.piece
     ]  # fmt: skip
     if not earlier:
         return None
@@ -122,16 +122,16 @@ def _volumes(
     import numpy as np
 
     lost: list[float] = []
-    alone: list[float] = []
+    independent: list[float] = []
     growth: list[float] = []
-    for one in checks:
-        start = first[one.reference_s]
-        per_mm = _volume_per_mm(one)
-        lost.append(0.25 * pi * one.width_mm * (start.diameter_mm**2 - one.diameter_mm**2))
-        alone.append((per_mm * one.u_mm) ** 2)
-        growth.append(per_mm * one.u_growth_mm_k * (one.rubber_c - start.rubber_c))
+    for check in checks:
+        start = first[check.reference_s]
+        per_mm = _volume_per_mm(check)
+        lost.append(0.25 * pi * check.width_mm * (start.diameter_mm**2 - check.diameter_mm**2))
+        independent.append((per_mm * check.u_mm) ** 2)
+        growth.append(per_mm * check.u_growth_mm_k * (check.rubber_c - start.rubber_c))
     shared = np.array(growth)
-    return np.array(lost), np.diag(alone) + np.outer(shared, shared)
+    return np.array(lost), np.diag(independent) + np.outer(shared, shared)
 
 
 def _volume_per_mm(check: WearCheck) -> float:

@@ -13,12 +13,12 @@ NO_CONDITION = 0
 class WearCheck:
     """One check of a wheel's diameter.
 
-    ``method``: roll (the press's place under a light load) or person (a number in an answer). ``reference_s``: time of
-    the series' first check, rig seconds. ``before``, ``after``: the conditions that it lies between, 0 for none.
+    ``method``: roll (the press's position under a light load) or person (a number in an answer). ``reference_s``: time
+    of the series' first check, rig seconds. ``before``, ``after``: the conditions on either side, 0 for none.
     """
 
     piece: int
-    """What was checked."""
+    """Number of the checked piece."""
     method: str
     t_s: float
     reference_s: float
@@ -27,11 +27,11 @@ class WearCheck:
     diameter_mm: float
     """Cold, at the rig file's ``wear.reference``."""
     u_mm: float
-    """Standard uncertainty of the diameter, of this check by itself."""
+    """Standard uncertainty of the diameter, of this check alone."""
     rubber_c: float
-    """Mean temperature of the rubber: hub and surface by halves."""
+    """Mean temperature of the rubber: the average of hub and surface."""
     u_growth_mm_k: float
-    """Standard uncertainty of the growth of the diameter that was taken off."""
+    """Standard uncertainty of the correction for thermal growth of the diameter, per kelvin."""
     press_mm: float
     """Means over whole turns; NaN where a person measured."""
     load_n: float
@@ -43,6 +43,6 @@ class WearCheck:
     u_rate_percent: float
     """Standard uncertainty of a rate from exposure and width, relative."""
     used: int
-    """1; 0: not believed (larger than the check before, or no rubber left)."""
+    """1; 0: rejected (larger than the check before, or no rubber left)."""
     expected_mm: float = NAN
-    """The diameter that was reckoned with until then, cold; NaN in a record that does not say."""
+    """The diameter assumed until then, cold; NaN in a record without it."""

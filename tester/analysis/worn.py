@@ -1,10 +1,9 @@
-"""The diameter with which a condition was measured, and how well it is known: from the checks of the piece around it.
+"""The diameter during a condition, with its uncertainty, from the checks of the piece around it.
 
-Speeds are reckoned with a diameter that is believed: that of the last check, less what the believed wear rate has taken
-off since. A check before the condition and one after it show by how much that belief was off in between, in proportion
-to the distance slid. Without the one after, the rate that the piece's checks have shown says it, and where they have
-shown none, the whole of what is believed to be worn off is uncertain. A series of roll checks has no zero of its own:
-what its first one was off by, all of them are.
+Speeds are computed with an assumed diameter: that of the last check, less the wear since then at the rig file's rate. A
+check before the condition and one after it show the error of that assumption in between, in proportion to the distance
+slid. Without the one after, the rate from the piece's checks yields it, and without such a rate, the whole assumed wear
+is uncertain. A series of roll checks has no zero of its own: all of them share the error of the first.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from tester.analysis.wear_check import WearCheck
 
 @dataclass(frozen=True, slots=True)
 class Worn:
-    """A piece through its life: diameter when new, as it was last believed, mm; sliding by then, m; checks of it."""
+    """A piece through its life: diameter when new and as last assumed, mm; sliding by then, m; checks of it."""
 
     installed_mm: float
     last_mm: float
@@ -28,13 +27,13 @@ class Worn:
     checks: tuple[WearCheck, ...] = ()
 
     def size(self, at_m: float) -> Size:
-        """Return the diameter after so many metres of sliding, and its uncertainty by checks; NaN: at the end."""
+        """Return the diameter after ``at_m`` metres of sliding, and its uncertainty by checks; NaN: at the end."""
         at_m = at_m if isfinite(at_m) else self.last_m
-        used = [one for one in self.checks if one.used]
-        before = next((one for one in reversed(used) if one.sliding_m <= at_m), None)
+        used = [check for check in self.checks if check.used]
+        before = next((check for check in reversed(used) if check.sliding_m <= at_m), None)
         if before is None:
             return self._believed(at_m)
-        later = [one for one in used if one.sliding_m > at_m and one.reference_s == before.reference_s]
+        later = [check for check in used if check.sliding_m > at_m and check.reference_s == before.reference_s]
         if later:
             return self._between(before, later[0], at_m)
         loss_mm = self._loss(before)
@@ -64,18 +63,20 @@ class Worn:
         return hypot(self._begun_u(check), self._read_u({check: 1.0}))
 
     def _read_u(self, shares: dict[WearCheck, float]) -> float:
-        """Return what the readings of checks, by the share of each, add: roll checks are held against their first."""
-        found = dict(shares)
+        """Return the uncertainty from the readings of checks, by the share of each; roll checks are relative to their
+        first."""
+        weights = dict(shares)
         first = self._first(next(iter(shares)))
         if first.method == "roll":
-            found[first] = found.get(first, 0.0) - 1.0
-        return hypot(*(share * one.u_mm for one, share in found.items()))
+            weights[first] = weights.get(first, 0.0) - 1.0
+        return hypot(*(share * one.u_mm for one, share in weights.items()))
 
     def _first(self, check: WearCheck) -> WearCheck:
         return next(one for one in self.checks if one.used and one.reference_s == check.reference_s)
 
     def _begun_u(self, check: WearCheck) -> float:
-        """Return what is not known of the loss with which a check's series began, mm: a person's has its own zero."""
+        """Return the uncertainty of the loss at the start of a check's series, mm; 0 for a person, whose gauge has its
+        own zero."""
         first = self._first(check)
         if check.method != "roll":
             return 0.0
@@ -84,19 +85,19 @@ class Worn:
         if earlier:
             since_mm = begun_mm - self._loss(earlier[-1])
             return hypot(self._u(earlier[-1]), since_mm * self._rate_share())
-        found = wear_rate(used)
-        if not found.resolved:
+        rate = wear_rate(used)
+        if not rate.resolved:
             return abs(begun_mm)
         per_mm = 0.5 * pi * first.width_mm * self.installed_mm
-        by_rate_mm, u_mm = found.rate * first.exposure_n_m / per_mm, found.standard * first.exposure_n_m / per_mm
+        by_rate_mm, u_mm = rate.rate * first.exposure_n_m / per_mm, rate.standard * first.exposure_n_m / per_mm
         return hypot(by_rate_mm - begun_mm, u_mm)
 
     def _rate_share(self) -> float:
-        """Return the relative standard uncertainty of what wore off since a check: 1 where checks show no rate."""
-        found = wear_rate(self.checks)
-        return found.standard / found.rate if found.resolved else 1.0
+        """Return the relative standard uncertainty of the wear since a check: 1 where checks show no rate."""
+        rate = wear_rate(self.checks)
+        return rate.standard / rate.rate if rate.resolved else 1.0
 
 
 def _share(from_m: float, at_m: float, to_m: float) -> float:
-    """Return where a distance lies between two others, 0..1; 1 where they are none."""
+    """Return the position of a distance between two others, 0..1; 1 where they are equal."""
     return min(max((at_m - from_m) / (to_m - from_m), 0.0), 1.0) if to_m > from_m else 1.0

@@ -24,21 +24,21 @@ def errors(given: Errors | None) -> Json:
 
 
 def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> dict[str, Json]:
-    """Return what is known of the fit of a group; ``force``: with intervals that are not to be relied on."""
+    """Return the fit of a group; ``force``: with intervals that are not reliable."""
     law, sure = fit.law, force or not fit.silent
     table: Json = dict(law.table(fit.parameters)) if law.table is not None else None
     return {
         "group": fit.group,
         "conditions": len(fit.points),
         "parameters": {
-            one.name: {
+            parameter.name: {
                 "value": value,
-                "unit": one.unit,
-                "interval": None if not force and fit.why_no_interval(one.name) else interval(pair),
-                "no_interval": fit.why_no_interval(one.name),
-                "held": one.name in fit.held,
+                "unit": parameter.unit,
+                "interval": None if not force and fit.why_no_interval(parameter.name) else interval(pair),
+                "no_interval": fit.why_no_interval(parameter.name),
+                "held": parameter.name in fit.held,
             }
-            for one, value, pair in zip(law.parameters, fit.parameters, fit.intervals, strict=True)
+            for parameter, value, pair in zip(law.parameters, fit.parameters, fit.intervals, strict=True)
         },
         "table": table,
         "condition_number": finite(fit.condition_number),
@@ -50,9 +50,9 @@ def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> d
         "residuals": {
             variable.name: [
                 {"value": variable.scale * one.value, "unit": variable.unit, "mean": one.mean, "count": one.count}
-                for one in found
+                for one in residual
             ]
-            for variable, found in zip(law.variables, fit.residuals, strict=True)
+            for variable, residual in zip(law.variables, fit.residuals, strict=True)
         },
         "lack_of_fit": _lack(fit),
         "impossible": {**fit.impossible},
@@ -85,7 +85,7 @@ def _lack(fit: GroupFit) -> dict[str, Json]:
         "repeats": finite(below.repeats) if below is not None else None,
         "own": finite(below.own) if below is not None else None,
         "between_conditions": finite(below.between) if below is not None else None,
-        "tests": [{"name": one.name, "p": one.p, "failed": one.failed} for one in lack.tests],
+        "tests": [{"name": test.name, "p": test.p, "failed": test.failed} for test in lack.tests],
         "visible": finite(lack.visible),
     }
 
@@ -96,7 +96,7 @@ def table(given: PublishedTable) -> dict[str, Json]:
         "title": given.title,
         "lines": [_line(line) for line in given.lines],
         "compared": {how: [_line(line) for line in lines] for how, lines in given.compared.items()},
-        "claims": [{"said": one.said, "found": one.found} for one in given.claims],
+        "claims": [{"said": claim.said, "found": claim.found} for claim in given.claims],
         "missed": [*given.missed],
     }
 

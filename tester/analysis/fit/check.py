@@ -1,4 +1,4 @@
-"""Whether conditions can tell a law's parameters, before any search; how large the errors of a law are."""
+"""Whether conditions determine a law's parameters, before any search; the size of a law's errors."""
 
 from __future__ import annotations
 
@@ -10,32 +10,33 @@ from typing import Final
 from tester.analysis.fit.law import NAN, FitError, FitPoint, Law, LawParameter, Variable
 
 SPARE: Final = 3
-"""Conditions beyond the number of parameters without which residuals say nothing [A]."""
+"""Conditions beyond the number of parameters without which residuals carry no information [A]."""
 NEAR, FAR = 0.05, 0.10
 """Relative errors within which rows are counted: the paper claims the first."""
 
 
 def levels(points: Sequence[FitPoint], variable: int) -> list[float]:
     """Return the nominal values of a variable, ascending."""
-    return sorted({one.nominal[variable] for one in points})
+    return sorted({point.nominal[variable] for point in points})
 
 
 def place_of(law: Law, name: str) -> int:
     """Return the place of a law's variable; raises KeyError."""
-    places = {one.name: i for i, one in enumerate(law.variables)}
+    places = {variable.name: i for i, variable in enumerate(law.variables)}
     return places[name]
 
 
 def refuse(law: Law, group: str, points: Sequence[FitPoint], held: Mapping[str, float]) -> None:
-    """Raise FitError where the conditions of a group cannot tell a law's free parameters; it says what would do."""
-    free = [one for one in law.parameters if one.name not in held]
+    """Raise FitError where the conditions of a group cannot determine a law's free parameters; the message names a
+    remedy."""
+    free = [parameter for parameter in law.parameters if parameter.name not in held]
     if not free:
         raise FitError(f"{group}: all parameters of the law {law.name} are held: there is nothing to fit")
     for needed, names in _needs(free).items():
         variable = law.variables[place_of(law, needed[0])]
-        found = levels(points, place_of(law, needed[0]))
-        if len(found) < needed[1]:
-            raise FitError(_too_few(group, variable, needed[1], found, names))
+        values = levels(points, place_of(law, needed[0]))
+        if len(values) < needed[1]:
+            raise FitError(_too_few(group, variable, needed[1], values, names))
     least = len(free) + SPARE
     if len(points) < least:
         raise FitError(
@@ -45,11 +46,11 @@ def refuse(law: Law, group: str, points: Sequence[FitPoint], held: Mapping[str, 
 
 
 def _needs(free: Sequence[LawParameter]) -> dict[tuple[str, int], list[str]]:
-    found: dict[tuple[str, int], list[str]] = {}
-    for one in free:
-        if one.levels is not None:
-            found.setdefault(one.levels, []).append(one.name)
-    return found
+    by_need: dict[tuple[str, int], list[str]] = {}
+    for law_parameter in free:
+        if law_parameter.levels is not None:
+            by_need.setdefault(law_parameter.levels, []).append(law_parameter.name)
+    return by_need
 
 
 def _too_few(group: str, variable: Variable, needed: int, found: Sequence[float], names: Sequence[str]) -> str:
@@ -75,7 +76,7 @@ class Errors:
 
 
 def errors_of(predicted: Sequence[float], measured: Sequence[float]) -> Errors:
-    """Return how far predictions are off; of no rows NaN."""
+    """Return relative errors of predictions; NaN for no rows."""
     off = [abs(p / m - 1.0) for p, m in zip(predicted, measured, strict=True)]
     if not off:
         return Errors(0, NAN, NAN, NAN, 0, 0)

@@ -1,4 +1,4 @@
-"""The joint fit of one group: all parameters from all conditions at once, and what can be said of them."""
+"""The joint fit of one group: all parameters from all conditions at once, with intervals and verdicts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 OPEN: Final = 1e6
-"""Condition number from which on the data leave a combination of parameters open [A]: they are given to six digits."""
+"""Condition number above which the data leave a combination of parameters open [A]: they carry six digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +37,11 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class GroupFit:
-    """A fit: parameters (natural, in the law's order) with their 95 % intervals, and how good it is.
+    """A fit: parameters (natural, in the law's order) with their 95 % intervals, and its quality.
 
-    By the name of a parameter: ``impossible`` is why it cannot be what was fitted, ``heated`` why its effect is not
-    distinguishable from that of the contact's own heat. ``silent`` is why no interval is to be relied on.
-    ``cells_kept``: how many cells could not be left out.
+    By the name of a parameter: ``impossible`` is why it cannot have the fitted value, ``heated`` why its effect cannot
+    be separated from that of the contact's own heat. ``silent`` is why no interval is reliable. ``cells_kept``: how
+    many cells could not be left out.
     """
 
     law: Law
@@ -66,7 +66,7 @@ class GroupFit:
 
     @property
     def silent(self) -> str:
-        """Return why no interval of this fit is to be relied on, "" where some are."""
+        """Return why no interval of this fit is reliable, "" where some are."""
         if self.lack.shown is None:
             return "nothing is known of the repeatability: no repeats, and none declared"
         if self.lack.shown:
@@ -75,23 +75,23 @@ class GroupFit:
 
     @property
     def sound(self) -> bool:
-        """Return whether the law describes the conditions, as far as they can tell, with parameters that a rubber on a
-        surface can have."""
+        """Return whether the law describes the conditions, as far as they can resolve it, with parameters that are
+        possible for a rubber on a surface."""
         return not self.lack.shown and not self.impossible
 
     def why_no_interval(self, name: str) -> str:
-        """Return why the interval of a parameter is not to be relied on, "" where it is."""
+        """Return why the interval of a parameter is not reliable, "" where it is."""
         return self.silent or self.heated.get(name, "")
 
     @property
     def beyond(self) -> list[str]:
         """Return why the law does not hold at some of the conditions."""
-        found = self.law.beyond
-        return [*found(self.parameters, [one.measured for one in self.points])] if found is not None else []
+        reasons = self.law.beyond
+        return [*reasons(self.parameters, [point.measured for point in self.points])] if reasons is not None else []
 
     @property
     def left_out(self) -> Errors:
-        """Errors of conditions in fits without their cell."""
+        """Return errors of conditions in fits without their cell."""
         return _errors(self.left_out_pairs)
 
     def predict(self, points: Sequence[FitPoint]) -> list[float]:
@@ -99,8 +99,8 @@ class GroupFit:
         return predict(self.law, self.parameters, points)
 
     def errors_on(self, points: Sequence[FitPoint]) -> Errors:
-        """Return how far the fit is off other conditions."""
-        return errors_of(self.predict(points), [one.value for one in points])
+        """Return the errors of the fit on other conditions."""
+        return errors_of(self.predict(points), [point.value for point in points])
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,14 +114,14 @@ class Overall:
 
 def overall(fits: Sequence[GroupFit], others: Mapping[str, Sequence[FitPoint]] | None) -> Overall:
     """Return the errors over all groups; ``others``: conditions that were not fitted, by group."""
-    own = [pair for fit in fits for pair in _pairs(fit, fit.points)]
-    left = [pair for fit in fits for pair in fit.left_out_pairs]
-    seen = [pair for fit in fits for pair in _pairs(fit, (others or {}).get(fit.group, ()))]
-    return Overall(_errors(own), _errors(left), _errors(seen) if others is not None else None)
+    fitted = [pair for fit in fits for pair in _pairs(fit, fit.points)]
+    left_out = [pair for fit in fits for pair in fit.left_out_pairs]
+    others_seen = [pair for fit in fits for pair in _pairs(fit, (others or {}).get(fit.group, ()))]
+    return Overall(_errors(fitted), _errors(left_out), _errors(others_seen) if others is not None else None)
 
 
 def _pairs(fit: GroupFit, points: Sequence[FitPoint]) -> list[tuple[float, float]]:
-    return [(value, one.value) for value, one in zip(fit.predict(points), points, strict=True)]
+    return [(value, point.value) for value, point in zip(fit.predict(points), points, strict=True)]
 
 
 def _errors(pairs: Sequence[tuple[float, float]]) -> Errors:
@@ -132,7 +132,7 @@ def predict(law: Law, parameters: Sequence[float], points: Sequence[FitPoint]) -
     """Return a law's coefficients of conditions, at their measured values."""
     if not points:
         return []
-    x = np.array([one.measured for one in points], dtype=np.float64)
+    x = np.array([point.measured for point in points], dtype=np.float64)
     return [float(value) for value in law.value(np.array(parameters, dtype=np.float64), x)]
 
 
@@ -146,7 +146,7 @@ def fit_group(
     count: int = RESAMPLES,
     seed: int = SEED,
 ) -> GroupFit:
-    """Fit a law to the conditions of a group; raises FitError where that cannot be done, MissingExtraError.
+    """Fit a law to the conditions of a group; raises FitError where that is impossible, and MissingExtraError.
 
     ``cells``: places of the variables that make a cell (``without_cells``). ``held``: parameters that are not fitted.
     """
@@ -157,7 +157,7 @@ def fit_group(
     intervals = tuple(resamples.interval(resamples.parameters[:, i]) for i in range(len(parameters)))
     left_out, kept = without_cells(problem, fitted, cells)
     residual = problem.y - np.log(problem.law.value(problem.natural(fitted), problem.x))
-    measured = [one.value for one in points]
+    measured = [point.value for point in points]
     trends = trends_of(law, points, parameters, resamples)
     lack = lack_of(problem, fitted)
     known = intervals if lack.denominator is not None else ()
@@ -185,30 +185,30 @@ def fit_group(
 def _impossible(
     law: Law, held: Collection[str], parameters: Sequence[float], intervals: Sequence[Interval]
 ) -> dict[str, str]:
-    """Return, by name, why parameters cannot be what was fitted: they, or an end of their interval where there is one,
-    leave the band.
+    """Return, by name, why parameters cannot have the fitted value: it, or an end of its interval, lies outside the
+    band.
     """
-    found: dict[str, str] = {}
-    for i, (one, value) in enumerate(zip(law.parameters, parameters, strict=True)):
-        band = f"{one.band.low:.4g} to {one.band.high:.4g} {one.unit}".rstrip()
-        if one.name in held:
+    reasons: dict[str, str] = {}
+    for i, (parameter, value) in enumerate(zip(law.parameters, parameters, strict=True)):
+        band = f"{parameter.band.low:.4g} to {parameter.band.high:.4g} {parameter.unit}".rstrip()
+        if parameter.name in held:
             continue
-        if not one.band.holds(value):
-            found[one.name] = f"outside {band} ({one.band.source})"
-        elif intervals and not all(map(one.band.holds, intervals[i])):
-            found[one.name] = f"open beyond {band} ({one.band.source})"
-    return found
+        if not parameter.band.holds(value):
+            reasons[parameter.name] = f"outside {band} ({parameter.band.source})"
+        elif intervals and not all(map(parameter.band.holds, intervals[i])):
+            reasons[parameter.name] = f"open beyond {band} ({parameter.band.source})"
+    return reasons
 
 
 def _heated(law: Law, trends: Trends) -> dict[str, str]:
-    """Return, by name, why the effects that parameters stand for are not told from that of the contact's own heat."""
+    """Return, by name, why the effects of parameters cannot be separated from that of the contact's own heat."""
     by = {one.variable.name: one.own_heat for one in trends.each if one.own_heat}
-    named = [(one.name, one.levels[0]) for one in law.parameters if one.levels is not None]
+    named = [(parameter.name, parameter.levels[0]) for parameter in law.parameters if parameter.levels is not None]
     return {name: f"{variable}: {by[variable]}" for name, variable in named if variable in by}
 
 
 def fit_only(law: Law, group: str, points: Sequence[FitPoint]) -> tuple[float, ...]:
-    """Return the parameters of ``fit_group`` alone, without resamples; raises as that does."""
+    """Return the parameters of ``fit_group`` alone, without resamples; raises the same errors."""
     problem, fitted = _searched(law, group, points, {})
     return tuple(float(value) for value in problem.natural(fitted))
 
@@ -216,14 +216,14 @@ def fit_only(law: Law, group: str, points: Sequence[FitPoint]) -> tuple[float, .
 def _searched(
     law: Law, group: str, points: Sequence[FitPoint], held: Mapping[str, float]
 ) -> tuple[FitProblem, Array]:
-    """Return the problem with its weights, and what fits best."""
+    """Return the problem with its weights, and the best fit."""
     problem = FitProblem(law, points, held)
     refuse(law, group, points, held)
-    return problem, solve(problem, [*law.published.values(), [one.start for one in law.parameters]])
+    return problem, solve(problem, [*law.published.values(), [parameter.start for parameter in law.parameters]])
 
 
 def _condition_number(group: str, problem: FitProblem, fitted: Array) -> float:
-    """Return that of the derivatives, each scaled to length 1; raises FitError where it leaves parameters open."""
+    """Return the condition number of the derivatives, each scaled to length 1; raises FitError above ``OPEN``."""
     prior = np.zeros(problem.priors)
     jacobian = problem.jacobian(fitted, problem.y, prior)[: len(problem.points), : len(problem.free)]
     lengths = np.linalg.norm(jacobian, axis=0)
@@ -244,8 +244,8 @@ def _condition_number(group: str, problem: FitProblem, fitted: Array) -> float:
 
 
 def _by_level(points: Sequence[FitPoint], residual: Array, variable: int) -> tuple[Level, ...]:
-    found: list[Level] = []
+    levels_found: list[Level] = []
     for value in levels(points, variable):
-        own = [float(r) for one, r in zip(points, residual, strict=True) if one.nominal[variable] == value]
-        found.append(Level(value, fmean(own), len(own)))
-    return tuple(found)
+        residuals = [float(r) for point, r in zip(points, residual, strict=True) if point.nominal[variable] == value]
+        levels_found.append(Level(value, fmean(residuals), len(residuals)))
+    return tuple(levels_found)

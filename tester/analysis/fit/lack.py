@@ -1,9 +1,9 @@
-"""Whether a law describes conditions: its residuals beside what is independent between conditions, and their order.
+"""Whether a law describes conditions: the size of its residuals against independent scatter, and their order.
 
 An F test compares the residuals with the repeatability and the scatter between conditions. Runs tests look, for each
 variable, along every line of conditions that differ in it alone: residuals of a law of the wrong form keep their sign.
-All tests are judged together, at ``LEVEL`` in all (Holm, Scand. J. Statist. 6 (1979) 65). What chance does is drawn:
-errors of the right law, less what the fit takes up of them.
+All tests are judged together, at ``LEVEL`` in all (Holm, Scand. J. Statist. 6 (1979) 65). Their distributions are
+simulated: errors of the right law, less the part that the fit absorbs.
 """
 
 from __future__ import annotations
@@ -27,24 +27,25 @@ if TYPE_CHECKING:
     Places = NDArray[np.intp]
 
 LEVEL: Final = 0.01
-"""Of all tests together: of a hundred right laws one is refused."""
+"""Of all tests together: one in a hundred right laws is refused."""
 DRAWS: Final = 9999
 SEED: Final = 0
 SEEN: Final = 0.95
-"""Share of cases in which a departure is seen that is said to be seen."""
+"""Detection rate that defines ``Lack.visible``."""
 NEGLIGIBLE: Final = 1e-3
-"""Residual of ln mu whose sign says nothing: a law that is right within 0.1 % is right for any use [A]."""
+"""Residual of ln mu too small for its sign to count: a law within 0.1 % is right for any use [A]."""
 _SIZE: Final = "size of the residuals"
 _LONGEST: Final = 1e3
-"""Length of a departure, in standard deviations, beyond which none is looked for."""
+"""Longest departure that is searched, in standard deviations."""
 
 
 @dataclass(frozen=True, slots=True)
 class Denominator:
-    """What is independent between conditions: standard deviations of ln mu, root mean squares over the conditions.
+    """Scatter that is independent between conditions: standard deviations of ln mu, root mean squares over the
+    conditions.
 
-    ``repeats`` of means of repeats, ``own`` of what else differs from condition to condition, ``between`` of what
-    conditions scatter beyond any smooth law; ``df``: degrees of freedom of all together.
+    ``repeats`` of means of repeats, ``own`` of further terms that differ between conditions, ``between`` of the scatter
+    of conditions beyond any smooth law; ``df``: degrees of freedom of all together.
     """
 
     repeats: float
@@ -55,30 +56,33 @@ class Denominator:
 
     @property
     def standard(self) -> float:
-        """Return all together."""
+        """Return the combined standard deviation."""
         return sqrt(self.repeats**2 + self.own**2 + self.between**2)
 
 
 def denominator_of(points: Sequence[FitPoint]) -> Denominator | None:
-    """Return what is independent between conditions; None where nothing is known of their repeats."""
-    known = [one for one in points if isfinite(one.type_a) and one.type_a > 0.0]
+    """Return the independent scatter of conditions; None where nothing is known of their repeats."""
+    known = [point for point in points if isfinite(point.type_a) and point.type_a > 0.0]
     if not known:
         return None
-    repeats = fmean(one.type_a**2 for one in known)
-    own, between = fmean(one.own**2 for one in points), fmean(one.between**2 for one in points)
-    sources = tuple(dict.fromkeys(one.source for one in points))
+    repeats = fmean(point.type_a**2 for point in known)
+    own_variance, between_variance = (
+        fmean(point.own**2 for point in points),
+        fmean(point.between**2 for point in points),
+    )
+    sources = tuple(dict.fromkeys(point.source for point in points))
     squares = 0.0  # Welch and Satterthwaite: conditions of a source share one estimate of their repeatability
     for source in sources:
-        of_source = [one for one in known if one.source == source]
-        df = max((one.df for one in of_source), default=inf)
-        squares += (sum(one.type_a**2 for one in of_source) / len(known)) ** 2 / df
-    df = (repeats + own + between) ** 2 / squares if squares else inf
-    return Denominator(sqrt(repeats), sqrt(own), sqrt(between), df, sources)
+        of_source = [point for point in known if point.source == source]
+        df = max((point.df for point in of_source), default=inf)
+        squares += (sum(point.type_a**2 for point in of_source) / len(known)) ** 2 / df
+    df = (repeats + own_variance + between_variance) ** 2 / squares if squares else inf
+    return Denominator(sqrt(repeats), sqrt(own_variance), sqrt(between_variance), df, sources)
 
 
 @dataclass(frozen=True, slots=True)
 class LackTest:
-    """One test: what it looks at, the share of right laws whose residuals look as bad or worse, and the verdict."""
+    """One test: its subject, the share of right laws whose residuals look as bad or worse, and the verdict."""
 
     name: str
     p: float
@@ -87,9 +91,9 @@ class LackTest:
 
 @dataclass(frozen=True, slots=True)
 class Lack:
-    """Whether a law describes the conditions. ``residual``: standard deviation of what it leaves of ln mu.
+    """Whether a law describes the conditions. ``residual``: standard deviation of the residuals of ln mu.
 
-    ``visible``: root mean square of a departure of ln mu, beyond what the parameters take up, that the F test sees in
+    ``visible``: root mean square of a departure of ln mu, beyond what the parameters absorb, that the F test detects in
     ``SEEN`` of cases.
     """
 
@@ -100,7 +104,7 @@ class Lack:
 
     @property
     def shown(self) -> bool | None:
-        """Return whether the law does not describe the conditions; None where that cannot be told."""
+        """Return whether the law fails to describe the conditions; None where that cannot be decided."""
         return any(test.failed for test in self.tests) if self.denominator is not None else None
 
 
@@ -122,7 +126,7 @@ def power_of(problem: FitProblem, fitted: Array, departure: Array, draws: int = 
     """Return the share of records in which a departure of ln mu from the law, shape (n,), is refused; NaN without a
     denominator.
 
-    It is that of the linearised law: what the parameters take up of the departure near the fit is not seen.
+    It is that of the linearised law: the part that the parameters absorb near the fit is invisible.
     """
     denominator = denominator_of(problem.points)
     if denominator is None:
@@ -133,7 +137,7 @@ def power_of(problem: FitProblem, fitted: Array, departure: Array, draws: int = 
 
 
 class _Chance:
-    """Residuals of the right law as they are drawn, in standard deviations, and what tests make of them."""
+    """Simulated residuals of the right law, in standard deviations, and their test statistics."""
 
     def __init__(self, problem: FitProblem, fitted: Array, denominator: Denominator, draws: int) -> None:
         random = np.random.default_rng(SEED)
@@ -157,7 +161,7 @@ class _Chance:
         """Return the tests of residuals, shape (n + priors,)."""
         f, runs = self._figures(residuals[None, :], np.ones(1))
         p = {_SIZE: self._share(int(np.sum(self._f >= f[0])))}
-        p |= {name: self._share(int(np.sum(self._runs[name] <= own[0]))) for name, own in runs.items()}
+        p |= {name: self._share(int(np.sum(self._runs[name] <= runs_of[0]))) for name, runs_of in runs.items()}
         failed = _holm([*p.values()])
         names = {name: name if name == _SIZE else f"signs along {name}" for name in p}
         return tuple(LackTest(names[name], one, bad) for (name, one), bad in zip(p.items(), failed, strict=True))
@@ -167,14 +171,14 @@ class _Chance:
         f, runs = self._figures(self._without(self._errors + departure), self._scale)
         sorted_f = np.sort(self._f)
         p: list[Array] = [(sorted_f.size - np.searchsorted(sorted_f, f, side="left") + 1) / (sorted_f.size + 1)]
-        for name, own in runs.items():
-            known = np.sort(self._runs[name])
-            p.append((np.searchsorted(known, own, side="right") + 1) / (known.size + 1))
+        for name, runs_of in runs.items():
+            sorted_runs = np.sort(self._runs[name])
+            p.append((np.searchsorted(sorted_runs, runs_of, side="right") + 1) / (sorted_runs.size + 1))
         smallest: Array = np.min(np.stack(p), axis=0)  # Holm refuses just where the smallest passes its level
         return float(np.mean(smallest <= LEVEL / len(p)))
 
     def visible(self, tests: int) -> float:
-        """Return the length of a departure, in standard deviations, that the F test sees in ``SEEN`` of cases."""
+        """Return the length of a departure, in standard deviations, that the F test detects in ``SEEN`` of cases."""
         critical = float(np.quantile(self._f, 1.0 - LEVEL / tests))
         random = np.random.default_rng(SEED)
         along, across = random.standard_normal(self._f.size), random.chisquare(max(self._df - 1, 1), self._f.size)
@@ -187,7 +191,7 @@ class _Chance:
         return high
 
     def _without(self, errors: Array) -> Array:
-        """Return what a fit leaves of errors, shape (draws, n + priors)."""
+        """Return the residuals of a fit to errors, shape (draws, n + priors)."""
         return errors - (errors @ self._taken) @ self._taken.T
 
     def _figures(self, residuals: Array, scale: Array) -> tuple[Array, dict[str, Array]]:
@@ -206,14 +210,14 @@ class _Chance:
 def neighbours(points: Sequence[FitPoint], variable: int) -> Places:
     """Return the places of conditions next to each other along a variable, all else equal, shape (pairs, 2)."""
     lines: dict[tuple[float, ...], list[int]] = {}
-    for place, one in enumerate(points):
-        rest = (value for i, value in enumerate(one.nominal) if i != variable)
+    for place, point in enumerate(points):
+        rest = (value for i, value in enumerate(point.nominal) if i != variable)
         lines.setdefault(tuple(rest), []).append(place)
-    found: list[tuple[int, int]] = []
+    pairs: list[tuple[int, int]] = []
     for line in lines.values():
         line.sort(key=lambda place: points[place].nominal[variable])
-        found += [(a, b) for a, b in pairwise(line) if points[a].nominal[variable] != points[b].nominal[variable]]
-    return np.array(found, dtype=np.intp).reshape(-1, 2)
+        pairs += [(a, b) for a, b in pairwise(line) if points[a].nominal[variable] != points[b].nominal[variable]]
+    return np.array(pairs, dtype=np.intp).reshape(-1, 2)
 
 
 def _holm(p: Sequence[float]) -> list[bool]:

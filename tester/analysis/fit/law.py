@@ -1,4 +1,4 @@
-"""What is fitted: measured conditions, and laws with their parameters."""
+"""Inputs of a fit: measured conditions, and laws with their parameters."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ NAN = float("nan")
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """What a law depends on: ``name``, as people read it, and its ``unit``.
+    """A variable of a law: ``name``, as people read it, and its ``unit``.
 
-    ``scale`` turns the law's own unit into that one. ``ratio``: an exponent of it means something (it has a true zero).
+    ``scale`` turns the law's own unit into that one. ``ratio``: it has a true zero, so an exponent of it is meaningful.
     """
 
     name: str
@@ -50,11 +50,11 @@ ANY = Band()
 
 @dataclass(frozen=True, slots=True)
 class LawParameter:
-    """A parameter of a law: ``start`` of the search, ``positive`` (its logarithm is searched), ``step`` of the search.
+    """A parameter of a law: ``start`` and ``step`` of the search, ``positive`` (the search is in its logarithm).
 
-    ``step`` is in units of what is searched. ``levels``: name of a variable, and of how many of its values a fit of
-    this parameter needs at least; it is the variable whose effect the parameter describes. ``band``: outside it the
-    parameter has no meaning for a rubber.
+    ``step`` is in units of the searched quantity. ``levels``: name of the variable whose effect the parameter
+    describes, and the least number of its values that a fit needs. ``band``: outside it the parameter has no meaning
+    for a rubber.
     """
 
     name: str
@@ -68,7 +68,7 @@ class LawParameter:
 
 @dataclass(frozen=True, slots=True)
 class Law:
-    """A law of friction with parameters to be fitted.
+    """A friction law with parameters to be fitted.
 
     ``value`` takes parameters, shape (..., p), and conditions, shape (..., n, k), k variables in the law's own units;
     it returns coefficients, shape (..., n). ``table`` returns the parameters in the form in which a publication prints
@@ -90,8 +90,8 @@ class Law:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the parameters."""
-        return tuple(one.name for one in self.parameters)
+        """Return the names of the parameters."""
+        return tuple(parameter.name for parameter in self.parameters)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Common:
     """An error that conditions of a source share: its name and standard uncertainty.
 
     ``variable``: place of the variable that it shifts (in the law's unit); None: it multiplies the coefficient, and
-    ``standard`` is relative. ``piece``: the one that was mounted whose conditions share it, 0: all of the source.
+    ``standard`` is relative. ``piece``: the mounting whose conditions share it, 0: all of the source.
     """
 
     name: str
@@ -110,10 +110,9 @@ class Common:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where conditions come from: a table, or a run with the errors that its conditions share.
+    """Origin of conditions: a table, or a run with the errors that its conditions share.
 
-    ``repeats`` and ``between``: from what it is known how repeats and how conditions scatter, for people; "" where that
-    is not known.
+    ``repeats`` and ``between``: the basis for the scatter of repeats and of conditions, in words; "" where unknown.
     """
 
     name: str
@@ -126,12 +125,12 @@ class Source:
 class FitPoint:
     """One measured condition, in the law's own units.
 
-    ``nominal`` values of the variables tell which conditions are of one cell, ``measured`` ones are fitted. ``value``:
-    the coefficient, above 0. ``type_a``: its standard uncertainty from repeats as a share of it, from an estimate with
+    ``nominal`` values of the variables sort conditions into cells, ``measured`` ones are fitted. ``value``: the
+    coefficient, above 0. ``type_a``: its standard uncertainty from repeats as a share of it, from an estimate with
     ``df`` degrees of freedom (infinite: declared); NaN where nothing is known of repeats. ``own``: standard
-    uncertainty, as a share, of what else differs from condition to condition. ``between``: standard deviation by which
-    a condition misses any smooth law, as a share; 0 where none is declared. ``piece``: what was mounted.
-    ``own_heat_k``: by how much friction warms the contact above the measured temperature, as the rig believes.
+    uncertainty, as a share, of further terms that differ between conditions. ``between``: standard deviation by which a
+    condition misses any smooth law, as a share; 0 where none is declared. ``piece``: number of the mounted piece.
+    ``own_heat_k``: estimated warming of the contact by friction above the measured temperature, by the rig file.
     """
 
     label: str
@@ -150,19 +149,19 @@ class FitPoint:
 
 @dataclass(frozen=True, slots=True)
 class Sourced:
-    """The conditions of a source, and what was left out of it, each with the reason."""
+    """The conditions of a source, and those left out of it, each with the reason."""
 
     points: tuple[FitPoint, ...]
     left_out: tuple[tuple[str, str], ...] = field(default=())
 
 
 class FitError(ValueError):
-    """Something cannot be fitted; the message says what, why, and what would do."""
+    """A fit is impossible; the message gives the quantity, the reason and a remedy."""
 
 
 def by_group(points: Iterable[FitPoint]) -> dict[str, list[FitPoint]]:
     """Return the points of each group, groups in order of their names, points in their own."""
-    found: dict[str, list[FitPoint]] = {}
+    groups: dict[str, list[FitPoint]] = {}
     for one in sorted(points, key=lambda point: point.group):
-        found.setdefault(one.group, []).append(one)
-    return found
+        groups.setdefault(one.group, []).append(one)
+    return groups

@@ -1,4 +1,4 @@
-"""What a kind says about fitting: its laws, its packaged conditions, how a run's conditions are read."""
+"""A kind's contribution to fitting: its laws, its packaged conditions, its reader of a run's conditions."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from tester.base.axes import Setpoint
 
 @dataclass(frozen=True, slots=True)
 class TableLine:
-    """A line of the table of a publication: a way to predict, its errors on fitted and on other conditions.
+    """A line of a publication's table: a method of prediction, its errors on fitted and on other conditions.
 
-    ``asked``: what it has to come to, in words, "" where nothing is asked; ``met``: whether it does.
+    ``asked``: the required result, in words, "" where nothing is required; ``met``: whether it is reached.
     """
 
     way: str
@@ -28,7 +28,7 @@ class TableLine:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """What a publication says of its own errors, and what its data say, in words."""
+    """A publication's statement about its own errors, and the result from its data, in words."""
 
     said: str
     found: str
@@ -36,9 +36,10 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class PublishedTable:
-    """A publication's claims held against its own data.
+    """A publication's claims compared with its own data.
 
-    ``compared``: lines with rows that are no evidence taken in, by what was done with them; nothing is asked of these.
+    ``compared``: lines that include rows which are no evidence, by the treatment of these rows; nothing is required of
+    them.
     """
 
     title: str
@@ -49,21 +50,21 @@ class PublishedTable:
 
     @property
     def missed(self) -> list[str]:
-        """Return the ways whose figures are not those that are asked."""
+        """Return the methods whose errors miss the required result."""
         return [line.way for line in self.lines if not line.met]
 
 
 class FitPart(Protocol):
-    """What a kind says about fitting."""
+    """A kind's contribution to fitting."""
 
     @property
     def laws(self) -> Mapping[str, Law]:
-        """Return the laws that can be fitted, by name, the one that is fitted unless told first."""
+        """Return the laws that can be fitted, by name, the default first."""
         ...
 
     @property
     def cells(self) -> tuple[int, ...]:
-        """Return the places of the variables that make a cell: one is left out at a time."""
+        """Return the places of the variables that make a cell: each cell is left out in turn."""
         ...
 
     @property
@@ -80,24 +81,24 @@ class FitPart(Protocol):
         ...
 
     def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
-        """Return a law as it is for a group; raises FitError.
+        """Return a law as it applies to a group; raises FitError.
 
-        A law that stands on moduli becomes that of the group's compound on ``surface`` ("": as the run says), with
-        ``figures`` that are not fitted, by name. Others are returned as they are, and take no figures.
+        A law based on moduli becomes that of the group's compound on ``surface`` ("": that of the run), with
+        ``figures`` that are not fitted, by name. Others are returned unchanged, and take no figures.
         """
         ...
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
-        """Return published coefficients, each with what it was held at, to be shown beside measured ones."""
+        """Return published coefficients, each with its setpoint, for display beside measured ones."""
         ...
 
     @property
     def published_laws(self) -> Sequence[str]:
-        """Return the names of laws with published parameters, those that ``law_at`` knows."""
+        """Return the names of laws with published parameters: those that ``law_at`` accepts."""
         ...
 
     def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
-        """Return why the value of a law with published parameters at a setpoint is to be taken with care."""
+        """Return caveats on the value of a law with published parameters at a setpoint."""
         ...
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
@@ -105,7 +106,7 @@ class FitPart(Protocol):
         ...
 
     def checked(self, sources: Sequence[str], validation: Sequence[str]) -> bool:
-        """Tell whether it is known what has to come out of a fit to these sources, seen on others."""
+        """Return whether the result of a fit to these sources, validated on others, is known in advance."""
         ...
 
     def published_table(self) -> PublishedTable:

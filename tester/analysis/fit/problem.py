@@ -17,14 +17,15 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 ROBUST: Final = 0.05
-"""Residual in ln mu from which on a condition counts less than its square (soft L1): 5 % [A]."""
+"""Residual in ln mu above which a condition counts less than its square (soft L1): 5 % [A]."""
 _LEAST_MU: Final = 1e-9
 _MOST_MU: Final = 1e9
-"""A law's value that is no coefficient, 0 or less or without bounds, is taken as this: it drives the search away."""
+"""Limits of a law's value: a value that is no coefficient, 0 or less or infinite, is clipped, which drives the search
+away."""
 _STEP: Final = 1e-6
-"""Of the differences for derivatives, in steps of the search."""
+"""Step of the differences for derivatives, in steps of the search."""
 _WIDEST: Final = 50.0
-"""Logarithm that no parameter reaches: keeps a search that has gone astray finite."""
+"""Largest logarithm of a parameter: keeps a search that has gone astray finite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,54 +38,55 @@ class _Shared:
 
 
 class FitProblem:
-    """Conditions as arrays, weights, and which parameters are free.
+    """Conditions as arrays, weights, and the free parameters.
 
-    What is searched, ``z``, has shape (..., q): the free parameters (logarithms of those that are positive), then
-    the errors common to a source, in units of their standard uncertainty. All is evaluated for many ``z`` at once.
+    The search vector ``z`` has shape (..., q): the free parameters (logarithms of those that are positive), then the
+    errors common to a source, in units of their standard uncertainty. Everything is evaluated for many ``z`` at once.
     """
 
     def __init__(self, law: Law, points: Sequence[FitPoint], held: Mapping[str, float]) -> None:
-        """``held``: parameters that are not fitted, by name. Raises FitError for one that is none, or out of range."""
+        """``held``: parameters that are not fitted, by name. Raises FitError for an unknown name, or a value out of
+        range."""
         self.law, self.points = law, tuple(points)
         unknown = sorted(set(held) - set(law.names))
         if unknown:
             raise FitError(f"no parameter {', '.join(unknown)} of the law {law.name} (it has {', '.join(law.names)})")
-        self.free = tuple(i for i, one in enumerate(law.parameters) if one.name not in held)
-        self._positive = np.array([one.positive for one in law.parameters])
+        self.free = tuple(i for i, parameter in enumerate(law.parameters) if parameter.name not in held)
+        self._positive = np.array([parameter.positive for parameter in law.parameters])
         for one in law.parameters:
             if one.positive and one.name in held and not held[one.name] > 0.0:
                 raise FitError(f"{one.name} is held at {held[one.name]:g} (expected above 0)")
-        self._held = np.array([held.get(one.name, 1.0) for one in law.parameters])
-        self.x: Array = np.array([one.measured for one in points], dtype=np.float64)
-        self.y: Array = np.log(np.array([one.value for one in points], dtype=np.float64))
+        self._held = np.array([held.get(parameter.name, 1.0) for parameter in law.parameters])
+        self.x: Array = np.array([point.measured for point in points], dtype=np.float64)
+        self.y: Array = np.log(np.array([point.value for point in points], dtype=np.float64))
         self.sigma: Array = _sigmas(points)
         """Standard deviation of each condition's ln mu from what is independent between conditions; 1 where unknown."""
         self.reference = sqrt(1.0 / float(np.mean(1.0 / self.sigma**2)))
-        """The one that stands for all."""
+        """The standard deviation that represents all conditions."""
         self.weight: Array = self.reference / self.sigma
         self._shared = _shared(points)
         self.steps: Array = np.array([*(law.parameters[i].step for i in self.free), *(1.0 for _ in self._shared)])
 
     @property
     def priors(self) -> int:
-        """How many errors common to a source are unknowns."""
+        """Return how many errors common to a source are unknowns."""
         return len(self._shared)
 
     def inward(self, natural: Sequence[float]) -> Array:
-        """Return what is searched, from a law's parameters; errors in common at 0."""
+        """Return the search vector of a law's parameters; errors in common at 0."""
         values = [log(natural[i]) if self._positive[i] else natural[i] for i in self.free]
         return np.array([*values, *(0.0 for _ in self._shared)])
 
     def natural(self, z: Array) -> Array:
         """Return the law's parameters, shape (..., p)."""
-        found = np.broadcast_to(self._held, (*z.shape[:-1], len(self._held))).copy()
+        parameters = np.broadcast_to(self._held, (*z.shape[:-1], len(self._held))).copy()
         for place, i in enumerate(self.free):
-            taken = z[..., place]
-            found[..., i] = np.exp(np.clip(taken, -_WIDEST, _WIDEST)) if self._positive[i] else taken
-        return found
+            searched = z[..., place]
+            parameters[..., i] = np.exp(np.clip(searched, -_WIDEST, _WIDEST)) if self._positive[i] else searched
+        return parameters
 
     def logarithms(self, z: Array) -> Array:
-        """Return ln mu that the law gives for the conditions, with the errors in common, shape (..., n)."""
+        """Return ln mu of the law for the conditions, with the errors in common, shape (..., n)."""
         x, gain = self.x, np.zeros(())
         for j, one in enumerate(self._shared):
             error = one.standard * z[..., len(self.free) + j, None] * one.rows
@@ -94,7 +96,7 @@ class FitProblem:
                 moved = np.zeros((*error.shape, x.shape[-1]))
                 moved[..., one.variable] = error
                 x = x + moved
-        with np.errstate(over="ignore", invalid="ignore"):  # of a search that goes astray for a step
+        with np.errstate(over="ignore", invalid="ignore"):  # a search that goes astray for a step
             value = np.nan_to_num(self.law.value(self.natural(z), x), nan=_LEAST_MU, posinf=_MOST_MU)
         return np.log(np.clip(value, _LEAST_MU, _MOST_MU)) + gain
 
@@ -118,18 +120,21 @@ class FitProblem:
 def _sigmas(points: Sequence[FitPoint]) -> Array:
     """Return the standard deviation of each condition's ln mu.
 
-    Of conditions without repeats, where others have some, the mean of those. Without any, all count 1.
+    Conditions without repeats get the mean of those with some. Without any, all count 1.
     """
-    known = [one.type_a**2 for one in points if one.type_a == one.type_a]
+    known = [point.type_a**2 for point in points if point.type_a == point.type_a]
     if not known:
         return np.ones(len(points))
     mean = sum(known) / len(known)
-    squares = [(one.type_a**2 if one.type_a == one.type_a else mean) + one.own**2 + one.between**2 for one in points]
+    squares = [
+        (point.type_a**2 if point.type_a == point.type_a else mean) + point.own**2 + point.between**2
+        for point in points
+    ]
     return np.sqrt(np.maximum(squares, 1e-12))
 
 
 def _shared(points: Sequence[FitPoint]) -> tuple[_Shared, ...]:
-    sources = dict.fromkeys(one.source for one in points)
+    sources = dict.fromkeys(point.source for point in points)
     return tuple(
         _Shared(_rows(points, source, common.piece), common.standard, common.variable)
         for source in sources
@@ -140,4 +145,4 @@ def _shared(points: Sequence[FitPoint]) -> tuple[_Shared, ...]:
 
 def _rows(points: Sequence[FitPoint], source: Source, piece: int) -> Array:
     """Return 1 for each condition of a source and, unless that is 0, of a piece, else 0."""
-    return np.array([float(one.source == source and piece in (0, one.piece)) for one in points])
+    return np.array([float(point.source == source and piece in (0, point.piece)) for point in points])

@@ -1,4 +1,4 @@
-"""What the fit of the same conditions measured again would have been, and fits without one cell."""
+"""Fits of resampled conditions, and fits with each cell left out."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 RESAMPLES: Final = 999
 SEED: Final = 0
-"""Of the resamples: the same conditions give the same intervals."""
+"""Fixed, so the same conditions give the same intervals."""
 TAILS: Final = (0.025, 0.975)
 """Of the intervals, 95 %."""
 
@@ -34,11 +34,11 @@ class Resamples:
 
     @property
     def share(self) -> float:
-        """Share of the resamples that could be fitted."""
+        """Return the share of the resamples that could be fitted."""
         return len(self.parameters) / self.drawn
 
     def interval(self, values: Array) -> tuple[float, float]:
-        """Return the 95 % interval of something worked out of each resample; NaN where there are none."""
+        """Return the 95 % interval of a quantity computed for each resample; NaN where there are none."""
         if not values.size:
             return float("nan"), float("nan")
         low, high = np.quantile(values, TAILS)
@@ -48,9 +48,9 @@ class Resamples:
 def resample(problem: FitProblem, fitted: Array, count: int = RESAMPLES, seed: int = SEED) -> Resamples:
     """Return fits to conditions drawn anew from the fit: each with an error of its own, and errors in common.
 
-    Own errors are normal, in proportion to ``problem.sigma`` and as large as the residuals are; how well so many
-    residuals tell that is drawn, too, which makes of percentiles what Student's t makes of standard deviations.
-    Resamples whose search does not end are left out.
+    Own errors are normal, in proportion to ``problem.sigma`` and of the size of the residuals. The uncertainty of that
+    size from so few residuals is drawn as well, which turns percentiles into what Student's t makes of standard
+    deviations. Resamples whose search does not converge are left out.
     """
     random = np.random.default_rng(seed)
     n, free = len(problem.points), len(problem.free)
@@ -59,38 +59,38 @@ def resample(problem: FitProblem, fitted: Array, count: int = RESAMPLES, seed: i
     spread = np.sqrt(residuals @ residuals / random.chisquare(df, (count, 1)))
     y = problem.logarithms(fitted) + spread * problem.sigma * random.standard_normal((count, n))
     prior = fitted[free:] + random.standard_normal((count, problem.priors))
-    found, ended = solve_many(problem, fitted, y, prior, np.ones((count, n)))
-    return Resamples(problem.natural(found[ended]), count)
+    solutions, ended = solve_many(problem, fitted, y, prior, np.ones((count, n)))
+    return Resamples(problem.natural(solutions[ended]), count)
 
 
 def without_cells(problem: FitProblem, fitted: Array, cells: Sequence[int]) -> tuple[list[tuple[int, float]], int]:
-    """Return place and predicted coefficient of each condition from a fit without its cell, and cells left out.
+    """Return place and predicted coefficient of each condition from a fit without its cell, and how many cells stay in.
 
-    A cell: the conditions with equal nominal values of the variables ``cells``. Left out are those without which the
-    parameters could not be told.
+    A cell: the conditions with equal nominal values of the variables ``cells``. It stays in where the others do not
+    determine the parameters.
     """
-    of = [tuple(one.nominal[i] for i in cells) for one in problem.points]
+    of = [tuple(point.nominal[i] for i in cells) for point in problem.points]
     keys = sorted(set(of))
     counts = np.array([[float(one != key) for one in of] for key in keys])
     able = _able(problem, counts)
     prior = np.zeros((int(able.sum()), problem.priors))
-    found, ended = solve_many(problem, fitted, problem.y, prior, counts[able])
-    kept = [key for key, fine in zip(keys, able, strict=True) if fine]
+    solutions, ended = solve_many(problem, fitted, problem.y, prior, counts[able])
+    left_out = [key for key, fine in zip(keys, able, strict=True) if fine]
     predicted: list[tuple[int, float]] = []
-    for key, parameters, fine in zip(kept, problem.natural(found), ended, strict=True):
+    for key, parameters, fine in zip(left_out, problem.natural(solutions), ended, strict=True):
         values = problem.law.value(parameters, problem.x)
         predicted += [(i, float(values[i])) for i, one in enumerate(of) if fine and one == key]
     return predicted, len(keys) - int(ended.sum())
 
 
 def _able(problem: FitProblem, counts: Array) -> Truths:
-    """Tell of each row of ``counts`` whether its conditions can tell the free parameters."""
+    """Return, for each row of ``counts``, whether its conditions determine the free parameters."""
     able = (counts > 0.0).sum(axis=-1) >= len(problem.free)
     for i in problem.free:
         needed = problem.law.parameters[i].levels
         if needed is None:
             continue
-        nominal = [one.nominal[place_of(problem.law, needed[0])] for one in problem.points]
+        nominal = [point.nominal[place_of(problem.law, needed[0])] for point in problem.points]
         kinds = sorted(set(nominal))
         member = np.array([[float(one == kind) for kind in kinds] for one in nominal])
         able &= ((counts @ member) > 0.0).sum(axis=-1) >= needed[1]

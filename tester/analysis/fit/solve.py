@@ -1,6 +1,6 @@
 """The search: SciPy's for the fit itself, and a batch of Levenberg-Marquardt steps for its hundreds of resamples.
 
-Both make the same sum least: soft L1 of the weighted residuals, ``2 f^2 (sqrt(1 + (r / f)^2) - 1)`` with f = ROBUST.
+Both minimise the same sum: soft L1 of the weighted residuals, ``2 f^2 (sqrt(1 + (r / f)^2) - 1)`` with f = ROBUST.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ if TYPE_CHECKING:
 MOST_EVALUATIONS: Final = 2000
 MOST_STEPS: Final = 60
 _SMALL: Final = 1e-9
-"""A step of the search, in its units, that changes nothing any more."""
+"""A step of the search, in its units, that counts as converged."""
 _DAMPING: Final = (1e-12, 1e8)
 """Range of the damping of the batch."""
 
 
 def least_squares_of(residuals: Callable[[Array], Array], start: Sequence[float]) -> Array:
-    """Return what makes the plain sum of squares of ``residuals`` least; raises MissingExtraError, FitError."""
-    found = _search()(residuals, np.array(start), x_scale="jac", xtol=1e-12, ftol=1e-12, max_nfev=MOST_EVALUATIONS)
-    if not found.success:
-        raise FitError(f"a search does not end: {found.message}")
-    return np.asarray(found.x, dtype=np.float64)
+    """Return the minimum of the plain sum of squares of ``residuals``; raises MissingExtraError, FitError."""
+    solution = _search()(residuals, np.array(start), x_scale="jac", xtol=1e-12, ftol=1e-12, max_nfev=MOST_EVALUATIONS)
+    if not solution.success:
+        raise FitError(f"a search does not end: {solution.message}")
+    return np.asarray(solution.x, dtype=np.float64)
 
 
 def _search() -> Any:
-    """Return SciPy's search; it is imported when a fit is asked for (docs/decisions/0031)."""
+    """Return SciPy's search, imported at the first fit (docs/decisions/0031)."""
     try:
         from scipy.optimize import least_squares  # pyright: ignore
     except ImportError as error:
@@ -46,15 +46,15 @@ def _search() -> Any:
 
 
 def solve(problem: FitProblem, starts: Sequence[Sequence[float]]) -> Array:
-    """Return what fits best, ``z`` of shape (q,), of searches from several sets of a law's parameters.
+    """Return the best fit, ``z`` of shape (q,), of searches from several sets of a law's parameters.
 
-    Raises MissingExtraError without SciPy, FitError where no search ends.
+    Raises MissingExtraError without SciPy, FitError where no search converges.
     """
     search = _search()
     prior = np.zeros(problem.priors)
     best: Any = None
     for start in starts:
-        found = search(
+        solution = search(
             problem.residuals,
             problem.inward(start),
             jac=problem.jacobian,
@@ -67,21 +67,21 @@ def solve(problem: FitProblem, starts: Sequence[Sequence[float]]) -> Array:
             gtol=1e-12,
             max_nfev=MOST_EVALUATIONS,
         )
-        if found.success and (best is None or found.cost < best.cost):
-            best = found
+        if solution.success and (best is None or solution.cost < best.cost):
+            best = solution
     if best is None:
         raise FitError(f"the search for the law {problem.law.name} does not end: the data leave its parameters open")
     return np.asarray(best.x, dtype=np.float64)
 
 
 def cost(residuals: Array, counts: Array) -> Array:
-    """Return the sum that is made least, for each of a batch of residuals."""
+    """Return the minimised sum for each of a batch of residuals."""
     z = (residuals / ROBUST) ** 2
     return np.sum(counts * 2.0 * ROBUST**2 * (np.sqrt(1.0 + z) - 1.0), axis=-1)
 
 
 def solve_many(problem: FitProblem, start: Array, y: Array, prior: Array, counts: Array) -> tuple[Array, Truths]:
-    """Return what fits best for each of a batch, shape (B, q), and whether its search has ended, shape (B,).
+    """Return the best fit of each of a batch, shape (B, q), and whether its search has converged, shape (B,).
 
     ``start``: (q,) or (B, q); ``y``: ln mu, (n,) or (B, n); ``prior``: (B, priors); ``counts``: how often a condition
     counts, (B, n).

@@ -26,7 +26,7 @@ def error_row(title: str, errors: Errors) -> str:
 
 
 def verdict_lines(fit: GroupFit) -> Iterator[str]:
-    """Yield whether the law describes the conditions of a group, and what that rests on."""
+    """Yield whether the law describes the conditions of a group, and the basis of that verdict."""
     lack = fit.lack
     residual = f"residual standard deviation {100.0 * lack.residual:.1f} %"
     if lack.denominator is None:
@@ -35,8 +35,10 @@ def verdict_lines(fit: GroupFit) -> Iterator[str]:
     else:
         yield f"{fit.group}: {verdict_words(fit)}"
         yield f"  {residual}, of what is independent between conditions {_independent(lack.denominator)}"
-        told = (f"{one.name} {'more than chance' if one.failed else 'chance'} (p {one.p:.2g})" for one in lack.tests)
-        yield f"  {', '.join(told)}; judged together at {100.0 * LEVEL:g} %"
+        outcomes = (
+            f"{test.name} {'more than chance' if test.failed else 'chance'} (p {test.p:.2g})" for test in lack.tests
+        )
+        yield f"  {', '.join(outcomes)}; judged together at {100.0 * LEVEL:g} %"
         if not lack.shown:
             yield (
                 f"  a departure of {100.0 * lack.visible:.1f} % (root mean square, beyond what the parameters take up)"
@@ -57,8 +59,8 @@ def verdict_words(fit: GroupFit) -> str:
 
 
 def _independent(found: Denominator) -> str:
-    repeats = dict.fromkeys(one.repeats for one in found.sources if one.repeats)
-    between = dict.fromkeys(one.between for one in found.sources if one.between)
+    repeats = dict.fromkeys(source.repeats for source in found.sources if source.repeats)
+    between = dict.fromkeys(source.between for source in found.sources if source.between)
     parts = [f"repeats {100.0 * found.repeats:.1f} %: {'; '.join(repeats) or 'as stated'}"]
     parts += [f"terms of the budget of each condition by itself {100.0 * found.own:.1f} %"] if found.own else []
     if found.between:
@@ -69,10 +71,10 @@ def _independent(found: Denominator) -> str:
 
 
 def group_lines(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> Iterator[str]:
-    """Yield what is known of the fit of a group; ``validation``: its errors on other conditions; ``force``: with
-    intervals that are not to be relied on.
+    """Yield the fit of a group; ``validation``: its errors on other conditions; ``force``: with intervals that are not
+    reliable.
     """
-    sources = ", ".join(dict.fromkeys(one.source.name for one in fit.points))
+    sources = ", ".join(dict.fromkeys(point.source.name for point in fit.points))
     yield f"{fit.group}: {len(fit.points)} conditions of {sources}, mu as measured"
     yield from _parameter_lines(fit, force)
     yield f"  {_HEADER}"
@@ -82,18 +84,18 @@ def group_lines(fit: GroupFit, validation: Errors | None, *, force: bool = False
     if validation is not None:
         yield f"  {error_row('validation', validation)}"
     yield "  mean residual, measured over fitted:"
-    for variable, found in zip(fit.law.variables, fit.residuals, strict=True):
-        told = ", ".join(f"{variable.words(one.value)} {100.0 * one.mean:+.1f} % ({one.count})" for one in found)
-        yield f"    {told}"
+    for variable, residual in zip(fit.law.variables, fit.residuals, strict=True):
+        means = ", ".join(f"{variable.words(one.value)} {100.0 * one.mean:+.1f} % ({one.count})" for one in residual)
+        yield f"    {means}"
 
 
 def _parameter_lines(fit: GroupFit, force: bool) -> Iterator[str]:
     yield "  parameter        value  95 % interval"
-    for one, value, interval in zip(fit.law.parameters, fit.parameters, fit.intervals, strict=True):
-        shown = "held" if one.name in fit.held else _interval(interval)
-        if one.name not in fit.held and fit.why_no_interval(one.name) and not force:
+    for parameter, value, interval in zip(fit.law.parameters, fit.parameters, fit.intervals, strict=True):
+        shown = "held" if parameter.name in fit.held else _interval(interval)
+        if parameter.name not in fit.held and fit.why_no_interval(parameter.name) and not force:
             shown = "none"
-        yield f"  {one.name:<6} {value:>15.6g}  {shown} {one.unit}".rstrip()
+        yield f"  {parameter.name:<6} {value:>15.6g}  {shown} {parameter.unit}".rstrip()
     if fit.law.table is not None:
         values = ", ".join(f"{name} {value:.5g}" for name, value in fit.law.table(fit.parameters).items())
         yield f"  {fit.law.table_title}: {values}"
@@ -107,7 +109,7 @@ def _cell_words(fit: GroupFit) -> str:
 
 
 def trend_lines(fits: Sequence[GroupFit], *, force: bool = False) -> Iterator[str]:
-    """Yield peaks, exponents and signs of the trends of all groups; ``force``: of a law that does not describe, too."""
+    """Yield peaks, exponents and signs of the trends of all groups; ``force``: even of a law that does not describe."""
     for fit in fits:
         at = ", ".join(v.words(x) for v, x in zip(fit.law.variables, fit.trends.at, strict=True))
         if fit.lack.shown and not force:
@@ -155,7 +157,7 @@ def _interval(interval: Interval) -> str:
 
 
 def law_line(law: Law) -> str:
-    """Return a law in a line."""
+    """Return a law as a line."""
     return f"{law.name}: {law.title}: {law.formula}"
 
 

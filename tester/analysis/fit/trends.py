@@ -1,4 +1,4 @@
-"""What a fitted law says in words that do not depend on its form: peaks, exponents, whether it rises or falls."""
+"""Trends of a fitted law that do not depend on its form: peaks, exponents, whether it rises or falls."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _GRID: Final = 401
-"""Points at which a peak is looked for, over the range of the data."""
+"""Points of the search for a peak, over the range of the data."""
 _EDGE: Final = 0.01
-"""Share of the range, at its ends, in which a largest value is no peak."""
+"""Share of the range, at each end, in which a largest value is no peak."""
 _SURE: Final = 0.95
-"""Share of resamples that has to agree."""
+"""Share of resamples that must agree."""
 _LEAST_MU: Final = 1e-9
-"""A resample's law may give no coefficient, 0 or less, where it has no conditions."""
+"""Floor of a law's value: a resample's law may yield 0 or less where it has no conditions."""
 _NEARBY: Final = 1e-4
 """Relative step for a slope."""
 
@@ -36,12 +36,12 @@ Interval = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Trend:
-    """How the coefficient goes with one variable, others as in ``Trends.at``.
+    """Trend of the coefficient with one variable, others as in ``Trends.at``.
 
     ``peak`` is where it is largest, NaN where that is at an end of the range; ``inside``: share of resamples with a
     peak inside. ``exponent``: d ln mu / d ln x there, or d ln mu / dx for a variable without a true zero. ``change``:
     ln of the coefficient at the upper end over the lower, ``agree``: share of resamples in which it has that sign.
-    ``own_heat``: why the change is not told from one by the contact's own heat, "" where it is.
+    ``own_heat``: why the change cannot be separated from an effect of the contact's own heat, "" where it can.
     """
 
     variable: Variable
@@ -58,7 +58,7 @@ class Trend:
 
     @property
     def word(self) -> str:
-        """Tell the sign of the trend over the range of the data."""
+        """Return the trend over the range of the data, in words."""
         if self.own_heat:
             return f"not resolved: {self.own_heat}"
         if self.inside > _SURE:
@@ -86,7 +86,7 @@ def trends_of(law: Law, points: Sequence[FitPoint], fitted: Sequence[float], res
 
 
 def _usual(points: Sequence[FitPoint], variable: int) -> float:
-    counted = Counter(one.nominal[variable] for one in points)
+    counted = Counter(point.nominal[variable] for point in points)
     most = max(counted.values())
     return min(value for value, count in counted.items() if count == most)
 
@@ -94,19 +94,19 @@ def _usual(points: Sequence[FitPoint], variable: int) -> float:
 def _trend(
     law: Law, points: Sequence[FitPoint], at: Sequence[float], i: int, fitted: Sequence[float], resamples: Resamples
 ) -> Trend:
-    found = levels(points, i)
-    low, high = found[0], found[-1]
-    everyone = np.concatenate([np.array([fitted]), resamples.parameters])
+    nominal = levels(points, i)
+    low, high = nominal[0], nominal[-1]
+    parameters = np.concatenate([np.array([fitted]), resamples.parameters])
 
     margin = _EDGE * (high - low)
     grid = np.tile(np.array(at), (_GRID, 1))
     grid[:, i] = np.linspace(low, high, _GRID)
-    curves = np.maximum(law.value(everyone, grid), _LEAST_MU)
+    curves = np.maximum(law.value(parameters, grid), _LEAST_MU)
     peaks = grid[np.argmax(curves, axis=-1), i]
     inside = [low < peak - margin and peak + margin < high for peak in map(float, peaks)]
     changes = [float(change) for change in np.log(curves[:, -1] / curves[:, 0])]
     agreeing = [change * changes[0] > 0.0 for change in changes[1:]]
-    slopes = _slopes(law, at, i, everyone)
+    slopes = _slopes(law, at, i, parameters)
     return Trend(
         variable=law.variables[i],
         low=low,
@@ -123,10 +123,10 @@ def _trend(
 
 
 def _own_heat(points: Sequence[FitPoint], variable: int, change: float) -> str:
-    """Return why a change of ln mu along a variable may be that of the contact's own heat, "" where it cannot be."""
-    found = levels(points, variable)
-    warmed = [[one.own_heat_k for one in points if one.nominal[variable] == level] for level in found]
-    means = [fmean(own) for own in warmed]
+    """Return why a change of ln mu along a variable may be due to the contact's own heat, "" where it cannot be."""
+    nominal = levels(points, variable)
+    warmed = [[point.own_heat_k for point in points if point.nominal[variable] == level] for level in nominal]
+    means = [fmean(warming) for warming in warmed]
     more_k = max(means) - min(means)
     could = 0.01 * PER_KELVIN_PERCENT * more_k
     if not more_k > 0.0 or change > could:

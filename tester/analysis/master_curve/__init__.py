@@ -1,6 +1,6 @@
-"""Master curves: friction over speeds and temperatures as one curve over aT v, and whether it is one.
+"""Master curves: friction over speeds and temperatures as one curve over aT v, and whether the data support it.
 
-Grosch, Proc. Roy. Soc. A 274 (1963) 21, with the shift of Williams, Landel and Ferry (``sim.physics.wlf``). What is
-drawn is x = log10 v + log10 aT(T) - log10 aT(T_reference), v in m/s. Knows no machine: a kind hands conditions in, and
-says where friction heat spoils them (``tester.analysis.master_curve.part``).
+Grosch, Proc. Roy. Soc. A 274 (1963) 21, with the shift of Williams, Landel and Ferry (``sim.physics.wlf``). The
+abscissa is x = log10 v + log10 aT(T) - log10 aT(T_reference), v in m/s. Knows no machine: a kind supplies conditions,
+and marks those that friction heat spoils (``tester.analysis.master_curve.part``).
 """

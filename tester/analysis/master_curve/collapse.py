@@ -1,11 +1,11 @@
 """The reference temperature of the shift that brings conditions closest to one curve, with its interval.
 
 For a trial Ts, x = log10 v + log10 aT(T; Ts), and ln mu(x) is a cubic spline by least squares with knots at quantiles
-of x, as many as Akaike's criterion (with its correction for few data) asks for. Ts is where the residual is least: a
-grid, then a golden section. The interval is that of resampled residuals (and of what the residuals of a temperature
-have in common), with the thermometer's bias drawn beside: an error of all temperatures moves Ts by as much.
+of x; Akaike's criterion (corrected for few data) sets their number. Ts minimises the residual: a grid, then a golden
+section. The interval is that of resampled residuals (and of the common residual of each temperature), with the
+thermometer's bias drawn as well: an error common to all temperatures moves Ts by as much.
 
-Runs that come together have a factor each, held near 1 by its standard uncertainty.
+Several runs have a factor each, held near 1 by its standard uncertainty.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ if TYPE_CHECKING:
     Places = NDArray[np.intp]
 
 BELOW_K: Final = 100.0
-"""Ts is looked for from this far below the lowest temperature, K [A]; the constants are said to hold to Ts + 50 K."""
+"""Lower end of the search for Ts, K below the lowest temperature [A]; the constants are stated to hold to Ts + 50 K."""
 POLE_K: Final = 1.0
-"""... to this far from where the lowest temperature would be at the pole of the shift, K."""
+"""Upper end: this far from where the lowest temperature is at the pole of the shift, K."""
 GRID_K: Final = 4.0
 MOST_KNOTS: Final = 12
 """Interior knots: two peaks over twelve decades take about ten."""
 ROWS_A_KNOT: Final = 6
-"""Conditions for each knot at least [A]."""
+"""Least number of conditions for each knot [A]."""
 _LEAST_LN: Final = 1e-4
-"""A residual of ln mu below which a further knot is worth nothing."""
+"""A residual of ln mu below which a further knot brings nothing."""
 PILOT: Final = 0.02
-"""Scatter of ln mu by which the factors of several runs are weighed against their uncertainty [A]."""
+"""Scatter of ln mu that weighs the factors of several runs against their uncertainty [A]."""
 RESAMPLES: Final = 400
 _REACH: Final = 6.0
-"""Resamples look for Ts within so many standard uncertainties."""
+"""Range of the search for Ts in resamples, standard uncertainties."""
 _GOLDEN: Final = 0.5 * (sqrt(5.0) - 1.0)
 _STEP_K: Final = 0.01
 
@@ -56,7 +56,7 @@ class Curve:
     factors: Array
 
     def at(self, x: Array) -> Array:
-        """Return ln mu at x (at Ts), which is held within the knots."""
+        """Return ln mu at x (at Ts), clipped to the knots."""
         return np.asarray(basis(np.clip(x, self.knots[0], self.knots[-1]), self.knots) @ self.weights)
 
     def slope(self, x: Array) -> Array:
@@ -65,8 +65,8 @@ class Curve:
 
 
 class Drawn(NamedTuple):
-    """Sets drawn anew from a curve: ``y`` is ln mu with what is known of factors, shape (n + factors, B), ``ts_c``
-    where each collapses best, ``thermometer_k`` by how much its thermometer is off, both (B,).
+    """Sets drawn anew from a curve: ``y`` is ln mu, followed by the prior of the factors, shape (n + factors, B),
+    ``ts_c`` the Ts of each set, ``thermometer_k`` the error of its thermometer, both (B,).
     """
 
     y: Array
@@ -78,9 +78,9 @@ class Drawn(NamedTuple):
 class Collapse:
     """A set on one curve: ``x`` at Ts, ``residual`` of ln mu, shape (n,).
 
-    ``interval``: 95 % of Ts, degC, equal to Ts where that was given. ``u_fit_k``: its standard uncertainty without the
-    thermometer; ``u_factors_k``: what that would be if every temperature had a factor of its own, infinite where then
-    any Ts does as well. ``at_end``: the search ended at an end of its range.
+    ``interval``: 95 % of Ts, degC, equal to Ts where the caller fixed it. ``u_fit_k``: its standard uncertainty without
+    the thermometer; ``u_factors_k``: the same if every temperature had a factor of its own, infinite where any Ts then
+    fits as well. ``at_end``: the search ended at an end of its range.
     """
 
     ts_c: float
@@ -98,27 +98,27 @@ class Collapse:
 
     @property
     def parameters(self) -> int:
-        """How many numbers were fitted: of the spline, and Ts."""
+        """Return the number of fitted parameters: of the spline, and Ts."""
         return self.interior + 4 + self.searched
 
     @property
     def scatter(self) -> float:
-        """Standard deviation of ln mu about the curve."""
+        """Return the standard deviation of ln mu about the curve."""
         return sqrt(float(np.sum(self.residual**2)) / max(self.residual.size - self.parameters, 1))
 
     @property
     def scatter_rms(self) -> float:
-        """Root mean square of the residuals of ln mu."""
+        """Return the root mean square of the residuals of ln mu."""
         return sqrt(float(np.mean(self.residual**2)))
 
     @property
     def scatter_mu(self) -> float:
-        """Root mean square of what the coefficients are off the curve."""
+        """Return the root mean square distance of the coefficients from the curve."""
         mu = np.exp(self.of.log_mu)
         return sqrt(float(np.mean((mu - mu * np.exp(-self.residual)) ** 2)))
 
     def design(self) -> Array:
-        """Return the columns of the curve and of the sources' factors, as ``padded`` values go with them."""
+        """Return the columns of the curve and of the sources' factors, in rows as those of ``padded`` values."""
         return _columns(self.of, self.x, self.interior)
 
     def moved_by_ts(self) -> Array:
@@ -130,11 +130,11 @@ class Collapse:
 
 def shifts(celsius: Array, ts_c: float) -> Array:
     """Return log10 aT at temperatures, shape (n,). Raises PoleError."""
-    return np.array([log10_shift(float(one), ts_c) for one in celsius])
+    return np.array([log10_shift(float(temperature), ts_c) for temperature in celsius])
 
 
 def padded(of: MasterSet, values: Array) -> Array:
-    """Return values (n, ...) with zeros for what is known of the factors of several sources."""
+    """Return values (n, ...) with a zero for the prior of each source's factor, where there are several sources."""
     more = of.gains.size if of.gains.size > 1 else 0
     return np.concatenate([values, np.zeros((more, *values.shape[1:]))])
 
@@ -144,13 +144,13 @@ def _columns(of: MasterSet, x: Array, interior: int) -> Array:
     sources = of.gains.size
     if sources == 1:
         return splines
-    own = np.asarray(of.source[:, None] == np.arange(sources), dtype=np.float64)
-    held = np.diag(PILOT / np.maximum(of.gains, 1e-6))
-    return np.block([[splines, own], [np.zeros((sources, splines.shape[1])), held]])
+    of_source = np.asarray(of.source[:, None] == np.arange(sources), dtype=np.float64)
+    priors = np.diag(PILOT / np.maximum(of.gains, 1e-6))
+    return np.block([[splines, of_source], [np.zeros((sources, splines.shape[1])), priors]])
 
 
 def collapse(of: MasterSet, ts_c: float | None = None, resamples: int = RESAMPLES, seed: int = 0) -> Collapse:
-    """Return a set on one curve; ``ts_c``: of the shift, degC, None: it is looked for.
+    """Return a set on one curve; ``ts_c``: Ts of the shift, degC, None: it is searched.
 
     Raises MasterError for too few conditions, PoleError for a Ts that puts a temperature at the pole.
     """
@@ -167,8 +167,10 @@ def collapse(of: MasterSet, ts_c: float | None = None, resamples: int = RESAMPLE
         return float(np.sum(left_over(q, y) ** 2))
 
     trials = np.arange(low, high, GRID_K) if ts_c is None else np.array([ts_c])
-    found = [(_criterion(min_left, n, k), k, at) for k in range(most + 1) for min_left, at in [_least(left, trials, k)]]
-    _, interior, nearest_c = min(found)
+    candidates = [
+        (_criterion(min_left, n, k), k, at) for k in range(most + 1) for min_left, at in [_least(left, trials, k)]
+    ]
+    _, interior, nearest_c = min(candidates)
     best_c = nearest_c
     if ts_c is None:
         within = max(low, nearest_c - GRID_K), min(high, nearest_c + GRID_K)
@@ -176,14 +178,14 @@ def collapse(of: MasterSet, ts_c: float | None = None, resamples: int = RESAMPLE
     x = of.log_v + shifts(of.celsius, best_c)
     curve, residual = curve_through(of, x, interior, y)
     ends = min(best_c - low, high - best_c) < GRID_K
-    given = Collapse(
+    at_best = Collapse(
         best_c, ts_c is None, (best_c, best_c), 0.0, inf, ts_c is None and ends, interior, x, residual, curve, of
     )
-    return _with_interval(given, (low, high), resamples, seed)
+    return _with_interval(at_best, (low, high), resamples, seed)
 
 
 def curve_through(of: MasterSet, x: Array, interior: int, y: Array) -> tuple[Curve, Array]:
-    """Return the spline through ``y`` (``padded``) at x, with so many interior knots, and its residuals, shape (n,)."""
+    """Return the spline through ``y`` (``padded``) at x with ``interior`` knots, and its residuals, shape (n,)."""
     columns = _columns(of, x, interior)
     weights: Array = np.asarray(np.linalg.lstsq(columns, y, rcond=None)[0], dtype=np.float64)
     knots = quantile_knots(x, interior)
@@ -201,7 +203,7 @@ def _criterion(left: float, n: int, interior: int) -> float:
 
 
 def _golden(value: Callable[[float], float], low: float, high: float) -> float:
-    """Return where a function is least between two places, within 1 mK."""
+    """Return where a function has its minimum between two places, within 1 mK."""
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_a, at_b = value(a), value(b)
     while high - low > 1e-3:
@@ -217,7 +219,7 @@ def _golden(value: Callable[[float], float], low: float, high: float) -> float:
 
 
 def _with_interval(one: Collapse, bounds: tuple[float, float], resamples: int, seed: int) -> Collapse:
-    """Return a collapse with what is known of its Ts."""
+    """Return a collapse with the uncertainty of its Ts."""
     of, n = one.of, one.residual.size
     moved = padded(of, one.moved_by_ts())
     columns = one.design()
@@ -226,9 +228,9 @@ def _with_interval(one: Collapse, bounds: tuple[float, float], resamples: int, s
     u_factors_k = one.scatter / _length(left_over(orthonormal(factors), moved))
     random = np.random.default_rng(seed)
     spread = one.residual * sqrt(n / max(n - one.parameters, 1))
-    own = random.choice(spread - np.mean(spread), (n, resamples))
+    drawn_alone = random.choice(spread - np.mean(spread), (n, resamples))
     in_common = _between(one.residual, of) * random.standard_normal((len(of.blocks_c), resamples))
-    y = padded(of, (of.log_mu - one.residual)[:, None] + own + in_common[of.block])
+    y = padded(of, (of.log_mu - one.residual)[:, None] + drawn_alone + in_common[of.block])
     thermometer_k = of.thermometer_k * random.standard_normal(resamples)
     if not one.searched:
         drawn = Drawn(y, np.full(resamples, one.ts_c), thermometer_k)
@@ -236,11 +238,11 @@ def _with_interval(one: Collapse, bounds: tuple[float, float], resamples: int, s
     reach = min(max(_REACH * u_k, 0.2), BELOW_K)
     trials = np.linspace(max(bounds[0], one.ts_c - reach), min(bounds[1], one.ts_c + reach), 49)
     left = np.array([_left_of(of, float(at), one.interior, y) for at in trials])
-    found = _lowest(trials, left)
-    low, high = np.quantile(found + thermometer_k, [0.025, 0.975])
+    ts_drawn = _lowest(trials, left)
+    low, high = np.quantile(ts_drawn + thermometer_k, [0.025, 0.975])
     return replace(
-        one, interval=(float(low), float(high)), u_fit_k=float(np.std(found)), u_factors_k=u_factors_k,
-        drawn=Drawn(y, found, thermometer_k),
+        one, interval=(float(low), float(high)), u_fit_k=float(np.std(ts_drawn)), u_factors_k=u_factors_k,
+        drawn=Drawn(y, ts_drawn, thermometer_k),
     )  # fmt: skip
 
 
@@ -249,7 +251,7 @@ def _length(values: Array) -> float:
 
 
 def _between(residual: Array, of: MasterSet) -> float:
-    """Return the standard deviation of ln mu that conditions of a temperature have in common (analysis of variance)."""
+    """Return the standard deviation of ln mu common to the conditions of a temperature (analysis of variance)."""
     inside = of.in_block
     counts = np.sum(inside, axis=0)
     blocks, n = counts.size, residual.size
@@ -267,7 +269,7 @@ def _left_of(of: MasterSet, ts_c: float, interior: int, y: Array) -> Array:
 
 
 def _lowest(at: Array, values: Array) -> Array:
-    """Return where each column of ``values`` (m, B) is least, by a parabola through three of the places ``at`` (m,)."""
+    """Return the minimum of each column of ``values`` (m, B), by a parabola through three of the places ``at`` (m,)."""
     place = np.clip(np.argmin(values, axis=0), 1, at.size - 2)
     column: Places = np.arange(values.shape[1], dtype=np.intp)
     before, here, after = values[place - 1, column], values[place, column], values[place + 1, column]

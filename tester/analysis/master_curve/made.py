@@ -1,4 +1,4 @@
-"""A master curve with all that is said of it."""
+"""A master curve with its peaks, neighbours and verdict."""
 
 from __future__ import annotations
 
@@ -37,27 +37,27 @@ class Master:
     judged: MasterJudgement
     peaks: tuple[Peak, ...]
     bumps: int = 0
-    """Maxima of the curve that its scatter may have made."""
+    """Maxima of the curve that may be due to its scatter."""
     rules: tuple[Rule, ...] = ()
     glass_c: float | None = None
-    """Glass transition that the compound's file says."""
+    """Glass transition by the compound's file."""
 
     @property
     def points(self) -> tuple[MasterPoint, ...]:
-        """The conditions, in order of temperature and speed."""
+        """Return the conditions, in order of temperature and speed."""
         return self.collapse.of.points
 
     @property
     def back(self) -> float:
-        """log10 aT of the reference temperature at Ts: what x at Ts is more than x at the reference."""
+        """Return log10 aT of the reference temperature at Ts: x at Ts less x at the reference."""
         return float(shifts(np.array([self.reference_c]), self.collapse.ts_c)[0])
 
     def rows(self) -> tuple[MasterRow, ...]:
         """Return the rows of the table, in order of temperature and speed."""
-        one = self.collapse
+        collapsed = self.collapse
         return tuple(
             MasterRow(float(x) - self.back, point.mu, point.temperature_c, point.speed_m_s, float(off))
-            for x, off, point in zip(one.x, one.residual, self.points, strict=True)
+            for x, off, point in zip(collapsed.x, collapsed.residual, self.points, strict=True)
         )
 
 
@@ -69,16 +69,16 @@ def master_of(
     glass_c: float | None = None,
     resamples: int = RESAMPLES,
 ) -> Master:
-    """Return the master curve of conditions; ``ts_c``: of the shift, None: it is looked for; ``rubber``: its moduli;
+    """Return the master curve of conditions; ``ts_c``: Ts of the shift, None: it is searched; ``rubber``: its moduli;
     ``glass_c``: its glass transition, where they are known.
 
     Raises MasterError where there is none: too few conditions, a temperature beyond the pole of the shift.
     """
     try:
-        one = collapse(set_of(points), ts_c, resamples)
-        pairs = pairs_of(one)
-        peaks, bumps = peaks_of(one, reference_c)
+        collapsed = collapse(set_of(points), ts_c, resamples)
+        pairs = pairs_of(collapsed)
+        peaks, bumps = peaks_of(collapsed, reference_c)
         rules = rules_of(rubber.modulus, reference_c, peaks) if rubber is not None else ()
     except PoleError as error:
         raise MasterError(f"no shift: {error}") from error
-    return Master(reference_c, one, pairs, judge(one, pairs), peaks, bumps, rules, glass_c)
+    return Master(reference_c, collapsed, pairs, judge(collapsed, pairs), peaks, bumps, rules, glass_c)

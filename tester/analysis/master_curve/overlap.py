@@ -1,7 +1,7 @@
-"""Neighbouring temperatures by themselves: the shift that lays one on the other, whatever any law says.
+"""Neighbouring temperatures by themselves: the shift that lays one on the other, independent of any law.
 
-A cubic in log10 v goes through the ln mu of each temperature. The shift is where the mean square difference of two
-neighbours' cubics, over the decades that they then have in common, is least.
+A cubic in log10 v goes through the ln mu of each temperature. The shift minimises the mean square difference of two
+neighbours' cubics, over the decades that they have in common after it.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 CUBIC_SPEEDS: Final = 5
-"""Speeds of a temperature from which on it has a cubic of its own: one more than the cubic has numbers."""
+"""Least number of speeds for a cubic of a temperature's own: one more than the cubic has coefficients."""
 THIN_DECADES: Final = 1.0
-"""An overlap of less is thin [A]: a curve bends within a decade, and less shows no bend."""
+"""A shorter overlap is thin [A]: a curve bends within a decade, and less shows no bend."""
 THIN_SHIFT: Final = 0.3
-"""A free shift with a larger standard uncertainty says little, decades [A]."""
+"""A free shift with a larger standard uncertainty carries little information, decades [A]."""
 _COARSE, _FINE = 0.05, 0.005
 """Steps of the search, decades."""
 _PLACES: Final = 40
@@ -33,10 +33,10 @@ _PLACES: Final = 40
 
 @dataclass(frozen=True, slots=True)
 class TemperaturePair:
-    """Two neighbouring temperatures, degC; shifts of the warmer one against the colder one, decades.
+    """Two neighbouring temperatures, degC; shifts of the warmer against the colder, decades.
 
-    ``overlap``: decades of x that both have at the shift by WLF; ``rows``: conditions of the poorer one within it.
-    ``free`` and its standard uncertainty ``u``: NaN and infinite where no cubic goes through either.
+    ``overlap``: decades of x that both cover at the shift by WLF; ``rows``: conditions within it, of the temperature
+    with fewer. ``free`` and its standard uncertainty ``u``: NaN and infinite where no cubic goes through either.
     """
 
     colder_c: float
@@ -54,32 +54,32 @@ class TemperaturePair:
 
     @property
     def tied(self) -> bool:
-        """Tell whether anything at all lies side by side."""
+        """Return whether the two overlap at all."""
         return self.overlap > 0.0 and self.rows >= 2
 
     @property
     def thin(self) -> bool:
-        """Tell whether the two say little about each other."""
+        """Return whether the overlap is too thin for a useful shift."""
         return not (self.overlap >= THIN_DECADES and self.u <= THIN_SHIFT)
 
 
-def pairs_of(one: Collapse) -> tuple[TemperaturePair, ...]:
+def pairs_of(collapse: Collapse) -> tuple[TemperaturePair, ...]:
     """Return every two neighbouring temperatures of a collapsed set, from cold to warm."""
-    of = one.of
+    of = collapse.of
     at = np.array([float(np.mean(of.celsius[of.block == i])) for i in range(len(of.blocks_c))])
-    by_wlf = shifts(at, one.ts_c)
-    found: list[TemperaturePair] = []
+    by_wlf = shifts(at, collapse.ts_c)
+    pairs: list[TemperaturePair] = []
     for i in range(len(of.blocks_c) - 1):
-        cold, warm = one.x[of.block == i], one.x[of.block == i + 1]
+        cold, warm = collapse.x[of.block == i], collapse.x[of.block == i + 1]
         low, high = max(cold.min(), warm.min()), min(cold.max(), warm.max())
         rows = min(int(np.sum((x >= low - 1e-9) & (x <= high + 1e-9))) for x in (cold, warm)) if high > low else 0
-        free, u = _free(of, i, one.scatter)
-        found.append(
+        free, u = _free(of, i, collapse.scatter)
+        pairs.append(
             TemperaturePair(
                 of.blocks_c[i], of.blocks_c[i + 1], float(by_wlf[i + 1] - by_wlf[i]), float(high - low), rows, free, u
             )
         )
-    return tuple(found)
+    return tuple(pairs)
 
 
 def _free(of: MasterSet, i: int, scatter: float) -> tuple[float, float]:
@@ -102,9 +102,9 @@ def _free(of: MasterSet, i: int, scatter: float) -> tuple[float, float]:
         x = common(shift)
         return float(np.mean((cubics[0](x) - cubics[1](x - shift)) ** 2))
 
-    best = min((float(one) for one in np.arange(-reach, reach, _COARSE)), key=off)
+    best = min((float(trial) for trial in np.arange(-reach, reach, _COARSE)), key=off)
     close = best + np.arange(-_COARSE, _COARSE, _FINE)
-    shift = min((float(one) for one in close if abs(one) <= reach), key=off)
+    shift = min((float(trial) for trial in close if abs(trial) <= reach), key=off)
     x = common(shift)
     slope = sqrt(float(np.mean(cubics[0].deriv()(x) ** 2)))
     rows = (x[-1] - x[0]) / span * min(colder[0].size, warmer[0].size)

@@ -1,4 +1,4 @@
-"""What a kind says about master curves: conditions with speed and temperature, and which of them heat themselves."""
+"""A kind's contribution to master curves: conditions with speed and temperature, and those that heat themselves."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tester.analysis.master_curve.points import MasterRun
 
 
 class MasterPart(Protocol):
-    """What a kind says about master curves."""
+    """A kind's contribution to master curves."""
 
     def run(self, folder: Path) -> MasterRun:
         """Return the conditions of a run; raises StoreError where it cannot be read."""

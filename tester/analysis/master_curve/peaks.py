@@ -1,7 +1,7 @@
-"""Grosch's two rules for where friction has its maxima, from the compound's moduli, and the maxima of a master curve.
+"""Grosch's two rules for the maxima of friction, from the compound's moduli, and the maxima of a master curve.
 
-    v = 6 nm x omega(maximum of the loss modulus) / 2 pi     adhesion: the molecular jump
-    v = 150 um x omega(maximum of the loss factor) / 2 pi    deformation: the spacing of the abrasive's grit
+  v = 6 nm x omega(maximum of the loss modulus) / 2 pi     adhesion: the molecular jump
+  v = 150 um x omega(maximum of the loss factor) / 2 pi    deformation: the spacing of the abrasive's grit
 
 Proc. Roy. Soc. A 274 (1963) 21; lengths as paper S prints them (Sharp, Gruber, Fina: circuit racing, track texture,
 temperature and rubber friction), frequencies in rad/s at the temperature of the master curve.
@@ -27,19 +27,20 @@ if TYPE_CHECKING:
 JUMP_M: Final = 6e-9
 GRIT_M: Final = 150e-6
 DECADES: Final = (-6, 14)
-"""Powers of ten of rad/s between which maxima of the moduli are looked for."""
+"""Powers of ten of rad/s that bound the search for maxima of the moduli."""
 A_DECADE: Final = 50
 PROMINENT: Final = 0.02
 """A maximum of the curve counts where ln mu falls by more than this on both sides [A]."""
 PLACES: Final = 1000
 DRAWN: Final = 200
-"""Sets drawn anew in which a maximum is looked for again."""
+"""Sets drawn anew in which each maximum is searched again."""
 FINER: Final = 4
-"""Knots more with which it is seen how far the spline moves a maximum [A]."""
+"""Additional knots of the finer spline that shows how far smoothing moves a maximum [A]."""
 SURE: Final = 0.95
-"""Share of them that has to have it."""
+"""Share of the drawn sets that must have the maximum."""
 REACH_DECADES: Final = 1.0
-"""Within so much of the one maximum of a curve a maximum counts as the same [A]; of several, half their distance."""
+"""Distance within which a maximum counts as the same, for a curve's only maximum [A]; of several, half their distance.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +54,9 @@ class Peak:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A rule's speed at the reference temperature, m/s; NaN where the moduli have no such maximum that is known.
+    """A rule's speed at the reference temperature, m/s; NaN where the known moduli have no such maximum.
 
-    ``nearest``: the maximum of the curve that is nearest, ``decades``: how far it is above the rule, both NaN for none.
+    ``nearest_m_s``: the nearest maximum of the curve, ``decades``: its distance above the rule, both NaN for none.
     """
 
     name: str
@@ -64,44 +65,50 @@ class Rule:
 
     @property
     def decades(self) -> float:
-        """Return by how many decades the curve's maximum stands above the rule."""
+        """Return the distance of the curve's maximum above the rule, decades."""
         return float(np.log10(self.nearest_m_s / self.speed_m_s))
 
 
-def peaks_of(one: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], int]:
-    """Return the maxima of a master curve that its scatter does not make, from slow to fast, and how many others there
-    are; raises PoleError for the reference temperature.
+def peaks_of(collapse: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], int]:
+    """Return the maxima of a master curve that are not due to its scatter, from slow to fast, and the number of the
+    others; raises PoleError for the reference temperature.
 
-    A maximum counts where ``SURE`` of the sets that are drawn anew have one there. Its interval reaches to where a
-    curve of ``FINER`` more knots has it: a spline moves a maximum by what it smooths away, which no drawing shows.
+    A maximum counts where ``SURE`` of the sets drawn anew have one there. Its interval reaches to its place on a curve
+    of ``FINER`` more knots: a spline moves a maximum by the detail that it smooths away, which resampling does not
+    show.
     """
-    back = _back(one.ts_c, reference_c)
-    found = [(x - back, mu) for x, mu in _maxima(one.curve, one.x)]
-    if not found or one.drawn is None:
-        return tuple(Peak(float(10.0**x), mu) for x, mu in found), 0
-    places = [x for x, _ in found]
-    again = [_maxima_again(one, i, reference_c) for i in range(min(DRAWN, one.drawn.ts_c.size))]
-    finer, _ = curve_through(one.of, one.x, min(one.interior + FINER, one.x.size // 3), padded(one.of, one.of.log_mu))
-    places_finer = [at - back for at, _ in _maxima(finer, one.x)]
+    back = _back(collapse.ts_c, reference_c)
+    maxima = [(x - back, mu) for x, mu in _maxima(collapse.curve, collapse.x)]
+    if not maxima or collapse.drawn is None:
+        return tuple(Peak(float(10.0**x), mu) for x, mu in maxima), 0
+    places = [x for x, _ in maxima]
+    again = [_maxima_again(collapse, i, reference_c) for i in range(min(DRAWN, collapse.drawn.ts_c.size))]
+    finer, _ = curve_through(
+        collapse.of,
+        collapse.x,
+        min(collapse.interior + FINER, collapse.x.size // 3),
+        padded(collapse.of, collapse.of.log_mu),
+    )
+    places_finer = [at - back for at, _ in _maxima(finer, collapse.x)]
     peaks: list[Peak] = []
-    for x, mu in found:
+    for x, mu in maxima:
         reach = min([0.5 * abs(x - other) for other in places if other != x], default=REACH_DECADES)
         near = [min(own, key=lambda at, x=x: abs(at - x)) for own in again if own]
-        kept = [at for at in near if abs(at - x) <= reach]
-        if len(kept) >= SURE * len(again):
+        same = [at for at in near if abs(at - x) <= reach]
+        if len(same) >= SURE * len(again):
             moved = min((at - x for at in places_finer if abs(at - x) <= reach), key=abs, default=0.0)
-            low, high = np.quantile(kept, [0.025, 0.975]) + np.array([min(moved, 0.0), max(moved, 0.0)])
+            low, high = np.quantile(same, [0.025, 0.975]) + np.array([min(moved, 0.0), max(moved, 0.0)])
             peaks.append(Peak(float(10.0**x), mu, (float(10.0**low), float(10.0**high))))
-    return tuple(peaks), len(found) - len(peaks)
+    return tuple(peaks), len(maxima) - len(peaks)
 
 
-def _maxima_again(one: Collapse, i: int, reference_c: float) -> list[float]:
-    """Return where the curve of a set that was drawn anew has maxima, x at the reference temperature."""
-    assert one.drawn is not None
-    ts_c = float(one.drawn.ts_c[i])
-    x = one.of.log_v + shifts(one.of.celsius, ts_c)
-    curve, _ = curve_through(one.of, x, one.interior, one.drawn.y[:, i])
-    back = _back(ts_c, reference_c - float(one.drawn.thermometer_k[i]))
+def _maxima_again(collapse: Collapse, i: int, reference_c: float) -> list[float]:
+    """Return the maxima of the curve of a set drawn anew, x at the reference temperature."""
+    assert collapse.drawn is not None
+    ts_c = float(collapse.drawn.ts_c[i])
+    x = collapse.of.log_v + shifts(collapse.of.celsius, ts_c)
+    curve, _ = curve_through(collapse.of, x, collapse.interior, collapse.drawn.y[:, i])
+    back = _back(ts_c, reference_c - float(collapse.drawn.thermometer_k[i]))
     return [at - back for at, _ in _maxima(curve, x)]
 
 
@@ -110,7 +117,7 @@ def _back(ts_c: float, reference_c: float) -> float:
 
 
 def _maxima(curve: Curve, over: Array) -> list[tuple[float, float]]:
-    """Return x and mu of the maxima of a curve within a range that are ``PROMINENT``."""
+    """Return x and mu of the ``PROMINENT`` maxima of a curve within a range."""
     x = np.linspace(float(np.min(over)), float(np.max(over)), PLACES)
     y = curve.at(x)
     return [
@@ -121,19 +128,19 @@ def _maxima(curve: Curve, over: Array) -> list[tuple[float, float]]:
 
 
 def _falls(y: Array) -> float:
-    """Return how far values fall from their first one before they rise above it."""
+    """Return how far values fall from the first before they rise above it."""
     above = np.flatnonzero(y > y[0])
     return float(y[0] - np.min(y[: above[0]] if above.size else y))
 
 
 def rules_of(modulus: ShearModulus, reference_c: float, peaks: tuple[Peak, ...]) -> tuple[Rule, ...]:
-    """Return Grosch's two rules for a compound, held against the maxima of a curve."""
+    """Return Grosch's two rules for a compound, compared with the maxima of a curve."""
     omega, storage, loss = _known(modulus, reference_c)
-    found = (
+    named = (
         ("6 nm x omega of the loss modulus' maximum / 2 pi", JUMP_M, loss),
         ("150 um x omega of the loss factor's maximum / 2 pi", GRIT_M, loss / storage if loss.size else loss),
     )
-    return tuple(_rule(name, length * _maximum(omega, values) / (2.0 * pi), peaks) for name, length, values in found)
+    return tuple(_rule(name, length * _maximum(omega, values) / (2.0 * pi), peaks) for name, length, values in named)
 
 
 def _rule(name: str, speed_m_s: float, peaks: tuple[Peak, ...]) -> Rule:
@@ -158,7 +165,7 @@ def _known(modulus: ShearModulus, celsius: float) -> tuple[Array, Array, Array]:
 
 
 def _maximum(omega: Array, values: Array) -> float:
-    """Return where values are greatest, by a parabola over log omega; NaN where that is an end of what is known."""
+    """Return where values are greatest, by a parabola over log omega; NaN where that is an end of the known range."""
     if values.size < 3:
         return nan
     i = int(np.argmax(values))

@@ -1,4 +1,4 @@
-"""What a master curve is made of: measured conditions, and the arrays that stand for them."""
+"""Inputs of a master curve: measured conditions, and their arrays."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 class MasterError(ValueError):
-    """No master curve can be made of conditions; the message says why, and what would do."""
+    """The conditions allow no master curve; the message gives the reason and a remedy."""
 
 
 @dataclass(frozen=True, slots=True)
 class MasterSource:
-    """A run: what its conditions share.
+    """A run, with the errors that its conditions share.
 
     ``gain``: standard uncertainty of a factor of all its coefficients, a share; ``thermometer_k``: of an error of all
     its temperatures.
@@ -34,9 +34,9 @@ class MasterSource:
 
 @dataclass(frozen=True, slots=True)
 class MasterPoint:
-    """One measured condition: ``speed_m_s`` and ``mu`` above 0, ``block_c`` is the temperature that was asked for.
+    """One measured condition: ``speed_m_s`` and ``mu`` above 0, ``block_c`` is the nominal temperature.
 
-    ``held``: what else was held, in words by the name of its axis; a master curve is of conditions that share it.
+    ``held``: the other setpoints, in words by the name of their axis; all conditions of a master curve share them.
     """
 
     label: str
@@ -51,9 +51,9 @@ class MasterPoint:
 
 @dataclass(frozen=True, slots=True)
 class MasterRun:
-    """The conditions of a run, what was left out of it with the reason, and why none of it may go on a master curve.
+    """The conditions of a run, those left out with the reason, and why the whole run is unsuitable.
 
-    ``refusal`` is "" for a run that may.
+    ``refusal`` is "" for a suitable run.
     """
 
     points: tuple[MasterPoint, ...]
@@ -75,7 +75,8 @@ class MasterSet:
     gains: Array
     """Standard uncertainty of the factor of each source, shape (sources,)."""
     thermometer_k: float
-    """Of an error of all temperatures; of several sources the largest, for one thermometer may have served all."""
+    """Standard uncertainty common to all temperatures; of several sources the largest, as they may share a thermometer.
+    """
 
     @property
     def in_block(self) -> Array:
@@ -87,17 +88,17 @@ def set_of(points: Sequence[MasterPoint]) -> MasterSet:
     """Return the arrays of conditions, in order of temperature and speed. Raises MasterError for none."""
     if not points:
         raise MasterError("no condition is left to make a master curve of")
-    ordered = tuple(sorted(points, key=lambda one: (one.block_c, one.speed_m_s)))
-    blocks = sorted({one.block_c for one in ordered})
-    sources = list(dict.fromkeys(one.source for one in ordered))
+    ordered = tuple(sorted(points, key=lambda condition: (condition.block_c, condition.speed_m_s)))
+    blocks = sorted({condition.block_c for condition in ordered})
+    sources = list(dict.fromkeys(condition.source for condition in ordered))
     return MasterSet(
         ordered,
-        np.log10(np.array([one.speed_m_s for one in ordered])),
-        np.array([one.temperature_c for one in ordered]),
-        np.log(np.array([one.mu for one in ordered])),
-        np.array([blocks.index(one.block_c) for one in ordered], dtype=np.intp),
+        np.log10(np.array([condition.speed_m_s for condition in ordered])),
+        np.array([condition.temperature_c for condition in ordered]),
+        np.log(np.array([condition.mu for condition in ordered])),
+        np.array([blocks.index(condition.block_c) for condition in ordered], dtype=np.intp),
         tuple(blocks),
-        np.array([sources.index(one.source) for one in ordered], dtype=np.intp),
-        np.array([one.gain for one in sources]),
-        max(one.thermometer_k for one in sources),
+        np.array([sources.index(condition.source) for condition in ordered], dtype=np.intp),
+        np.array([source.gain for source in sources]),
+        max(condition.thermometer_k for condition in sources),
     )

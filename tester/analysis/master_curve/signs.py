@@ -1,7 +1,7 @@
-"""What no shift can do: a coefficient that rises with speed and with temperature.
+"""Counts evidence against any shift: a coefficient that rises with speed and with temperature.
 
-On a master curve mu depends on aT v alone, and aT falls with temperature. Warming therefore does what slowing does:
-where mu rises with v it falls with T, and the other way round.
+On a master curve mu depends on aT v alone, and aT falls with temperature. Warming therefore acts as slowing does: where
+mu rises with v it falls with T, and the other way round.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from typing import Final
 from tester.analysis.master_curve.points import MasterPoint
 
 CLEAR: Final = 0.02
-"""Change of ln mu that counts: 2 % [A]."""
+"""Smallest change of ln mu that counts: 2 % [A]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Signs:
     """Cells of two neighbouring speeds and temperatures in which mu changes clearly with both.
 
-    ``same``: of these, in how many it changes the same way with both, which no master curve allows.
+    ``same``: cells in which it changes the same way with both, which no master curve allows.
     """
 
     cells: int
@@ -31,11 +31,11 @@ class Signs:
 
 
 def signs_of(points: Sequence[MasterPoint]) -> Signs:
-    """Return how often mu rises, or falls, with speed and with temperature alike; other axes and compounds apart."""
+    """Return how often mu rises, or falls, with both speed and temperature; other axes and compounds are kept apart."""
     grids: defaultdict[tuple[object, ...], dict[tuple[float, float], float]] = defaultdict(dict)
-    for one in points:
-        key = (one.compound, one.source.name, *sorted(one.held.items()))
-        grids[key][one.block_c, round(log(one.speed_m_s), 2)] = log(one.mu)
+    for point in points:
+        key = (point.compound, point.source.name, *sorted(point.held.items()))
+        grids[key][point.block_c, round(log(point.speed_m_s), 2)] = log(point.mu)
     cells = same = 0
     for grid in grids.values():
         celsius, speeds = (sorted({place[i] for place in grid}) for i in (0, 1))

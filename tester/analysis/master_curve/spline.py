@@ -1,4 +1,4 @@
-"""Cubic splines by least squares: their basis, and what a set of columns can show of measured values."""
+"""Cubic splines by least squares: their basis, and the part of measured values outside a set of columns."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 ORDER: Final = 4
-"""Of a cubic spline: its degree and one."""
+"""Order of a cubic spline: its degree and one."""
 _RANK: Final = 1e-9
-"""Share of the greatest singular value below which a column says nothing new."""
+"""Share of the greatest singular value below which a column is redundant."""
 
 
 def quantile_knots(x: Array, interior: int) -> Array:
@@ -40,15 +40,15 @@ def slopes(x: Array, knots: Array) -> Array:
 def _basis(x: Array, knots: Array, order: int) -> Array:
     last = int(np.flatnonzero(knots < knots[-1])[-1])
     place = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, last)
-    found = np.zeros((x.size, knots.size - 1))
-    found[np.arange(x.size), place] = 1.0
+    splines = np.zeros((x.size, knots.size - 1))
+    splines[np.arange(x.size), place] = 1.0
     for k in range(2, order + 1):
         width = knots[k - 1 :] - knots[: -(k - 1)]
         left, right = width[:-1], width[1:]
         first = (x[:, None] - knots[None, : -k]) / _above_zero(left) * (left > 0.0)
         second = (knots[None, k:] - x[:, None]) / _above_zero(right) * (right > 0.0)
-        found = first * found[:, :-1] + second * found[:, 1:]
-    return found
+        splines = first * splines[:, :-1] + second * splines[:, 1:]
+    return splines
 
 
 def _above_zero(width: Array) -> Array:
@@ -56,12 +56,12 @@ def _above_zero(width: Array) -> Array:
 
 
 def orthonormal(columns: Array) -> Array:
-    """Return an orthonormal basis of what columns (n, k) span, (n, rank): columns that say nothing new drop out."""
+    """Return an orthonormal basis of the span of columns (n, k), (n, rank): redundant columns drop out."""
     u, s, _ = np.linalg.svd(columns, full_matrices=False)
     kept = s > _RANK * s[0] if s.size and s[0] > 0.0 else np.zeros(s.shape, dtype=bool)
     return np.asarray(u[:, kept], dtype=np.float64)
 
 
 def left_over(q: Array, y: Array) -> Array:
-    """Return what an orthonormal basis (n, r) leaves of ``y``, shape (n,) or (n, B)."""
+    """Return the residual of ``y``, shape (n,) or (n, B), after projection on an orthonormal basis (n, r)."""
     return np.asarray(y - q @ (q.T @ y), dtype=np.float64)

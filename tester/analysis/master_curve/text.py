@@ -15,65 +15,64 @@ Plain = str | int | float | bool | None | list["Plain"] | dict[str, "Plain"]
 HEADER = "log10 aT v  mu as measured      degC        v /m/s  off curve %"
 
 
-def table_lines(one: Master) -> Iterator[str]:
-    """Yield the table: x at the reference temperature, what was measured, and how far mu is off the curve."""
+def table_lines(master: Master) -> Iterator[str]:
+    """Yield the table: x at the reference temperature, the measured values, and the distance of mu from the curve."""
     yield HEADER
-    for row in one.rows():
+    for row in master.rows():
         off = 100.0 * row.off
         yield f"{row.x:>10.4f} {row.mu:>15.4f} {row.temperature_c:>9.2f} {row.speed_m_s:>13.4g} {off:>+12.2f}"
 
 
-def csv_text(one: Master) -> str:
+def csv_text(master: Master) -> str:
     """Return the table as CSV with full precision, a header first."""
     lines = ["log10 aT v,mu as measured,Temperature /°C,Speed /m·s⁻¹,ln mu off the curve"]
-    lines += [
-        f"{row.x!r},{row.mu!r},{row.temperature_c!r},{row.speed_m_s!r},{row.off!r}" for row in one.rows()
-    ]
+    lines += [f"{row.x!r},{row.mu!r},{row.temperature_c!r},{row.speed_m_s!r},{row.off!r}" for row in master.rows()]
     return "\n".join(lines) + "\n"
 
 
-def verdict_lines(one: Master) -> Iterator[str]:
+def verdict_lines(master: Master) -> Iterator[str]:
     """Yield the verdict with its reasons."""
-    yield f"verdict: {one.judged.verdict.value}"
-    yield from (f"  {reason}" for reason in one.judged.reasons)
+    yield f"verdict: {master.judged.verdict.value}"
+    yield from (f"  {reason}" for reason in master.judged.reasons)
 
 
-def summary_lines(one: Master) -> Iterator[str]:
-    """Yield what the verdict rests on."""
-    of, judged = one.collapse.of, one.judged
-    first = one.points[0]
-    sources = ", ".join(dict.fromkeys(point.source.name for point in one.points))
+def summary_lines(master: Master) -> Iterator[str]:
+    """Yield the figures behind the verdict."""
+    of, judged = master.collapse.of, master.judged
+    first = master.points[0]
+    sources = ", ".join(dict.fromkeys(point.source.name for point in master.points))
     held = "".join(f", {words}" for words in first.held.values())
     yield (
-        f"{first.compound}{held}: {len(one.points)} conditions of {sources}, {len(of.blocks_c)} temperatures from"
+        f"{first.compound}{held}: {len(master.points)} conditions of {sources}, {len(of.blocks_c)} temperatures from"
         f" {of.blocks_c[0]:g} to {of.blocks_c[-1]:g} degC"
     )
-    yield f"Ts {_ts_words(one)}; reference {one.reference_c:g} degC"
-    if one.glass_c is not None:
-        yield f"the compound's file says Tg {one.glass_c:g} degC: Ts = Tg + 50 K is {_expected(one.glass_c):g} degC"
-    c = one.collapse
+    yield f"Ts {_ts_words(master)}; reference {master.reference_c:g} degC"
+    if master.glass_c is not None:
+        expected_c = _expected(master.glass_c)
+        yield f"the compound's file says Tg {master.glass_c:g} degC: Ts = Tg + 50 K is {expected_c:g} degC"
+    c = master.collapse
     yield (
         f"scatter about the curve {100.0 * c.scatter_rms:.2f} % of mu ({c.scatter_mu:.4f} in mu), a cubic spline with"
         f" {c.interior} knots inside"
     )
     for test in judged.tests:
-        told = "more than chance" if test.failed else "no more than chance"
-        yield f"  {TEST_WORDS[test.name]}: F {test.f:.2f}, chance stays below {test.critical:.2f}: {told}"
-    for peak in one.peaks:
+        outcome = "more than chance" if test.failed else "no more than chance"
+        yield f"  {TEST_WORDS[test.name]}: F {test.f:.2f}, chance stays below {test.critical:.2f}: {outcome}"
+    for peak in master.peaks:
         low, high = peak.interval_m_s
         yield (
             f"maximum: mu {peak.mu:.3f} at {peak.speed_m_s:.3g} m/s (95 %: {low:.3g} to {high:.3g}) and"
-            f" {one.reference_c:g} degC"
+            f" {master.reference_c:g} degC"
         )
-    if one.bumps:
-        yield f"further maxima of the curve that its scatter may have made: {one.bumps}"
-    for rule in one.rules:
+    if master.bumps:
+        yield f"further maxima of the curve that its scatter may have made: {master.bumps}"
+    for rule in master.rules:
         yield f"Grosch, {rule.name}: {_rule_words(rule.speed_m_s, rule.decades)}"
-    yield from _pair_lines(one)
+    yield from _pair_lines(master)
 
 
-def _ts_words(one: Master) -> str:
-    c = one.collapse
+def _ts_words(master: Master) -> str:
+    c = master.collapse
     if not c.searched:
         return f"{c.ts_c:.2f} degC, given"
     low, high = c.interval
@@ -94,9 +93,9 @@ def _rule_words(speed_m_s: float, decades: float) -> str:
     return f"{speed_m_s:.3g} m/s; the curve's nearest maximum is {decades:+.2f} decades from it"
 
 
-def _pair_lines(one: Master) -> Iterator[str]:
+def _pair_lines(master: Master) -> Iterator[str]:
     yield "neighbours, shift in decades:    free     WLF  difference  overlap"
-    for pair in one.pairs:
+    for pair in master.pairs:
         free = f"{pair.free:>8.2f}" if isfinite(pair.free) else f"{'-':>8}"
         difference = f"{pair.difference:>+12.2f}" if isfinite(pair.difference) else f"{'-':>12}"
         thin = "  thin" if pair.thin else ""
@@ -104,36 +103,39 @@ def _pair_lines(one: Master) -> Iterator[str]:
             f"  {pair.colder_c:>6g} and {pair.warmer_c:>6g} degC     {free} {pair.wlf:>7.2f} {difference}"
             f" {max(pair.overlap, 0.0):>8.2f}{thin}"
         )
-    thin = [f"{pair.colder_c:g} and {pair.warmer_c:g} degC" for pair in one.pairs if pair.thin]
+    thin = [f"{pair.colder_c:g} and {pair.warmer_c:g} degC" for pair in master.pairs if pair.thin]
     if thin:
         yield f"thin overlap, where a shift says little: {', '.join(thin)}"
 
 
-def plain(one: Master) -> dict[str, Plain]:
+def plain(master: Master) -> dict[str, Plain]:
     """Return a master curve as data: SI units but degC, shifts in decades, NaN and infinity as None."""
-    c, judged = one.collapse, one.judged
+    c, judged = master.collapse, master.judged
     rows: list[Plain] = [
         {
-            "x": row.x, "mu_as_measured": row.mu, "temperature_c": row.temperature_c, "speed_m_s": row.speed_m_s,
+            "x": row.x,
+            "mu_as_measured": row.mu,
+            "temperature_c": row.temperature_c,
+            "speed_m_s": row.speed_m_s,
             "off_ln": row.off,
         }
-        for row in one.rows()
+        for row in master.rows()
     ]
     tests: list[Plain] = [
         {"asks": TEST_WORDS[test.name], "f": test.f, "critical": test.critical, "failed": test.failed}
         for test in judged.tests
     ]
     return {
-        "compound": one.points[0].compound,
-        "held": {**one.points[0].held},
+        "compound": master.points[0].compound,
+        "held": {**master.points[0].held},
         "verdict": judged.verdict.value,
         "reasons": [*judged.reasons],
-        "reference_c": one.reference_c,
+        "reference_c": master.reference_c,
         "ts_c": c.ts_c,
         "ts_given": not c.searched,
         "ts_interval_c": [*c.interval],
         "u_fit_k": c.u_fit_k,
-        "glass_c": one.glass_c,
+        "glass_c": master.glass_c,
         "u_thermometer_k": c.of.thermometer_k,
         "scatter_ln": c.scatter_rms,
         "scatter_mu": c.scatter_mu,
@@ -141,14 +143,14 @@ def plain(one: Master) -> dict[str, Plain]:
         "tests": tests,
         "peaks": [
             {"speed_m_s": peak.speed_m_s, "mu": peak.mu, "interval_m_s": [_known(end) for end in peak.interval_m_s]}
-            for peak in one.peaks
+            for peak in master.peaks
         ],
-        "bumps": one.bumps,
+        "bumps": master.bumps,
         "rules": [
             {"rule": rule.name, "speed_m_s": _known(rule.speed_m_s), "decades": _known(rule.decades)}
-            for rule in one.rules
+            for rule in master.rules
         ],
-        "neighbours": [_pair(pair) for pair in one.pairs],
+        "neighbours": [_pair(pair) for pair in master.pairs],
         "rows": rows,
     }
 

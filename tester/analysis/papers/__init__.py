@@ -1,4 +1,4 @@
-"""What papers print and state, each with a verdict that is worked out when it is asked for.
+"""Items of papers, each with a verdict computed on request.
 
-A kind brings the papers that its machine or its laws come from (``Kind.papers``).
+A kind brings the papers behind its machine or its laws (``Kind.papers``).
 """

@@ -1,4 +1,4 @@
-"""A figure, table, equation or statement of a paper, and how it is held against this program."""
+"""A figure, table, equation or statement of a paper, and its comparison with this program."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROUNDING: Final = 1e-9
 
 
 class PaperVerdict(StrEnum):
-    """What comes of holding an item of a paper against data, formulas or laws."""
+    """Result of comparing an item of a paper with data, formulas or laws."""
 
     REPRODUCED = "reproduced"
     REFUTED = "refuted"
@@ -30,8 +30,8 @@ class PaperFinding:
 class PaperItem:
     """An item of a paper.
 
-    ``where``: its place in the paper. ``states``: what it prints or states. ``command``: shows the same in full, ""
-    where only the list does. ``work_out`` returns the verdict from numbers that it makes at that moment.
+    ``where``: its place in the paper. ``states``: its content. ``command``: a command that shows the same in full, ""
+    where only the list does. ``work_out`` returns the verdict from numbers computed by the call.
     """
 
     where: str
@@ -42,7 +42,7 @@ class PaperItem:
 
 @dataclass(frozen=True, slots=True)
 class Paper:
-    """A paper: what it is called here, its citation, and its items in the order of its pages."""
+    """A paper: its short name, its citation, and its items in the order of its pages."""
 
     name: str
     citation: str
@@ -50,17 +50,17 @@ class Paper:
 
 
 def slight(off: float) -> str:
-    """Return a small difference in words: below 1e-9 it is one of rounding, which differs from computer to computer."""
+    """Return a small difference in words: below 1e-9 it is due to rounding, which differs from computer to computer."""
     return f"{off:.0e}" if abs(off) >= ROUNDING else f"less than {ROUNDING:.0e}"
 
 
 def judged(holds: bool, error: str) -> PaperFinding:
-    """Return that an item is reproduced, or refuted where it does not hold."""
+    """Return the finding "reproduced", or "refuted" where the item does not hold."""
     return PaperFinding(PaperVerdict.REPRODUCED if holds else PaperVerdict.REFUTED, error)
 
 
 def unjudged(reason: str) -> PaperFinding:
-    """Return that an item cannot be judged, with the numbers or the reason."""
+    """Return the finding of an item that cannot be judged, with the numbers or the reason."""
     return PaperFinding(PaperVerdict.NOT_ATTEMPTED, reason)
 
 

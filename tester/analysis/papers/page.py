@@ -1,4 +1,4 @@
-"""The page of all papers: a table of items with their verdicts, worked out as it is written."""
+"""The page of all papers: a table of items with their verdicts, computed at the time of writing."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class JudgedItem(NamedTuple):
 
 
 def judged_items(paper: Paper) -> list[JudgedItem]:
-    """Return the items of a paper with their verdicts, worked out now. Raises MissingExtraError."""
+    """Return the items of a paper with their verdicts, computed by this call. Raises MissingExtraError."""
     return [JudgedItem(entry, entry.work_out()) for entry in paper.items]
 
 
