@@ -90,8 +90,8 @@ grids:
 
 def work(text: str) -> dict[str, float]:
     """Read, check and expand a recipe; return CPU seconds of each, and the conditions found."""
-    from tester.inputs.recipe.check import load_checked
     from tester.inputs.recipe.conditions import conditions_of
+    from tester.inputs.recipe.loader import load_checked
     from tester.kinds import load_rig
     from tester.kinds.wheel_on_belt.recipe.expand import expand
 

@@ -20,7 +20,7 @@ from bench.figures import Figure, at_most, ratio
 from bench.live import SLIDING_RECIPE, LiveRun, live_run
 from bench.stopwatch import cpu_ns
 from tester.base import clock
-from tester.base.priority import RealTimePriority
+from tester.base.processes import RealTimePriority
 from tester.machine.tickers import TickStatistics, collector_at_rest, run_real_time
 
 

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from bench.effort import TopicFailedError
 from tester.base import clock
-from tester.inputs.recipe.check import load_checked
+from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.part import PART

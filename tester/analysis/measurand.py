@@ -20,11 +20,19 @@ from typing import Final
 from tester.analysis.kelvin import NO_WARMTH, Slope, SurfaceWarmth
 from tester.analysis.quantiles import f_quantile
 from tester.analysis.reference import CounterfaceDrift
-from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, BudgetPoint, Size, Term, contributions_of
-from tester.analysis.uncertainty import NO_BUDGET, Budget, Contribution, Unsteadiness, budget, contribution
+from tester.analysis.uncertainty import (
+    NO_BUDGET,
+    NOTHING_POOLED,
+    Budget,
+    Contribution,
+    Pool,
+    Unsteadiness,
+    budget,
+    contribution,
+)
 
 REPEATABILITY: Final = "repeatability"
 """Name of the contribution of repeatability."""

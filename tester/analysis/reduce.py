@@ -19,12 +19,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import isfinite, isnan, sqrt
 
-from tester.analysis.blocks import Block, resultant
+from tester.analysis.blocks import Block, BlockCounter, resultant
 from tester.analysis.change import change_within
 from tester.analysis.drift import Drift, fit_drift
 from tester.analysis.flags import EXTENDED, NOT_SHOWN, ROLLING, STICK_SLIP, STICK_SLIP_UNKNOWN, TRUNCATED, joined
 from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus, Swing
-from tester.analysis.stability import REPEAT_WINDOWS, enough, left_out
+from tester.analysis.stability import REPEAT_WINDOWS, enough, filled, left_out
 from tester.analysis.swing import LIMIT_PERCENT
 from tester.base.quantities import mean_of
 
@@ -177,3 +177,22 @@ def _flags(
     if len(used) < len(blocks):
         flags.append(TRUNCATED)
     return flags
+
+
+def collected(
+    counter: BlockCounter, revolutions: float | None, seconds: float | None, extend_to: float, *, alone: bool
+) -> bool:
+    """Return whether a repeat is complete; one of ``revolutions`` and ``seconds`` is the window, the other is None.
+
+    ``extend_to``: the most it collects, in the window's unit. ``alone``: it has no siblings to be judged with, so it is
+    extended until its drift is shown to be small.
+    """
+    blocks = counter.blocks
+    have = float(len(blocks)) if revolutions is not None else counter.seconds
+    if have >= extend_to:
+        return True
+    if not filled(blocks, revolutions, seconds):
+        return False
+    if not alone:
+        return True
+    return fit_drift([counted(blocks, revolutions, seconds)], revolutions, seconds).stable

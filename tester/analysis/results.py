@@ -1,4 +1,4 @@
-"""Results of the analysis: the statuses and the result of a repeat. Plain values, shared with the store.
+"""Results of the analysis as plain values, shared with the store: repeats, conditions, checks after a soak.
 
 Units are in the names. NaN marks a missing value; the store keeps it as NULL.
 """
@@ -11,6 +11,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Final, Protocol, TypeVar
 
+from tester.analysis.flags import DOUBTS, flags_in
 from tester.base.quantities import Means
 
 NAN = float("nan")
@@ -174,3 +175,46 @@ class Burst:
     ended_s: float
     surface_first_c: float
     surface_last_c: float
+
+
+@dataclass(frozen=True, slots=True)
+class SoakCheck:
+    """Reading of the surface's thermometer at the end of a condition's soak, and its expected value.
+
+    Temperatures in degC: ``surface_c`` by the thermometer, ``hub_c`` by the heater's sensor, ``model_c`` the surface's
+    by a model of the heat flow from the latter. ``allowed_k``: largest difference that the uncertainties of sensors and
+    model explain, K.
+    """
+
+    condition: int
+    t_s: float
+    surface_c: float
+    model_c: float
+    hub_c: float
+    allowed_k: float
+
+    @property
+    def off_k(self) -> float:
+        """Return the thermometer's reading less its expected value, K."""
+        return self.surface_c - self.model_c
+
+    @property
+    def agrees(self) -> bool:
+        """Return whether the difference is within its limit."""
+        return abs(self.off_k) <= self.allowed_k
+
+
+NOT_TRUSTED: Final = "!"
+"""Mark of a number without a trustworthy value."""
+WITH_CARE: Final = "?"
+"""Mark of a value that carries a flag of DOUBTS."""
+
+
+def mark_of(status: ConditionStatus | str, flags: str) -> str:
+    """Return the mark of a condition's number: ``!`` not to be trusted, ``?`` with care, "" trusted.
+
+    ``flags`` as in a condition's result, one text.
+    """
+    if status != ConditionStatus.OK:
+        return NOT_TRUSTED
+    return WITH_CARE if any(flag in DOUBTS for flag in flags_in(flags)) else ""

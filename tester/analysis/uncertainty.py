@@ -1,4 +1,4 @@
-"""Uncertainty budget of a coefficient, after the GUM (JCGM 100:2008): contributions, standard, expanded.
+"""Uncertainty budget of a coefficient, after the GUM (JCGM 100:2008): contributions, standard, expanded, pooled.
 
 Contributions are independent standard uncertainties in mu; they add in squares (GUM 5.1.2). The effective
 degrees of freedom follow Welch-Satterthwaite (GUM G.4.1) and give the coverage factor for 95 %.
@@ -113,3 +113,43 @@ def budget(contributions: Sequence[Contribution]) -> Budget:
     df = effective_df(((c.standard, c.df) for c in contributions), standard)
     coverage = t_quantile(0.5 + 0.5 * CONFIDENCE, df)
     return Budget(tuple(contributions), standard, df, coverage, coverage * standard)
+
+
+@dataclass(frozen=True, slots=True)
+class Pool:
+    """Sum of squared deviations from the conditions' means, as shares of them, and its degrees of freedom."""
+
+    squares: float = 0.0
+    df: int = 0
+
+    def with_condition(self, values: Sequence[float], repeats_each: int = 1) -> Pool:
+        """Return the pool with the coefficients of one more condition; fewer than two are ignored.
+
+        ``repeats_each``: number of repeats behind each value; the pool is that of single repeats.
+        """
+        n = len(values)
+        mean = sum(values) / n if n else 0.0
+        if n < 2 or mean <= 0.0:
+            return self
+        squares = sum((value / mean - 1.0) ** 2 for value in values)
+        return Pool(self.squares + repeats_each * squares, self.df + n - 1)
+
+    def with_spread(self, spread: float, n: int, repeats_each: int = 1) -> Pool:
+        """Return the pool with one more condition of ``n`` values with this relative standard deviation."""
+        if n < 2 or not spread >= 0.0:
+            return self
+        return Pool(self.squares + repeats_each * ((n - 1) * spread * spread), self.df + n - 1)
+
+    @property
+    def s_percent(self) -> float:
+        """Return the pooled standard deviation between repeats, per cent; inf where unknown."""
+        return 100.0 * sqrt(self.squares / self.df) if self.df else inf
+
+    def expanded_percent(self, n: int) -> float:
+        """Return the expanded repeatability (95 %) of a mean of ``n`` >= 1 repeats, per cent; inf where unknown."""
+        if not self.df:
+            return inf
+        return t_quantile(0.5 + 0.5 * CONFIDENCE, float(self.df)) * self.s_percent / sqrt(n)
+
+
+NOTHING_POOLED = Pool()

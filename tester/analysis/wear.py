@@ -18,11 +18,53 @@ from math import hypot, pi, sqrt
 from typing import TYPE_CHECKING
 
 from tester.analysis.results import NAN
-from tester.analysis.wear_check import NO_CONDITION, WearCheck
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+
+NO_CONDITION = 0
+
+
+@dataclass(frozen=True, slots=True)
+class WearCheck:
+    """One check of a wheel's diameter.
+
+    ``method``: roll (the press's position under a light load) or person (a number in an answer). ``reference_s``: time
+    of the series' first check, rig seconds. ``before``, ``after``: the conditions on either side, 0 for none.
+    """
+
+    piece: int
+    """Number of the checked piece."""
+    method: str
+    t_s: float
+    reference_s: float
+    before: int
+    after: int
+    diameter_mm: float
+    """Cold, at the rig file's ``wear.reference``."""
+    u_mm: float
+    """Standard uncertainty of the diameter, of this check alone."""
+    rubber_c: float
+    """Mean temperature of the rubber: the average of hub and surface."""
+    u_growth_mm_k: float
+    """Standard uncertainty of the correction for thermal growth of the diameter, per kelvin."""
+    press_mm: float
+    """Means over whole turns; NaN where a person measured."""
+    load_n: float
+    sliding_m: float
+    """Distance slid since the wheel was new."""
+    exposure_n_m: float
+    """Load times distance slid since the wheel was new."""
+    width_mm: float
+    u_rate_percent: float
+    """Standard uncertainty of a rate from exposure and width, relative."""
+    used: int
+    """1; 0: rejected (larger than the check before, or no rubber left)."""
+    expected_mm: float = NAN
+    """The diameter assumed until then, cold; NaN in a record without it."""
+
 
 COVERAGE = 2.0
 """Coverage factor for 95 %: most contributions are estimates of limits, taken as known (GUM G.6.4)."""
@@ -137,4 +179,3 @@ def _volumes(
 def _volume_per_mm(check: WearCheck) -> float:
     """Return dV/dD in mm2: half the tread's surface."""
     return 0.5 * pi * check.width_mm * check.diameter_mm
-

@@ -165,3 +165,12 @@ def plugins() -> Plugins:
     """Return the extensions of this process, with what its environment allows."""
     said = os.environ.get(ALLOW_VARIABLE)
     return Plugins(None if said is None else [name.strip() for name in said.split(",") if name.strip()])
+
+
+class MissingExtraError(Exception):
+    """A library that comes with an extra is not installed; the message gives the command that installs it."""
+
+
+def needs(what: str, library: str, extra: str) -> str:
+    """Return the message: ``what`` needs ``library``, and the command that installs it."""
+    return f'{what} needs {library}: pip install "friction-tester[{extra}]" (in a clone: pip install ".[{extra}]")'

@@ -21,9 +21,9 @@ import yaml.events as ev
 from yaml.error import Mark, MarkedYAMLError
 from yaml.scanner import ScannerError
 
-from tester.base.plain import FORBIDDEN, harmless
 from tester.base.trouble import in_words
 from tester.base.units import shown
+from tester.base.words import FORBIDDEN, harmless
 from tester.base.yaml_trouble import OUT_OF_RANGE, plainer, too_deep
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from yaml.error import MarkedYAMLError
 
-from tester.base.plain import harmless
+from tester.base.words import harmless
 
 LEVELS = 3
 """Indentations that a message names at most, the deepest first."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE, EXIT_INVALID, EXIT_TRIPPED
+from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE, EXIT_INVALID, EXIT_TRIPPED
 from tester.cli.options import risk_option, seed_option, set_option
 from tester.cli.tui_command import SWITCH_S, SpeedType, need_terminal
 
@@ -51,7 +51,7 @@ def commission(
     from tester.machine.commission.record import RecordError, record_path
     from tester.run.commissioning import CommissionOptions, commission, part_of
     from tester.run.endings import CannotStartError
-    from tester.run.rigs import load_rig
+    from tester.run.kinds import load_rig
 
     found = load_rig(rig, overrides, accept_risk)
     simulated = found.can.interface == "sim"
@@ -108,7 +108,7 @@ def _at_terminal(
 def _on_screen(load: Callable[[], Rig], options: CommissionOptions, theme: str, *, plain: bool) -> CommissionOutcome:
     """Commission with whoever is at this screen; however it ends, what moves is at rest when this returns."""
     need_terminal("tester commission --tui", "`tester commission RIG` asks line by line")
-    from tester.base.signals import handled
+    from tester.base.processes import handled
     from tester.tui.guide.app import GuideApp
     from tester.tui.guide.guide import Guide
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.as_json import Json
 from tester.base.axes import ListWords
+from tester.base.words import Json
 from tester.cli.formatting import dump, shown
 from tester.cli.run_lookup import run_folder
 

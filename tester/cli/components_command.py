@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.as_json import Json, finite
 from tester.base.axes import ListWords
-from tester.base.words import coefficient
+from tester.base.words import Json, coefficient, finite
 from tester.cli.formatting import dump, shown
 from tester.cli.options import json_option
 from tester.cli.run_lookup import run_folder

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_UNREACHABLE
+from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_UNREACHABLE
 from tester.cli.options import json_option, print_json, rig_option, set_option
 
 if TYPE_CHECKING:

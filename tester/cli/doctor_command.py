@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.exits import EXIT_DONE, EXIT_FAILED
+from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.cli.options import json_option, print_json, rig_option, seed_option, set_option
 
 if TYPE_CHECKING:
-    from tester.doctor.table import TableEntry
+    from tester.doctor.probe_table import TableEntry
 
 
 @click.command("doctor")
@@ -42,11 +42,10 @@ def doctor(
     listened to. While a run or the service uses the rig it is refused.
     """
     from tester.cli.device_commands import rig_alone
-    from tester.doctor.bundle import written_bundle
     from tester.doctor.examination import Examination
     from tester.doctor.finding import Severity, worst
+    from tester.doctor.probe_table import examined, written_bundle
     from tester.doctor.system import ThisComputer
-    from tester.doctor.table import examined
     from tester.kinds import load_rig, packaged_keys
 
     rig = load_rig(rig_name, overrides, "a look at the rig, not a run")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.exits import EXIT_DONE, EXIT_FAILED
+from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.cli.options import json_option, print_json
 
 if TYPE_CHECKING:

@@ -102,7 +102,7 @@ def _draw_law(
 
 def _draw(figures: Sequence[Figure], names: Sequence[str], target: Path, ending: str) -> None:
     """Write figures of these names, all for none, into a folder; raises ClickException where there are none at all."""
-    from tester.base.extras import MissingExtraError
+    from tester.base.plugins import MissingExtraError
     from tester.report.draw import draw
 
     if not figures:
@@ -134,8 +134,7 @@ def _results(name: str) -> tuple[str, RunResults]:
 def _figures(results: RunResults, law: str, published: bool) -> list[Figure]:
     """Return a run's figures."""
     from tester.cli.kind_words import material_of
-    from tester.report.charts import charts_of, repeats_chart
-    from tester.report.control import control_chart
+    from tester.report.charts import charts_of, control_chart, repeats_chart
     from tester.report.overview import overview_chart
 
     found: list[Figure] = [*charts_of(material_of(results, law, published))]

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from tester.base.as_json import Json
-from tester.base.exits import EXIT_DONE, EXIT_FAILED
+from tester.base.processes import EXIT_DONE, EXIT_FAILED
+from tester.base.words import Json
 from tester.cli.formatting import dump, shown
 from tester.cli.options import json_option
 
@@ -72,7 +72,7 @@ def fit(
     """
     from tester.analysis.fit.joint import fit_group
     from tester.analysis.fit.law import FitError, by_group
-    from tester.base.extras import MissingExtraError
+    from tester.base.plugins import MissingExtraError
 
     fitted, others = _conditions(sources), _conditions(validation) if validation else None
     part = _part(fitted.kind)

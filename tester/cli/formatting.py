@@ -6,7 +6,7 @@ import json
 
 import click
 
-from tester.base.as_json import Json
+from tester.base.words import Json
 
 
 def shown(text: str) -> str:

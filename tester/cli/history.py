@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from tester.analysis.repeatability import Pool
+from tester.analysis.uncertainty import Pool
 
 
 def repeatability(under: Path, compounds: Iterable[str], *, simulated: bool) -> dict[str, Pool]:

@@ -30,7 +30,7 @@ def parts_chart(law: str, compound: str, surface: str, over: str, at: At) -> Cha
     from sim.physics import laws
     from tester.base.source import InvalidSource
     from tester.inputs.materials.library import Library
-    from tester.report.components import components_chart
+    from tester.report.law_charts import components_chart
 
     try:
         maker = laws.find(law)

@@ -17,7 +17,7 @@ from typing import Any
 import click
 
 from tester import __version__
-from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INTERRUPTED, EXIT_INVALID, EXIT_READER_GONE
+from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INTERRUPTED, EXIT_INVALID, EXIT_READER_GONE
 from tester.cli.command_table import SECTIONS, CommandGroup, Listed
 
 

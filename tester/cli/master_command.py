@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
+from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
 from tester.cli.formatting import dump, shown
 from tester.cli.options import QuantityType, json_option
 
@@ -226,9 +226,9 @@ def _tell(made: Master, left_out: Sequence[tuple[str, str]], as_json: bool) -> N
 def _write(made: Master, path: Path, ending: str) -> None:
     """Write the table or the figure."""
     from tester.analysis.master_curve.text import csv_text
-    from tester.base.extras import MissingExtraError
+    from tester.base.plugins import MissingExtraError
     from tester.report.draw import draw
-    from tester.report.master_chart import master_chart
+    from tester.report.law_charts import master_chart
 
     try:
         if ending == "csv":

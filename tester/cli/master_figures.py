@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tester.analysis.master_curve.made import master_of
 from tester.analysis.master_curve.points import MasterError, MasterPoint
 from tester.kinds.kind import Kind
-from tester.report.master_chart import master_chart
+from tester.report.law_charts import master_chart
 
 if TYPE_CHECKING:
     from tester.report.chart import Chart

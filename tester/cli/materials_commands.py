@@ -12,8 +12,7 @@ from tester.cli.options import QuantityType, json_option, print_json
 
 if TYPE_CHECKING:
     from tester.inputs.materials.compound import LoadedCompound
-    from tester.inputs.materials.files import DataFile, Role
-    from tester.inputs.materials.finding import Findings
+    from tester.inputs.materials.files import DataFile, Findings, Role
     from tester.inputs.materials.library import Library, LibraryEntry
     from tester.inputs.materials.surface import LoadedSurface
 
@@ -155,7 +154,7 @@ def check(file: Path, as_json: bool) -> int | None:
 
     Which of the two it is, its folder (compounds, surfaces) says, else its keys.
     """
-    from tester.base.exits import EXIT_INVALID
+    from tester.base.processes import EXIT_INVALID
     from tester.base.source import InvalidSource
 
     try:
@@ -227,10 +226,8 @@ def dma(
     What is converted and what is doubtful is said, and stands in the new file.
     """
     from tester.inputs.materials.dma import MAX_BYTES, read_dma
-    from tester.inputs.materials.dma_options import DmaOptions
-    from tester.inputs.materials.files import decoded
-    from tester.inputs.materials.finding import Findings
-    from tester.inputs.materials.headings import QUANTITIES, quantity_named
+    from tester.inputs.materials.files import Findings, decoded
+    from tester.inputs.materials.headings import QUANTITIES, DmaOptions, quantity_named
     from tester.inputs.materials.written import compound_text
 
     named: dict[str, str] = {}
@@ -261,8 +258,8 @@ def scan(
     file: Path, name: str, out: Path, pixel: float | None, unit: str | None, detrend: str, force: bool
 ) -> None:
     """Make a surface of FILE, a map of heights: a matrix as text, or a format of instruments (extra `topography`)."""
-    from tester.base.extras import MissingExtraError
-    from tester.inputs.materials.finding import Findings
+    from tester.base.plugins import MissingExtraError
+    from tester.inputs.materials.files import Findings
     from tester.inputs.materials.radial import Detrend
     from tester.inputs.materials.scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
     from tester.inputs.materials.written import surface_text

@@ -33,8 +33,7 @@ class Draft:
     @classmethod
     def on(cls, rig: str) -> Draft:
         """Return an empty recipe for a rig, given by name or file; raises InvalidSource."""
-        from tester.run.kinds import recipe_part
-        from tester.run.rigs import load_rig
+        from tester.run.kinds import load_rig, recipe_part
 
         loaded = load_rig(rig)
         return cls(rig, loaded, recipe_part(loaded))
@@ -106,7 +105,7 @@ class Draft:
 
     def _refuse(self, begins: str) -> None:
         """Raise InvalidSource with the problems on the lines that begin so; other answers may still be missing."""
-        from tester.inputs.recipe.check import check
+        from tester.inputs.recipe.loader import check
 
         text = self.text()
         lines = [number for number, line in enumerate(text.splitlines(), 1) if line.startswith(begins)]

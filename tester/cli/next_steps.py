@@ -67,10 +67,9 @@ def _unfinished(runs: list[Path]) -> Iterator[NextStep]:
     """Yield how to resume the newest runs that did not reach the end of their plan and that no process works on."""
     if not runs:
         return
-    from tester.store.catalogue import under_way
+    from tester.store.catalogue import run_status, under_way
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError
-    from tester.store.status import run_status
 
     for folder in runs[:LOOKED_AT]:
         with suppress(StoreError, OSError), RunReader(folder) as reader:

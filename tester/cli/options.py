@@ -92,7 +92,7 @@ def print_json(data: object) -> None:
 
 def say_other_settings(rig_name: str, rig: Rig) -> None:
     """Say on stderr which lines are set otherwise than the profiles of their devices say."""
-    from tester.inputs.rig.line_settings import other_settings
+    from tester.inputs.rig.checks import other_settings
 
     for text in other_settings(rig):
         click.echo(f"{rig_name}: warning: {text}", err=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.exits import EXIT_DONE, EXIT_FAILED
+from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.cli.formatting import Json, dump
 from tester.cli.options import json_option
 
@@ -26,7 +26,7 @@ def paper(every: bool, as_json: bool) -> int:
     on appendix B, and the errors that the paper quotes. With --all: a page with each item of this paper
     and of the two that the laws persson and greta come from, with an error that is worked out now and a verdict.
     """
-    from tester.base.extras import MissingExtraError
+    from tester.base.plugins import MissingExtraError
 
     try:
         return _all(as_json) if every else _one(as_json)

@@ -10,7 +10,7 @@ from sim.physics.friction import MODEL_NAMES
 from sim.physics.slip import CORNERING
 from sim.physics.slip import predict as model_value
 from tester.cli.options import QuantityType, json_option, print_json
-from tester.inputs.rig.laws import extension_law
+from tester.inputs.rig.profiles import extension_law
 
 
 @click.command()

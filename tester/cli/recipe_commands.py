@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 import recipes
-from tester.base.exits import EXIT_INVALID
+from tester.base.processes import EXIT_INVALID
 from tester.cli.options import (
     QuantityType,
     json_option,
@@ -25,7 +25,7 @@ from tester.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from tester.analysis.repeatability import Pool
+    from tester.analysis.uncertainty import Pool
     from tester.base.source import Problem
     from tester.inputs.materials.schema import CompoundModel
     from tester.inputs.recipe.foreseen import Foreseen
@@ -63,9 +63,8 @@ def check(
     from tester.base.source import InvalidSource
     from tester.inputs.recipe.conditions import conditions_of, merged_of
     from tester.inputs.recipe.reference import REFERENCE, ReferenceSection
-    from tester.run.kinds import checked_recipe, recipe_part
+    from tester.run.kinds import checked_recipe, load_rig, recipe_part
     from tester.run.materials import used_materials
-    from tester.run.rigs import load_rig
 
     path, name = recipe_file(recipe)
     rig = load_rig(rig_name, overrides, accept_risk)
@@ -141,7 +140,7 @@ def plan(
     from tester.inputs.recipe.conditions import merged_of
     from tester.inputs.recipe.describe import lines
     from tester.inputs.recipe.estimate import estimate
-    from tester.inputs.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines
+    from tester.inputs.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines, known_slopes
     from tester.inputs.recipe.plan_json import json_chunks
     from tester.inputs.recipe.precision import (
         PrecisionError,
@@ -150,10 +149,8 @@ def plan(
         until_for_total,
         with_precision,
     )
-    from tester.inputs.recipe.sensitivity import known_slopes
-    from tester.run.kinds import checked_recipe, recipe_part
+    from tester.run.kinds import checked_recipe, load_rig, recipe_part
     from tester.run.materials import described_compounds
-    from tester.run.rigs import load_rig
 
     if precision is not None and total is not None:
         raise click.UsageError("--precision and --total exclude each other")
@@ -198,8 +195,7 @@ def plan(
 
 def _foreseen(recipe: Recipe, rig: Rig, part: RecipePart, described: Mapping[str, CompoundModel]) -> list[Foreseen]:
     """Return what is foreseen of the uncertainty of a recipe's conditions."""
-    from tester.inputs.recipe.foreseen import foreseen
-    from tester.inputs.recipe.sensitivity import known_slopes
+    from tester.inputs.recipe.foreseen import foreseen, known_slopes
 
     plan, estimator = part.expand(recipe, rig), part.estimator(rig)
     return foreseen(plan, estimator.walk(plan), estimator, known_slopes(plan, described))

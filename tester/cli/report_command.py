@@ -30,7 +30,7 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     The file holds everything, fetches nothing and has no script. A browser prints it, on paper or as PDF. Several runs
     are held against each other. The file's name is printed.
     """
-    from tester.base.extras import MissingExtraError
+    from tester.base.plugins import MissingExtraError
     from tester.cli.kind_words import material_of
     from tester.report.build import report_of
     from tester.report.page import page_of

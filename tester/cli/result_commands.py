@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.as_json import Json, finite
-from tester.base.words import duration
+from tester.base.words import Json, duration, finite
 from tester.cli.formatting import dump, shown
 from tester.cli.run_lookup import run_folder
 
@@ -252,7 +251,7 @@ def export(run: str, kind: Format, out: Path | None, decimals: int) -> None:
     Conditions without a value that can be trusted are not in the appendix and are named on stderr; so are values that
     are to be taken with care.
     """
-    from tester.base.extras import MissingExtraError
+    from tester.base.plugins import MissingExtraError
     from tester.results import Record, write_format
     from tester.store.reader import RunReader
     from tester.store.schema import StoreError

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.as_json import Json
-from tester.base.words import duration
+from tester.base.words import Json, duration
 from tester.cli.formatting import dump, shown
-from tester.store.status import RunStatus
+from tester.store.catalogue import RunStatus
 
 if TYPE_CHECKING:
     from tester.results.catalogue.entries import RunEntry

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from tester.base.exits import EXIT_FAILED, EXIT_UNREACHABLE
+from tester.base.processes import EXIT_FAILED, EXIT_UNREACHABLE
 from tester.base.words import conditions_done, duration
 from tester.cli.options import json_option, print_json, rig_option, risk_option, set_option
 

@@ -47,7 +47,7 @@ def _ring_of(name: str) -> RingRun:
     """Return what a run has on record; raises ClickException where its machine has no ring."""
     from dataclasses import replace
 
-    from tester.run.ring import ring_in
+    from tester.run.kinds import ring_in
 
     found = ring_in(run_folder(name))
     if found is None:

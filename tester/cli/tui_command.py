@@ -96,7 +96,7 @@ def need_terminal(command: str, instead: str) -> None:
 
 
 def _serve(port: int, address: str) -> int:
-    from tester.base.extras import needs
+    from tester.base.plugins import needs
     from tester.tui.web import serve
 
     try:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.exits import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
+from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
 from tester.cli.options import json_option, print_json
 from tester.cli.run_lookup import run_folder
 

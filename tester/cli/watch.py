@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 
 from tester.analysis.reference import ControlChart, CounterfaceDrift
-from tester.base.as_json import Json, finite
+from tester.base.words import Json, finite
 from tester.results.run_results import RunResults
 from tester.results.settings_table import settings_table
 

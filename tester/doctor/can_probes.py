@@ -276,3 +276,24 @@ def emergencies(e: Examination) -> Iterator[Finding]:
         code = int.from_bytes(data[:2], "little")
         if code:
             yield warning(names.get(node, f"node {node}"), f"emergency: {o.emergency_text(code)}", "the drive's manual")
+
+
+_STATES = {
+    "passive": "error-passive: it has seen many errors, and marks none of its own any more",
+    "error": "in an error state: it takes part no more",
+}
+
+
+def errors(e: Examination) -> Iterator[Finding]:
+    """Count error frames, and tell an adapter's state; nothing where the adapter tells neither."""
+    watch = e.watch
+    if watch.can_errors is not None and watch.seconds:
+        count = sum(watch.can_errors.values())
+        said = ", ".join(f"{number} {kind}" for kind, number in watch.can_errors.items())
+        if count:
+            yield warning(BUS, f"error frames in {watch.seconds:.0f} s: {said}", f"look at {WIRING}; shields, stubs")
+        else:
+            yield ok(BUS, f"no error frame in {watch.seconds:.0f} s")
+    words = _STATES.get(watch.can_state)
+    if words is not None:
+        yield fault(BUS, f"the adapter is {words}", f"look at {WIRING}; plug the adapter out and in")

@@ -10,7 +10,7 @@ from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
 from tester.inputs.rig import LineConfig
 from tester.inputs.rig.load import risks_of
-from tester.store.space import CONTACT_ROWS_S, FIXED_BYTES, MARGIN, ROW_BYTES
+from tester.store.disk import CONTACT_ROWS_S, FIXED_BYTES, MARGIN, ROW_BYTES
 
 DAY_S = 8 * 3600.0
 """A working day of contact is to fit on the disk, s [A]."""

@@ -10,7 +10,7 @@ from drivers.transports.serial_line import SerialLine, open_serial_line
 from drivers.transports.tcp_line import TcpLine, open_tcp_line
 from sim.rig import SimRig
 from sim.wires.mistuned import MistunedCan, MistunedLine
-from tester.base.pace import Pace
+from tester.base.clock import Pace
 from tester.inputs.rig import LineConfig, Rig
 from tester.run.simulated import simulated_ports
 

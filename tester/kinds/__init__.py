@@ -129,12 +129,12 @@ def hardware_text(kind: str = DEFAULT, like: str = "") -> str:
 
     Raises UnknownKindError, KeyError where the kind has no such rig.
     """
-    from tester.inputs.rig import template
+    from tester.inputs.rig import packaged
 
     rig = find(kind).rig()
     if like and like not in rig.packaged:
         raise KeyError(like)
-    return template.hardware_text(rig, like)
+    return packaged.hardware_text(rig, like)
 
 
 def upgrade(path: Path) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tester.analysis.fit.part import FitPart
-    from tester.analysis.master_curve.part import MasterPart
+    from tester.analysis.master_curve.points import MasterPart
     from tester.analysis.papers.item import Paper
     from tester.inputs.recipe.part import RecipePart
     from tester.inputs.rig import Rig

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 
 from drivers.ports import CanPort, LinePort
-from tester.base.pace import Pace
+from tester.base.clock import Pace
 
 
 @dataclass(frozen=True, slots=True)

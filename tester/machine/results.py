@@ -12,11 +12,11 @@ from tester.analysis.closest import Combining
 from tester.analysis.flags import IMPRECISE, NOT_SHOWN, flags_in, joined
 from tester.analysis.judge import ALONE
 from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_value
-from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus
 from tester.analysis.swing import swing_of
 from tester.analysis.trace import Trace
+from tester.analysis.uncertainty import Pool
 from tester.base.axes import condition_words
 from tester.base.words import coefficient, decimal
 from tester.inputs.recipe.plan import ConditionStep, Plan

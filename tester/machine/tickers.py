@@ -11,8 +11,8 @@ from math import ceil, floor
 from typing import Final, Protocol
 
 from tester.base import clock
-from tester.base.pace import Pace
-from tester.base.priority import RealTimePriority
+from tester.base.clock import Pace
+from tester.base.processes import RealTimePriority
 
 POLL_S: Final = 0.02
 """Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""

@@ -11,7 +11,7 @@ from tester.report.budgets import budget_section
 from tester.report.charts import Material, charts_of, repeats_chart
 from tester.report.conditions import conditions_section, drift_section, short_table, verdict
 from tester.report.inline import inline_svg
-from tester.report.layout import Chapter, FactSheet, Paragraph, Part, Picture, Report, ReportSection
+from tester.report.layout import Chapter, FactSheet, Paragraph, Part, Picture, Report, ReportSection, day
 from tester.report.materials import materials_sections
 from tester.report.overview import overview_chart
 from tester.report.record import RunRecord
@@ -26,7 +26,6 @@ from tester.report.sections import (
     tare_section,
     trips_section,
 )
-from tester.report.words import day
 from tester.results.run_results import Measured
 
 Showing = Callable[[RunRecord], Material]

@@ -1,4 +1,4 @@
-"""From the conditions of runs to charts: the coefficient over each axis that was varied, and over two of them."""
+"""Charts of runs: the coefficient over each axis that was varied, over two of them, and the control chart."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from itertools import permutations
 from math import isfinite
 
+from tester.analysis.reference import ControlChart, ControlPoint
 from tester.base.axes import Axis, AxisValue, Setpoint, condition_words, plain
 from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
-from tester.report.words import labelled, name_of
+from tester.report.layout import labelled, name_of
 from tester.results.columns import unit_of
 from tester.results.run_results import Measured, RunResults
 
@@ -287,4 +288,48 @@ def _windows(label: str, results: Sequence[object], look: str, style: int) -> Se
         style,
         tuple(0.01 * one.fluctuation_percent * one.mu_resultant for one in own),
         tuple(0.5 * (b - a) for a, b in zip(begin, end, strict=True)),
+    )
+
+
+LABEL = "friction coefficient"
+
+
+def control_chart(charts: Sequence[ControlChart]) -> Chart:
+    """Return the charts of the references, one a compound, over their turn; those out of limits are crosses."""
+    panels = tuple(ChartPanel(one.compound if len(charts) > 1 else "", _series(one)) for one in charts)
+    return Chart(
+        "control",
+        "reference condition in the order in which it was measured",
+        "turn of the reference condition",
+        LABEL,
+        panels,
+        "bars: expanded repeatability (95 %); dashed: limits about the first",
+        from_zero=False,
+    )
+
+
+def _series(chart: ControlChart) -> tuple[Series, ...]:
+    valued = [one for one in chart.points if isfinite(one.mu)]
+    inside = [one for one in valued if one.within]
+    outside = [one for one in valued if not one.within]
+    along = tuple(float(one.number) for one in chart.points)
+    return (
+        *([_turn_points("in control", inside, 0)] if inside else []),
+        *([_turn_points("out of control", outside, 1)] if outside else []),
+        Series("limits", along, (chart.low,) * len(along), "limit", 1),
+        Series("", along, (chart.high,) * len(along), "limit", 1),
+    )
+
+
+def _turn_points(label: str, points: Sequence[ControlPoint], style: int) -> Series:
+    return Series(
+        label,
+        tuple(float(one.number) for one in points),
+        tuple(one.mu for one in points),
+        "left out" if style else "measured",
+        style,
+        tuple(one.expanded for one in points),
+        names=tuple(
+            f"turn {one.number}: {coefficient(one.mu)}\u00a0±\u00a0{coefficient(one.expanded)}" for one in points
+        ),
     )

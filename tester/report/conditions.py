@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from tester.analysis.trust import NOT_TRUSTED, WITH_CARE, mark_of
+from tester.analysis.results import NOT_TRUSTED, WITH_CARE, mark_of
 from tester.base.axes import condition_words
 from tester.base.words import NONE, decimal
 from tester.report.layout import (

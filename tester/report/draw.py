@@ -14,8 +14,8 @@ from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
-from tester.base.extras import MissingExtraError, needs
-from tester.base.plain import harmless
+from tester.base.plugins import MissingExtraError, needs
+from tester.base.words import harmless
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from math import isfinite
 from typing import Final
 from xml.etree import ElementTree
 
-from tester.base.plain import harmless
+from tester.base.words import harmless
 from tester.report.chart import Chart, Figure, Series
 from tester.report.draw import LONGEST, MARKED, svg_for_a_page
 

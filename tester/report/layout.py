@@ -5,11 +5,14 @@ All text is as people and devices wrote it; what makes it harmless is the page (
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from tester.results.columns import R, Table
+from tester.base.axes import Axis
+from tester.base.words import NONE
+from tester.results.columns import R, Table, unit_of
 
 Tone = Literal["", "good", "care", "bad", "small"]
 """What a paragraph or a row is: a plain one, a good word, one to be taken with care, a bad one, a remark."""
@@ -137,3 +140,23 @@ def rendered(
         for row, cells in zip(table.rows, table.texts(), strict=True)
     ]
     return ReportTable(caption, titles, rows, note, cards)
+
+
+def day(utc: str) -> str:
+    """Return the day and the minute of a wall-clock text, in UTC."""
+    return f"{utc[:10]} {utc[11:16]} UTC" if len(utc) > 15 and utc[10:11] == "T" else utc or NONE
+
+
+def file_name(source: str) -> str:
+    """Return where something was read from without its folders, which are nobody's business but its maker's."""
+    return re.split(r"[/\\]", source.rstrip("/\\"))[-1]
+
+
+def name_of(axis: Axis) -> str:
+    """Return what an axis is called."""
+    return axis.name.replace("_", " ")
+
+
+def labelled(axis: Axis) -> str:
+    """Return an axis with its unit in brackets."""
+    return f"{name_of(axis)} ({unit_of(axis)})" if axis.unit else name_of(axis)

@@ -10,9 +10,18 @@ from tester.base.words import NONE, decimal
 from tester.inputs.materials.compound import compound_model
 from tester.inputs.materials.schema import CompoundModel, SurfaceModel
 from tester.inputs.materials.surface import surface_model
-from tester.report.layout import FactSheet, Listing, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads
+from tester.report.layout import (
+    FactSheet,
+    Listing,
+    Paragraph,
+    Part,
+    ReportRow,
+    ReportSection,
+    ReportTable,
+    file_name,
+    heads,
+)
 from tester.report.record import RunRecord
-from tester.report.words import file_name
 from tester.store.records import StoredMaterial
 
 

@@ -9,7 +9,7 @@ from math import isfinite
 from tester.base.axes import condition_words
 from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, Series
-from tester.report.words import labelled
+from tester.report.layout import labelled
 from tester.results.run_results import Measured, RunResults
 from tester.store.records import StoredRepeat
 

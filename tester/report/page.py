@@ -11,8 +11,8 @@ from __future__ import annotations
 from importlib.resources import files
 from typing import Any, Final
 
-from tester.base.extras import MissingExtraError, needs
-from tester.base.plain import harmless
+from tester.base.plugins import MissingExtraError, needs
+from tester.base.words import harmless
 from tester.report.layout import Report
 
 POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from tester.base.words import NONE, counted, decimal, duration
 from tester.report.assumptions import assumed_keys, assumed_terms
-from tester.report.control import control_chart
+from tester.report.charts import control_chart
 from tester.report.inline import inline_svg
 from tester.report.layout import (
     FactSheet,
@@ -20,11 +20,12 @@ from tester.report.layout import (
     ReportSection,
     ReportTable,
     Tone,
+    day,
+    file_name,
     heads,
     rendered,
 )
 from tester.report.record import ALARMING, RunRecord
-from tester.report.words import day, file_name
 from tester.results.columns import Output
 from tester.results.pieces_table import pieces_table
 from tester.results.references_table import ReferenceRow, references_table

@@ -8,7 +8,7 @@ from pathlib import Path
 from tester.results.formats import FORMATS, Format, Record
 from tester.results.manifest import MANIFEST, manifest_text
 from tester.results.run_results import TableRow, results_of
-from tester.store.files import write_whole
+from tester.store.disk import write_whole
 from tester.store.reader import RunReader
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite
 
-from tester.base.plain import harmless
+from tester.base.words import harmless
 
 BOM = b"\xef\xbb\xbf"
 

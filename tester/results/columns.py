@@ -13,10 +13,9 @@ from enum import StrEnum
 from math import isfinite
 from typing import Generic, TypeAlias, TypeVar
 
-from tester.base.as_json import Json
 from tester.base.axes import Axes, Axis
 from tester.base.quantities import Channel, Means
-from tester.base.words import NONE, decimal, significant
+from tester.base.words import NONE, Json, decimal, significant
 from tester.results.cells import Cell, nominal
 from tester.store.records import ConditionInfo
 
@@ -53,7 +52,7 @@ class Column(Generic[R]):
     views: frozenset[Output] = frozenset()
     """The outputs that show it."""
     mark: Callable[[R], str] | None = None
-    """What stands behind the number for people (``tester.analysis.trust``)."""
+    """What stands behind the number for people (``tester.analysis.results``)."""
     digits: int | None = None
     """Significant ones, of numbers that range over decades; in place of ``decimals``."""
     stored: bool = True

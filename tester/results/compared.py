@@ -8,8 +8,7 @@ from math import isfinite
 from typing import Final, NamedTuple, TypeAlias
 
 from tester.analysis.difference import Difference, difference
-from tester.analysis.results import NAN
-from tester.analysis.trust import mark_of
+from tester.analysis.results import NAN, mark_of
 from tester.base.axes import AxisValue
 from tester.results.columns import Column, Output, Table, axis_column
 from tester.results.run_results import RunResults, TableRow

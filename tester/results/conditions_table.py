@@ -15,8 +15,7 @@ from typing import Final
 from tester.analysis.counts import Counts
 from tester.analysis.flags import flags_in
 from tester.analysis.repeats import ConditionResult
-from tester.analysis.results import NAN
-from tester.analysis.trust import mark_of
+from tester.analysis.results import NAN, mark_of
 from tester.analysis.wear import ConditionWear
 from tester.base.axes import Axis
 from tester.base.quantities import Means

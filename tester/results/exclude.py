@@ -9,12 +9,12 @@ from pathlib import Path
 from tester import __version__
 from tester.base import clock
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
-from tester.base.plain import plain_text
 from tester.base.trouble import in_words
+from tester.base.words import plain_text
 from tester.results import write_all
 from tester.results.formats import FORMATS
 from tester.results.manifest import MANIFEST, manifest_problems
-from tester.store.exclusions import add_exclusion, standing
+from tester.store.amend import add_exclusion, standing
 from tester.store.reader import DATABASE, RunReader
 from tester.store.records import StoredExclusion, StoredRepeat
 

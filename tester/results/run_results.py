@@ -22,20 +22,17 @@ from tester.analysis.reference import (
     is_reference,
 )
 from tester.analysis.repeats import ConditionResult, combine_replicates
-from tester.analysis.results import ConditionStatus
-from tester.analysis.soak_check import SoakCheck
-from tester.analysis.wear import ConditionWear, WearRate, condition_wear, wear_rate
-from tester.analysis.wear_check import WearCheck
+from tester.analysis.results import ConditionStatus, SoakCheck
+from tester.analysis.wear import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
 from tester.base.axes import Axes, condition_words
 from tester.base.quantities import Quantities
 from tester.base.words import coefficient
 from tester.results.settings import RepeatedSetting, SettingsOf, in_doubt
 from tester.results.surroundings import Reduced, SurroundingsOf
-from tester.store.catalogue import under_way
-from tester.store.exclusions import standing
+from tester.store.amend import standing
+from tester.store.catalogue import RunStatus, run_status, under_way
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, PieceInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
-from tester.store.status import RunStatus, run_status
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,11 @@ from typing import NamedTuple
 from tester.analysis.kelvin import UNKNOWN, Slope, SurfaceWarmth, slope_of_pairs
 from tester.analysis.measurand import Surroundings
 from tester.analysis.reference import CounterfaceDrift, KnownScatter, Reference
-from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import REPEATABILITY, ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
-from tester.analysis.wear_check import WearCheck
+from tester.analysis.uncertainty import Pool
+from tester.analysis.wear import WearCheck
 from tester.analysis.worn import Worn
 from tester.base.axes import AxisValue, Setpoint
 from tester.store.reader import RunReader

@@ -15,15 +15,14 @@ from tester.results.formats import Record
 from tester.results.manifest import MANIFEST, manifest_head, manifest_problems
 from tester.results.recomputed import coefficient_problems, table_problems
 from tester.results.run_results import RunResults
-from tester.store.catalogue import under_way
+from tester.store.amend import problems as exclusion_problems
+from tester.store.amend import standing
+from tester.store.catalogue import RunStatus, under_way
 from tester.store.chain import ChainFound
-from tester.store.exclusions import problems as exclusion_problems
-from tester.store.exclusions import standing
 from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion, StoredRun
 from tester.store.schema import StoreError
 from tester.store.statements import calibration_sha256, text_sha256
-from tester.store.status import RunStatus
 
 LISTED = 5
 """The newest rows since a kept head that are named."""

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from tester.analysis.misalignment import misalignment
-from tester.base.as_json import finite
 from tester.base.keys import FAST_STOP, MEANINGS, STOP
+from tester.base.words import finite
 from tester.machine.commission.person import Asks, Person, Question, StepRefused
 from tester.machine.context import Progress
 from tester.machine.prompts import DONE, Prompt, Prompts

@@ -12,7 +12,7 @@ from typing import Any
 from tester import kinds
 from tester.base import clock
 from tester.base.lock import ExclusiveUse, RigInUseError, user
-from tester.base.signals import handled
+from tester.base.processes import handled
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.rig import Rig
 from tester.machine.commission.engine import Commissioning, CommissionOutcome

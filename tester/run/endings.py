@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntFlag
 
-from tester.base.exits import (
+from tester.base.processes import (
     EXIT_DONE,
     EXIT_FAILED,
     EXIT_INCOMPLETE,

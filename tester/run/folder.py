@@ -18,10 +18,9 @@ from tester.machine.run_parts import Part
 from tester.machine.served import History
 from tester.machine.time_left import Earlier, PartTime
 from tester.run.endings import CannotStartError
-from tester.run.kinds import checked_recipe, recipe_part, run_parts
-from tester.run.rigs import load_rig_text
+from tester.run.kinds import checked_recipe, load_rig_text, recipe_part, run_parts
 from tester.run.set_up import GoodRun
-from tester.store.files import write_text
+from tester.store.disk import write_text
 from tester.store.records import RunInfo, SpecimenInfo
 from tester.store.resume import ResumePoint
 from tester.store.writer import RunWriter

@@ -8,8 +8,8 @@ from drivers.ports import LinePort
 from drivers.transports.can_bus import open_can
 from drivers.transports.serial_line import SerialLine, open_serial_line
 from drivers.transports.tcp_line import TcpLine, open_tcp_line
-from tester.base.pace import UrgentPace
-from tester.base.priority import RealTimePriority
+from tester.base.clock import UrgentPace
+from tester.base.processes import RealTimePriority
 from tester.inputs.rig import LineConfig, Rig
 from tester.machine.ports import Ports
 from tester.run.bus_log import BusLog

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from tester import kinds
+from tester.analysis.ring_runs import RingRun
 from tester.base.source import InvalidSource, Problem, read_tree
 from tester.inputs.rig import Rig
-from tester.kinds import PACKAGED, find
+from tester.kinds import PACKAGED, UnknownKindError, find
+from tester.results.ring_part import RingPart
+from tester.store.reader import RunReader
 
 if TYPE_CHECKING:
     from tester.inputs.recipe.loader import LoadedRecipe
     from tester.inputs.recipe.part import RecipePart
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
+
 
 Part = TypeVar("Part")
 
@@ -41,12 +47,12 @@ def recipe_part(rig: Rig) -> RecipePart:
 
 
 def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> LoadedRecipe:
-    """Return a recipe that a rig can carry out (tester.inputs.recipe.check.load_checked).
+    """Return a recipe that a rig can carry out (tester.inputs.recipe.loader.load_checked).
 
     Raises InvalidSource with every problem; of a recipe that does not name its kind, and is plainly written for a
     packaged kind other than the rig's, with that alone.
     """
-    from tester.inputs.recipe.check import load_checked
+    from tester.inputs.recipe.loader import load_checked
 
     try:
         return load_checked(source, rig, recipe_part(rig), name)
@@ -83,3 +89,50 @@ def _brought(rig: Rig, what: str, part: Callable[[], Part] | None) -> Callable[[
         said = f"kind: no recipe can be run on a rig of the kind {rig.kind}, for the kind brings no {what}"
         raise InvalidSource([Problem(f"rig {rig.name}", 1, 1, said)])
     return part
+
+
+def load_rig(source: str | Path = kinds.SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
+    """Return the rig of a file, or the packaged one of that name (tester.inputs.rig.load.load).
+
+    Raises InvalidSource, for a rig of a kind that no recipe can be run on too.
+    """
+    return to_be_run(kinds.load_rig(source, overrides, accept_risk))
+
+
+def load_rig_text(text: str | Path) -> Rig:
+    """Return the rig of a text or a file that a run has stored; raises InvalidSource as ``load_rig``.
+
+    Its risks were accepted when the run began, or are asked for where it goes on (tester.run.session).
+    """
+    return to_be_run(kinds.load_rig_text(text))
+
+
+@dataclass(frozen=True, slots=True)
+class RingFound:
+    """What a run has on record of its ring; ``rig``: the file of the rig that it ran on."""
+
+    part: RingPart
+    run: RingRun
+    rig: str
+
+
+def ring_part(kind: str) -> RingPart | None:
+    """Return what a kind says of its ring; None where it has none, or is not installed."""
+    try:
+        found = find(kind).ring
+    except UnknownKindError:
+        return None
+    return found() if found is not None else None
+
+
+def ring_in(folder: Path) -> RingFound | None:
+    """Return the ring of a run; None where its kind has none. Raises StoreError."""
+    with RunReader(folder) as reader:
+        info = reader.run().info
+        part = ring_part(info.kind)
+        return RingFound(part, part.of(reader, folder.name), info.rig_source) if part is not None else None
+
+
+def of_one_rig(found: Sequence[RingFound], like: RingFound) -> list[RingFound]:
+    """Return those of one rig, in order of time: rings of other rigs have an age of their own."""
+    return sorted((one for one in found if one.rig == like.rig), key=lambda one: one.run.started)

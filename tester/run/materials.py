@@ -21,7 +21,7 @@ from tester.inputs.materials.schema import CompoundModel
 from tester.inputs.recipe.schema import Recipe
 from tester.inputs.rig import Rig
 from tester.run.kinds import recipe_part
-from tester.store.files import write_whole
+from tester.store.disk import write_whole
 from tester.store.records import StoredMaterial
 from tester.store.statements import text_sha256
 

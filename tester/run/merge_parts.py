@@ -15,7 +15,7 @@ from tester.base.trouble import in_words
 from tester.inputs.rig.sensors import quantities_on
 from tester.run.endings import PartEnd, RunEnding, StopLevel, ending_of
 from tester.run.folder import PARTS, Begin, Job, Work
-from tester.store.files import sync_folder
+from tester.store.disk import sync_folder
 from tester.store.merge import Merge
 from tester.store.reader import DATABASE
 from tester.store.schema import NotBegunError, StoreError

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from drivers.ports import BusLost
 from tester.base import clock
-from tester.base.pace import Pace
+from tester.base.clock import Pace
 from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
 from tester.inputs.rig.sensors import quantities_on
@@ -27,7 +27,7 @@ from tester.run.kept import record_kept
 from tester.run.kinds import run_parts
 from tester.run.provenance import record_parameters, record_statistics
 from tester.run.set_up import GoodRun
-from tester.run.truth import Witnessed, truth_of
+from tester.run.simulated import Witnessed, truth_of
 from tester.store.reader import DATABASE
 from tester.store.writer import RESERVE_BYTES, RunWriter
 

@@ -19,7 +19,7 @@ from threading import Thread, current_thread, main_thread
 from types import TracebackType
 from typing import ParamSpec, TypeVar
 
-from tester.base.signals import leave_to_parent, not_inherited
+from tester.base.processes import leave_to_parent, not_inherited
 from tester.machine.run import Outcome
 from tester.run.endings import EXIT_CODES, StopLevel
 

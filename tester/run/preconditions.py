@@ -1,20 +1,25 @@
-"""What a run claims before it begins: room on the disk, the rig's buses, its folder; and what it tells people then."""
+"""Before a run begins: its recipe read and planned on a rig; room on the disk, the buses, its folder."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 
-from tester.base.exits import EXIT_INVALID
+from recipes import find
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
+from tester.base.processes import EXIT_INVALID
 from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
-from tester.inputs.rig.line_settings import other_settings
+from tester.inputs.rig.checks import other_settings
 from tester.machine.run import Outcome
 from tester.run.endings import EXIT_CODES, CannotStartError
-from tester.run.kinds import recipe_part
-from tester.store.space import expected_bytes, too_little_room
+from tester.run.folder import Work, work_of
+from tester.run.kinds import checked_recipe, load_rig, recipe_part
+from tester.run.materials import UsedMaterials, used_materials
+from tester.store.disk import expected_bytes, too_little_room
 
 
 def enough_room(folder: Path, plan: Plan, rig: Rig, expected: Estimate | None = None) -> None:
@@ -59,3 +64,24 @@ def told_before(rig: Rig, today: date) -> list[str]:
         raise CannotStartError(f"calibration overdue: {over} (calibration.overdue: refuse)", EXIT_INVALID)
     lines = [] if rig.simulated else [f"warning: {text}" for text in other_settings(rig)]
     return [f"calibration overdue: {over}", *lines] if over else lines
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A recipe on a rig: what is to be done, and what it takes."""
+
+    path: Path
+    recipe: LoadedRecipe
+    work: Work
+    expected: Estimate
+    materials: UsedMaterials
+
+
+def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk: str = "") -> Prepared:
+    """Read and plan a recipe. Raises InvalidSource, UnknownRecipe."""
+    rig = load_rig(rig_name, overrides, accept_risk)
+    path = find(recipe)
+    loaded = checked_recipe(path, rig)
+    work = work_of(loaded.recipe, rig)
+    materials = used_materials(loaded.recipe, path)
+    return Prepared(path, loaded, work, recipe_part(rig).estimate(work.plan, rig), materials)

@@ -18,9 +18,9 @@ from tester.analysis.kelvin import KnownSlope
 from tester.base import clock
 from tester.base.plugins import plugins
 from tester.inputs.materials.compound import compound_model
+from tester.inputs.recipe.foreseen import known_slopes
 from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.recipe.plan import Plan
-from tester.inputs.recipe.sensitivity import known_slopes
 from tester.inputs.rig import Rig
 from tester.inputs.rig.load import risks_of
 from tester.inputs.rig.profiles import profile_of

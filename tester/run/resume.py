@@ -17,11 +17,10 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.recipe.schema import Recipe
 from tester.inputs.rig import Rig
 from tester.machine.results import condition_records
-from tester.run.kinds import checked_recipe, recipe_part
+from tester.run.kinds import checked_recipe, load_rig, load_rig_text, recipe_part
 from tester.run.materials import KeptFile, kept_files, put_back, used_materials, write_materials
 from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info
-from tester.run.rigs import load_rig, load_rig_text
-from tester.store.files import write_text
+from tester.store.disk import write_text
 from tester.store.reader import RunReader
 from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, StoredCondition, StoredRun, risk_text
 from tester.store.resume import ResumePoint, resume_point

@@ -13,11 +13,10 @@ from types import FrameType
 from typing import TypeVar
 
 from tester.base.clock import utc_now
-from tester.base.exits import EXIT_INVALID, EXIT_USAGE
 from tester.base.lock import ExclusiveUse, user
-from tester.base.plain import plain_text
-from tester.base.signals import HANG_UP, QUIT, handled
+from tester.base.processes import EXIT_INVALID, EXIT_USAGE, HANG_UP, QUIT, handled
 from tester.base.trouble import in_words
+from tester.base.words import plain_text
 from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.rig import Rig
 from tester.inputs.rig.ceilings import counts_as_simulated
@@ -48,17 +47,15 @@ from tester.run.materials import KeptFile, kept_files, write_materials
 from tester.run.merge_parts import put_together, recover
 from tester.run.part_run import run_part
 from tester.run.pool import WorkerPool
-from tester.run.preconditions import enough_room, hold_rig, hold_run, told_before
-from tester.run.preparing import Prepared, prepared
+from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, prepared, told_before
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.run.reporter import LastingScreen, ReportScreen
 from tester.run.resume import prepare
 from tester.run.set_up import last_good_run
 from tester.run.workers import Sight, side_by_side
-from tester.store.catalogue import MANIFEST, cut_off
+from tester.store.catalogue import MANIFEST, WENT_THROUGH, cut_off
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
-from tester.store.status import WENT_THROUGH
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")

@@ -14,11 +14,10 @@ from drivers.drive_settings import plan
 from tester.base.source import load_tree
 from tester.inputs.rig import Rig
 from tester.run.kept import IDENTITY, KEPT, object_key
-from tester.store.catalogue import run_folders
+from tester.store.catalogue import WENT_THROUGH, run_folders
 from tester.store.reader import RunReader
 from tester.store.records import StoredParameter
 from tester.store.schema import StoreError
-from tester.store.status import WENT_THROUGH
 
 NAMED = 8
 """So many differences are told one by one at a run's start; of more the number is."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -19,16 +19,49 @@ from sim.servers.server import RigServer
 from sim.servers.tcp_doors import GATEWAY, SOCKETCAND
 from sim.servers.text_doors import CommandDoor, StandardInput
 from tester.base import clock
-from tester.base.priority import RealTimePriority
+from tester.base.processes import RealTimePriority
 from tester.base.words import listed
 from tester.inputs.rig import Rig
-from tester.inputs.rig.reach import reached
+from tester.inputs.rig.config import OneRig
 from tester.machine.tickers import collector_at_rest
 from tester.run.bus_log import BusLog
-from tester.run.kinds import run_parts
-from tester.run.rigs import load_rig
+from tester.run.kinds import load_rig, run_parts
 from tester.run.sim_console import RigClock, SimConsole, SpoiledLife
 from tester.run.simulated import simulated_ports
+
+BUS = "vcan0"
+"""Name that a client of the TCP door opens; the door takes any."""
+
+
+def reached(rig: OneRig, can: tuple[str, str], lines: Mapping[str, tuple[str, bool]], how: str) -> OneRig:
+    """Return ``rig`` as a machine, its bus at ``can`` (python-can's interface and channel), its lines at ``lines``.
+
+    Those are port, and whether it is one of Modbus TCP. ``how`` goes into its name. What it is to believe of the air
+    around it is what the simulated rig's air is.
+    """
+    interface, channel = can
+    return replace(
+        rig.in_air(rig.ambient_c),
+        rig=f"{rig.rig}, over {how}",
+        simulated=False,
+        can=replace(rig.can, interface=interface, channel=channel),
+        lines={
+            name: replace(line, port=lines[name][0], framing="socket" if lines[name][1] else "rtu")
+            for name, line in rig.lines.items()
+        },
+    )
+
+
+def reached_over_tcp(rig: OneRig, can: tuple[str, int], lines: Mapping[str, tuple[str, int]]) -> OneRig:
+    """Return ``rig`` as a machine whose bus is at ``can`` (host, port; socketcand) and whose Modbus lines are at
+    ``lines`` (Modbus TCP)."""
+    places = {name: (_text(address), True) for name, address in lines.items()}
+    return reached(rig, ("socketcand", f"{BUS}@{_text(can)}"), places, "TCP")
+
+
+def _text(address: tuple[str, int]) -> str:
+    return f"{address[0]}:{address[1]}"
+
 
 SHOWN_EVERY_S = 1.0
 """How often the status line is written, s of this computer's clock."""
@@ -214,4 +247,3 @@ def write_atomically(path: Path, text: str) -> None:
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
-

@@ -1,7 +1,8 @@
-"""Wire a run to the simulated rig in this process."""
+"""The simulated rig of a run in this process: its wires, and the truth that it knows."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,13 @@ from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.materials.setting import law_setting
+from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import DeviceConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 from tester.machine.ports import Ports
 from tester.run.bus_log import BusLog
 from tester.run.kinds import run_parts
+from tester.store.recorder import Recorder
 
 
 def simulated_ports(
@@ -61,3 +64,34 @@ def _device(config: DeviceConfig) -> DeviceSpec:
     return DeviceSpec(
         profile_of(config.profile), config.line, config.unit_id, config.simulated, config.part_of, config.channels
     )
+
+
+Truth = Callable[[Mapping[str, float]], Mapping[str, float]]
+"""What a simulated rig answers: figures of the repeat that has begun, at setpoints by axis."""
+
+
+def truth_of(world: Any, plant: Any) -> Truth | None:
+    """Return what tells the truth of a simulated rig; None where none is asked for, or the rig has none."""
+    return getattr(world, "truth", None) if getattr(plant, "record_truth", False) else None
+
+
+class Witnessed:
+    """The hands at a simulated rig, with a note of what it knows whenever a repeat begins."""
+
+    def __init__(self, attendant: Any, truth: Truth, plan: Plan, recorder: Recorder) -> None:
+        """``plan``: of this part of the run, in which a row of the table is one condition."""
+        self._attendant = attendant
+        self._truth = truth
+        self._recorder = recorder
+        self._steps = {step.row: step for step in plan.conditions()}
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what else hands do."""
+        return getattr(self._attendant, name)
+
+    def begin_repeat(self, row: int, repeat: int, attempt: int, *more: Mapping[str, float]) -> None:
+        """Begin a repeat at the rig, and put on record what that is; ``more``: what a kind tells its rig of it."""
+        self._attendant.begin_repeat(row, repeat, attempt, *more)
+        step = self._steps.get(row)
+        if step is not None:
+            self._recorder.truth(step.condition, repeat, attempt, self._truth(step.setpoint.numbers()))

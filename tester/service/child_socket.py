@@ -12,7 +12,7 @@ import socket
 import subprocess
 from collections.abc import Sequence
 
-from tester.base.children import module_command
+from tester.base.processes import module_command
 
 INHERITS = os.name == "posix"
 BACK_S = 20.0

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal, TypeAlias
 
 from pydantic import AfterValidator, ConfigDict, Field
 
-from tester.base.plain import plain_text
+from tester.base.words import plain_text
 
 VERSION = 2
 """Version of this protocol. A change that an older client cannot ignore raises it."""

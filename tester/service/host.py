@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tester.base.exits import EXIT_FAILED, EXIT_USAGE
 from tester.base.lock import ExclusiveUse, RigInUseError
 from tester.base.plugins import allow_only
+from tester.base.processes import EXIT_FAILED, EXIT_USAGE
 from tester.service.address import (
     CARD,
     HAS_UNIX,

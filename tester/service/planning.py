@@ -24,7 +24,7 @@ from pydantic import TypeAdapter
 from recipes import UnknownRecipe
 from tester.base.source import InvalidSource
 from tester.run.endings import CannotStartError
-from tester.run.preparing import Prepared, prepared
+from tester.run.preconditions import Prepared, prepared
 from tester.service.child_socket import link_of, spawn
 
 STEPS_AT_ONCE = 200

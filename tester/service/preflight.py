@@ -18,10 +18,9 @@ from tester.inputs.rig import CalibrationConfig, Rig
 from tester.machine.served import History, Left, ServedKind
 from tester.results.run_results import results_of
 from tester.service.state import Alarm, DiskView
-from tester.store.catalogue import run_folders
+from tester.store.catalogue import RunStatus, run_folders
 from tester.store.reader import RunReader
 from tester.store.schema import StoreError
-from tester.store.status import RunStatus
 
 SOON = timedelta(days=30)
 """A certificate that ends within this time is shown with its date [A]: a laboratory wants weeks for a calibration."""

@@ -18,8 +18,7 @@ from pydantic import JsonValue
 from pydantic_core import from_json
 
 import recipes
-from tester.base.children import tester_command
-from tester.base.exits import EXIT_INVALID
+from tester.base.processes import EXIT_INVALID, tester_command
 from tester.service.commands import CheckRecipe, ListRecipes, ListRuns, Query, ShowPlan
 
 AT_ONCE = 2

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from types import FrameType
-from typing import TypeVar, cast
+from typing import Final, TypeVar, cast
 
 from tester.base import clock
 from tester.inputs.recipe.estimate import Estimate
@@ -17,14 +18,29 @@ from tester.machine.time_left import RunPosition
 from tester.run.endings import CannotStartError, StopLevel
 from tester.run.folder import Begin, Job, Work, earlier_of, parts_time
 from tester.run.kinds import recipe_part, served_kind
-from tester.run.preparing import Prepared
+from tester.run.preconditions import Prepared
 from tester.run.session import Session, SessionOptions
-from tester.service.aside import aside
 from tester.service.planning import Task, planned
-from tester.service.progress import PlanTrack
 from tester.service.state import RunView, TickView
 from tester.service.state_publisher import Desk
-from tester.store.space import expected_bytes
+from tester.service.values import PlanTrack
+from tester.store.disk import expected_bytes
+
+LOOK_S: Final = 0.02
+"""Period at which the owner serves its clients, s, as between two ticks."""
+
+
+def aside(work: Callable[[], Got], look: Callable[[], object]) -> Got:
+    """Run ``work`` in a thread and return its result; call ``look`` every ``LOOK_S`` until it is done.
+
+    ``work`` is never interrupted: it may be writing. Raises what it raises.
+    """
+    with ThreadPoolExecutor(1, thread_name_prefix="aside") as thread:
+        done = thread.submit(work)
+        while not wait((done,), LOOK_S).done:
+            look()
+        return done.result()
+
 
 Got = TypeVar("Got")
 

@@ -15,9 +15,9 @@ from typing import TypeVar
 from drivers.ports import BusLost
 from recipes import UnknownRecipe
 from tester.base import clock
+from tester.base.clock import Pace
 from tester.base.lock import ExclusiveUse
-from tester.base.pace import Pace
-from tester.base.signals import HANG_UP, QUIT, SUSPENDING
+from tester.base.processes import HANG_UP, QUIT, SUSPENDING
 from tester.base.source import InvalidSource
 from tester.base.trouble import in_words
 from tester.machine.manual import NAME, ManualExecutor
@@ -25,12 +25,10 @@ from tester.machine.run import Outcome, Run
 from tester.machine.tickers import TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
 from tester.run.endings import CannotStartError
 from tester.run.folder import part_time
-from tester.run.kinds import run_parts
+from tester.run.kinds import load_rig, run_parts
 from tester.run.part_run import closed_early, connect_ports, left_safe
 from tester.run.preconditions import hold_rig
-from tester.run.rigs import load_rig
 from tester.run.session import SessionOptions
-from tester.service.aside import aside
 from tester.service.command_handler import Orders
 from tester.service.commands import (
     Arm,
@@ -38,18 +36,16 @@ from tester.service.commands import (
     RunRecipe,
 )
 from tester.service.gateway_link import GatewayLink
-from tester.service.left_on_rig import left_on_rig
 from tester.service.link import Order
-from tester.service.manual import open_record
+from tester.service.manual_mode import left_on_rig, open_record
 from tester.service.preflight import past_of
-from tester.service.progress import PlanTrack
-from tester.service.running import RunScreen, ServiceSession
+from tester.service.running import RunScreen, ServiceSession, aside
 from tester.service.state import RunView
 from tester.service.state_publisher import Desk
-from tester.store.catalogue import find_run, under_way
+from tester.service.values import PlanTrack
+from tester.store.catalogue import RunStatus, find_run, run_status, under_way
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
-from tester.store.status import RunStatus, run_status
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")

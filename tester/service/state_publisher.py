@@ -20,13 +20,12 @@ from tester.service.alarms import AlarmList, Cause
 from tester.service.gateway_link import GatewayLink
 from tester.service.link import Order
 from tester.service.preflight import Past, known_checks
-from tester.service.progress import PlanTrack
 from tester.service.protocol import SNAPSHOT_S
 from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView
-from tester.service.values import trend_row, unknown_values
+from tester.service.values import PlanTrack, trend_row, unknown_values
 from tester.service.watch import RunWatch, risk_of
+from tester.store.disk import MARGIN, FreeRoom
 from tester.store.schema import StoreError
-from tester.store.space import MARGIN, FreeRoom
 
 UNWATCHED_S = 1.0
 """Period of states without any client, s: the gateway's trend continues at a rate that costs nothing."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Protocol, cast
 
-from tester.base.extras import MissingExtraError, needs
+from tester.base.plugins import MissingExtraError, needs
 from tester.store.reader import RunReader
 
 

@@ -1,4 +1,4 @@
-"""The runs in a folder: finding one by its name, naming all, telling those that were cut off."""
+"""The runs in a folder: one by its name, all of them, each with its status."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from contextlib import suppress
 from difflib import get_close_matches
+from enum import StrEnum
 from pathlib import Path
 
 from tester.base.lock import RUN_LOCK, Holder, user_of
@@ -102,3 +103,56 @@ def under_way(folder: Path) -> Holder | None:
 def cut_off(under: Path) -> list[Path]:
     """Return the runs under a folder that ended without an end: the process died, or the power failed."""
     return [f for f in run_folders(under) if not (f / MANIFEST).is_file() and under_way(f) is None]
+
+
+class RunStatus(StrEnum):
+    """How a run stands. The words are those of every command, screen, catalogue and of JSON."""
+
+    RUNNING = "running"
+    """A process works on it: it holds the lock of the run's folder."""
+    INTERRUPTED = "interrupted"
+    """It has no end on record and nobody works on it: the process died, the power failed, the program broke off."""
+    DONE = "done"
+    """It went through its plan, and every condition has a value to be trusted."""
+    INCOMPLETE = "incomplete"
+    """It went through its plan, and a condition at least has no value to be trusted."""
+    STOPPED = "stopped"
+    TRIPPED = "tripped"
+    FAILED = "failed"
+    UNREACHABLE = "rig unreachable"
+    UNREADABLE = "unreadable"
+    """Its record cannot be read."""
+
+    @property
+    def over(self) -> bool:
+        """Return whether its plan was gone through to the end: nothing is left to resume."""
+        return self in (RunStatus.DONE, RunStatus.INCOMPLETE)
+
+    @property
+    def can_resume(self) -> bool:
+        """Return whether `tester resume` may go on with it."""
+        return not self.over and self not in (RunStatus.RUNNING, RunStatus.UNREADABLE)
+
+
+WENT_THROUGH = "done"
+"""What a record says of a run that went through its whole plan."""
+_RECORDED = {
+    "stopped": RunStatus.STOPPED,
+    "tripped": RunStatus.TRIPPED,
+    "rig unreachable": RunStatus.UNREACHABLE,
+    "running": RunStatus.INTERRUPTED,
+    "interrupted": RunStatus.INTERRUPTED,
+}
+"""What a record says, and what that means where nobody works on the run. ``running`` is written at the beginning."""
+
+
+def run_status(recorded: str, *, held: bool, missing: bool) -> RunStatus:
+    """Return the status of a run.
+
+    ``recorded``: the status in its record; ``held``: a process holds the lock of its folder; ``missing``: a condition
+    has no value to be trusted. A record whose word is none of ours has failed: nothing says that it went through.
+    """
+    if recorded == WENT_THROUGH:
+        # Also while held: tables are being made, or a repeat is left out by hand.
+        return RunStatus.INCOMPLETE if missing else RunStatus.DONE
+    return RunStatus.RUNNING if held else _RECORDED.get(recorded, RunStatus.FAILED)

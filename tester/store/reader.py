@@ -15,17 +15,15 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Literal, TypeVar
 
 from tester.analysis.kelvin import KnownSlope
-from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus
-from tester.analysis.soak_check import SoakCheck
+from tester.analysis.results import Burst, ConditionStatus, Judgement, RepeatResult, RepeatStatus, SoakCheck
 from tester.analysis.terms import Term
-from tester.analysis.wear_check import WearCheck
+from tester.analysis.wear import WearCheck
 from tester.base.axes import Axes
 from tester.base.quantities import Means, Quantities
 from tester.store import schema
-from tester.store.axes import axes_of, setpoint_of
-from tester.store.budget import term_of
 from tester.store.chain import ChainFound, inspect
 from tester.store.channels import recorded_channels
+from tester.store.kind_rows import axes_of, setpoint_of, term_of
 from tester.store.records import (
     NAN,
     Calibration,

@@ -9,11 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 
-from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus
-from tester.analysis.soak_check import SoakCheck
-from tester.analysis.wear_check import WearCheck
-from tester.store.axes import axis_rows, setpoint_columns
-from tester.store.budget import budget_rows
+from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus, SoakCheck
+from tester.analysis.wear import WearCheck
+from tester.store.kind_rows import axis_rows, budget_rows, setpoint_columns
 from tester.store.records import (
     NAN,
     Calibration,

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from math import isfinite
 
 from tester.analysis.blocks import Block, blocks_from_samples
-from tester.analysis.repeatability import NOTHING_POOLED, Pool
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tester.analysis.schemes import Scheme
-from tester.inputs.recipe.stand import Mounted, Stand
+from tester.analysis.uncertainty import NOTHING_POOLED, Pool
+from tester.inputs.recipe.plan import Mounted, Stand
+from tester.store.catalogue import WENT_THROUGH
 from tester.store.reader import RunReader
 from tester.store.records import NAN, PieceInfo, StoredCondition, StoredRepeat
-from tester.store.status import WENT_THROUGH
 
 ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
 """A repeat with one of these is its condition's last."""

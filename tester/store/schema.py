@@ -6,8 +6,8 @@ column names; rig time (``..._s``) is the run's own clock, ``..._utc`` is ISO 86
 does not exist is NULL (SQLite stores NaN as such, hence no NOT NULL on what is measured). Text holds what a person
 wrote, unescaped.
 
-Some tables get further columns as a run begins: ``condition`` one for each axis (tester.store.axes), ``repeat`` and
-``tare`` one for each averaged channel (tester.store.channels).
+Some tables get further columns as a run begins: ``condition`` one for each axis (tester.store.kind_rows), ``repeat``
+and ``tare`` one for each averaged channel (tester.store.channels).
 
 The schema's number is SQLite's ``user_version``. Kept to what SQLite 3.34 knows: no STRICT tables, no RETURNING.
 """
@@ -318,9 +318,9 @@ CREATE TABLE truth (
 );
 """
 """Conditions with the judgement of their repeats, and what was measured. ``soak``: the surface's thermometer against
-the heater's sensor at the end of each soak (tester.analysis.soak_check); a condition that soaked again after a hold has
+the heater's sensor at the end of each soak (tester.analysis.results); a condition that soaked again after a hold has
 a row for each. ``truth``: what a simulated rig knows of each repeat beside what was measured, on request
-(tester.run.truth); for tests that judge results, no reader returns it."""
+(tester.run.simulated); for tests that judge results, no reader returns it."""
 
 _JOURNAL = """
 CREATE TABLE event (

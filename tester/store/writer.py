@@ -30,7 +30,7 @@ from tester.base.quantities import KEY, TIME, Quantities
 from tester.base.trouble import in_words
 from tester.store.chain import Chain
 from tester.store.channels import add_channels, recorded_channels
-from tester.store.files import sync_folder
+from tester.store.disk import sync_folder
 from tester.store.recorder import NullRecorder, Recorder, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.schema import StoreError, migrate, version_of

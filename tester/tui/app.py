@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Callable, Iterable
-from typing import ClassVar
+from typing import ClassVar, Final
 
 from textual.app import ComposeResult, SuspendNotSupported, SystemCommand
 from textual.binding import Binding, BindingType
@@ -13,26 +14,45 @@ from textual.widget import Widget
 from textual.widgets import ContentSwitcher
 
 from tester.base import clock
+from tester.base.processes import tester_command
+from tester.base.source import InvalidSource
+from tester.run.kinds import load_rig
 from tester.service.commands import Acknowledge, Hold, ListRuns, Release, TakeControl
 from tester.service.state import RunView, StateView
-from tester.tui.commissioning import FREE, begins_here, commission_rig
 from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
-from tester.tui.dialogs.dialog import Dialog
-from tester.tui.dialogs.log import TextDialog
+from tester.tui.dialogs.dialog import Dialog, TextDialog
 from tester.tui.dialogs.resume import ResumeDialog, resumable
-from tester.tui.gone import TITLE, death_text
-from tester.tui.host import HostApp, TuiOptions
+from tester.tui.gone import SMALLEST, TITLE, SmallPanel, death_text
+from tester.tui.host import HostApp, Keys, TuiOptions, View
 from tester.tui.pages.bus import BusPage
 from tester.tui.pages.manual import ManualPage
 from tester.tui.pages.recipes import RecipesView
 from tester.tui.pages.results import ResultsView
 from tester.tui.pages.ring import RingPage
 from tester.tui.pages.run import RunPage as RunScreen
-from tester.tui.pages.view import Keys, View
 from tester.tui.scene import UNDER_WAY
 from tester.tui.theme import CSS, THEMES
 from tester.tui.widgets.head import RING, TABS, KeyLine, StateLine, TabLine, Tabs
-from tester.tui.widgets.small import SMALLEST, SmallPanel
+
+FREE: Final = ("OFFLINE", "IDLE", "INTERRUPTED")
+"""Modes of a service that does not have the rig: it takes the buses for a run or manual mode, and gives them back."""
+
+
+def begins_here(options: TuiOptions, state: StateView) -> bool:
+    """Tell whether the rig that this screen was told of is the service's."""
+    try:
+        return options.address is None and load_rig(options.rig).name == state.rig
+    except (InvalidSource, OSError):
+        return False
+
+
+def commission_rig(options: TuiOptions) -> None:
+    """Commission, and come back when it has ended; the terminal is the other process's meanwhile."""
+    command = tester_command("commission", options.rig, "--tui", "--out", str(options.runs))
+    command += ["--ascii"] if options.plain else []
+    command += ["--theme", options.theme] if options.theme else []
+    subprocess.run(command, check=False)
+
 
 WIDE = (110, 34)
 HUGE = (180, 46)

@@ -1,9 +1,10 @@
-"""What a screen says of a service that is gone: what became of it, what the devices do by themselves, what to do."""
+"""The screen when the service is gone, or the terminal too small: what became of the run, what to do."""
 
 from __future__ import annotations
 
-from tester.tui.formatting import clean
+from tester.tui.formatting import clean, fit
 from tester.tui.scene import ScreenScene
+from tester.tui.widgets.panel import Panel, Parts, rows
 
 TITLE = "The service has died"
 SHORT = "the service has died: nobody controls the rig. Use the machine's own stop"
@@ -61,3 +62,22 @@ def farewell(scene: ScreenScene) -> str:
     if scene.lost or scene.state is None:
         return "no link to a service: whether a run goes on is not known here. `tester status` looks"
     return "detached: the service and its run go on. `tester tui` comes back, `tester stop` stops the rig"
+
+
+SMALLEST = (60, 15)
+"""Columns and lines from which on the screens are shown."""
+
+
+class SmallPanel(Panel):
+    """That the run goes on, the question that waits, why the rig is in its mode."""
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return some lines."""
+        needed = f"needed: {SMALLEST[0]} x {SMALLEST[1]}"
+        texts = ["terminal too small,", gone_line(scene) or "the run continues", needed]
+        if scene.state is not None:
+            if scene.state.prompt is not None:
+                texts.append(f"asks: {clean(scene.state.prompt.text)}")
+            texts.append(clean(scene.state.mode_text))
+        lines: list[Parts] = [[fit(text, width)] for text in texts[:height]]
+        return rows(lines)

@@ -1,4 +1,4 @@
-"""The application below its screens: the link to the service, what is known of it, and how orders reach it."""
+"""The application below its screens (the link to the service, orders to it) and the base of every screen."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import ClassVar, cast
 
 from pydantic import JsonValue
 from textual.binding import Binding, BindingType
+from textual.containers import Vertical
 from textual.dom import DOMNode
 
 from tester.base import clock, keys
@@ -24,10 +25,11 @@ from tester.service.state import RunView
 from tester.service.stop_call import NotTakenError
 from tester.tui.formatting import clean
 from tester.tui.gone import farewell, stop_failed
-from tester.tui.look import LookApp
 from tester.tui.scene import ScreenScene
 from tester.tui.starting import start_service
 from tester.tui.stop_line import StopLine, stopping
+from tester.tui.theme import LookApp
+from tester.tui.widgets.panel import Panel
 
 TICK_S = 0.5
 """The age of what is shown is looked at this often."""
@@ -201,3 +203,34 @@ def client_name() -> str:
 def host_of(node: DOMNode) -> HostApp:
     """Return the application that a widget is part of."""
     return cast("HostApp", node.app)  # pyright: ignore[reportUnknownMemberType]  # Textual leaves its type open
+
+
+Keys = tuple[tuple[str, str], ...]
+
+
+class View(Vertical):
+    """A screen between the fixed lines. ``KEYS``: what the last line names; ``HELP``: what F1 shows."""
+
+    KEYS: ClassVar[Keys] = ()
+    HELP: ClassVar[str | None] = ""
+
+    @property
+    def host(self) -> HostApp:
+        """Return the application."""
+        return host_of(self)
+
+    def show(self, scene: ScreenScene) -> None:
+        """Show the scene as it is now."""
+        for panel in self.query(Panel):
+            panel.show(scene)
+
+    def enter(self) -> None:
+        """Become the screen that is shown, once each time."""
+        self.take_focus()
+
+    def take_focus(self) -> None:
+        """Have the keys go to where they are wanted first."""
+        self.focus()
+
+    def leave(self) -> None:
+        """Another screen is shown from now on."""

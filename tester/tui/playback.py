@@ -14,8 +14,7 @@ from tester.base.quantities import Channel, Quantities
 from tester.base.screen import MachineView, PlotView, Value, trend_columns
 from tester.machine.served import Wanted
 from tester.results.run_results import results_of
-from tester.run.kinds import served_kind
-from tester.run.rigs import load_rig_text
+from tester.run.kinds import load_rig_text, served_kind
 from tester.service.protocol import Event
 from tester.service.state import (
     ClientsView,

@@ -12,11 +12,10 @@ from textual.widget import Widget
 
 from tester.base.words import duration
 from tester.tui.app import TesterApp
-from tester.tui.host import TuiOptions
+from tester.tui.host import Keys, TuiOptions, View
 from tester.tui.pages.results import ResultsView
 from tester.tui.pages.ring import RingPage
 from tester.tui.pages.run import RunPage
-from tester.tui.pages.view import Keys, View
 from tester.tui.playback import Playback
 from tester.tui.scene import ScreenScene
 from tester.tui.stored import Stored

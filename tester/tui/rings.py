@@ -9,7 +9,7 @@ from typing import Final
 
 from tester.analysis.ring_errors import RingSector
 from tester.analysis.ring_runs import RingRun, ages_of
-from tester.run.ring import RingFound, of_one_rig, ring_in
+from tester.run.kinds import RingFound, of_one_rig, ring_in
 from tester.store.catalogue import run_folders, under_way
 from tester.store.schema import StoreError
 

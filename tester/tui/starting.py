@@ -1,12 +1,13 @@
-"""Start the service as a process of its own, which outlives the terminal and whoever started it."""
+"""Processes that the screen starts: the service, which outlives the terminal, and single commands."""
 
 from __future__ import annotations
 
+import asyncio
 import subprocess
 import sys
 from pathlib import Path
 
-from tester.base.children import tester_command
+from tester.base.processes import tester_command
 from tester.service.address import folder
 
 LOG = "serve.log"
@@ -27,3 +28,13 @@ def start_service(rig: str, runs: Path) -> None:
         subprocess.Popen(
             arguments, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, creationflags=detached
         )
+
+
+async def call(*arguments: str) -> tuple[bool, str]:
+    """Carry out ``tester ARGUMENTS``; return whether it was done, and what it said."""
+    process = await asyncio.create_subprocess_exec(
+        *tester_command(*arguments),
+        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    _, told = await process.communicate()
+    return process.returncode == 0, told.decode(errors="replace").strip()

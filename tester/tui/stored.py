@@ -30,7 +30,7 @@ class Row:
     mu: float | None
     condition: int
     mark: str = ""
-    """Of mu (tester.analysis.trust): "" where it is trusted."""
+    """Of mu (tester.analysis.results): "" where it is trusted."""
     figures: str = ""
     """What the columns behind the setpoints say, with their headings."""
     flags: tuple[str, ...] = ()

@@ -11,7 +11,7 @@ import shlex
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING
 
-from tester.base.children import tester_command
+from tester.base.processes import tester_command
 
 if TYPE_CHECKING:
     from aiohttp import web

@@ -18,8 +18,8 @@ from bench.report import as_json, as_markdown, missed, table
 from bench.speed import one_compound
 from bench.wrapping import ENTRY_POINTS, wrapped
 from sim.machines.wheel_on_belt.plant import Plant
-from tester.inputs.recipe.check import load_checked
 from tester.inputs.recipe.conditions import conditions_of
+from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
 

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 import recipes
-from tester.inputs.recipe.check import check
-from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.loader import check, load_recipe
 from tester.inputs.recipe.schema import schema_text
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by

@@ -8,7 +8,7 @@ from tester.analysis.fit.check import Errors
 from tester.analysis.fit.joint import GroupFit
 from tester.analysis.fit.part import PublishedTable, TableLine
 from tester.analysis.fit.trends import Interval
-from tester.base.as_json import Json, finite
+from tester.base.words import Json, finite
 
 
 def interval(given: Interval) -> Json:

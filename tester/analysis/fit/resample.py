@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-    Truths = NDArray[np.bool_]
+    Booleans = NDArray[np.bool_]
 
 RESAMPLES: Final = 999
 SEED: Final = 0
@@ -83,7 +83,7 @@ def without_cells(problem: FitProblem, fitted: Array, cells: Sequence[int]) -> t
     return predicted, len(keys) - int(ended.sum())
 
 
-def _able(problem: FitProblem, counts: Array) -> Truths:
+def _able(problem: FitProblem, counts: Array) -> Booleans:
     """Return, for each row of ``counts``, whether its conditions determine the free parameters."""
     able = (counts > 0.0).sum(axis=-1) >= len(problem.free)
     for i in problem.free:

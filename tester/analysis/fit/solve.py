@@ -12,13 +12,13 @@ import numpy as np
 
 from tester.analysis.fit.law import FitError
 from tester.analysis.fit.problem import ROBUST, FitProblem
-from tester.base.extras import MissingExtraError, needs
+from tester.base.plugins import MissingExtraError, needs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-    Truths = NDArray[np.bool_]
+    Booleans = NDArray[np.bool_]
 
 MOST_EVALUATIONS: Final = 2000
 MOST_STEPS: Final = 60
@@ -80,7 +80,7 @@ def cost(residuals: Array, counts: Array) -> Array:
     return np.sum(counts * 2.0 * ROBUST**2 * (np.sqrt(1.0 + z) - 1.0), axis=-1)
 
 
-def solve_many(problem: FitProblem, start: Array, y: Array, prior: Array, counts: Array) -> tuple[Array, Truths]:
+def solve_many(problem: FitProblem, start: Array, y: Array, prior: Array, counts: Array) -> tuple[Array, Booleans]:
     """Return the best fit of each of a batch, shape (B, q), and whether its search has converged, shape (B,).
 
     ``start``: (q,) or (B, q); ``y``: ln mu, (n,) or (B, n); ``prior``: (B, priors); ``counts``: how often a condition

@@ -1,10 +1,11 @@
-"""Inputs of a master curve: measured conditions, and their arrays."""
+"""What a master curve is made of: conditions that a kind hands in, and the arrays that stand for them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -102,3 +103,15 @@ def set_of(points: Sequence[MasterPoint]) -> MasterSet:
         np.array([source.gain for source in sources]),
         max(condition.thermometer_k for condition in sources),
     )
+
+
+class MasterPart(Protocol):
+    """A kind's contribution to master curves."""
+
+    def run(self, folder: Path) -> MasterRun:
+        """Return the conditions of a run; raises StoreError where it cannot be read."""
+        ...
+
+    def packaged(self, name: str) -> MasterRun:
+        """Return conditions that ship with the program; raises KeyError."""
+        ...

@@ -10,15 +10,19 @@ then a shift is a factor by another name, and any law of aT fits.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
+from math import log
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from tester.analysis.master_curve.collapse import Collapse, padded
 from tester.analysis.master_curve.overlap import TemperaturePair
+from tester.analysis.master_curve.points import MasterPoint
 from tester.analysis.master_curve.spline import left_over, orthonormal
 from tester.analysis.quantiles import f_quantile
 
@@ -26,6 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
 
 LEVEL: Final = 1e-4
 """Level of each test: one in ten thousand sets that do collapse is refused [A]."""
@@ -155,3 +160,40 @@ def _test(name: str, base: Array, further: Array, y: Array) -> CollapseTest | No
     before, after = (float(np.sum(left_over(q, y) ** 2)) for q in (plain, wide))
     chance = max(after / df, FLOOR**2)
     return CollapseTest(name, max(before - after, 0.0) / more / chance, f_quantile(1.0 - LEVEL, float(more), float(df)))
+
+
+CLEAR: Final = 0.02
+"""Smallest change of ln mu that counts: 2 % [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Signs:
+    """Cells of two neighbouring speeds and temperatures in which mu changes clearly with both.
+
+    ``same``: cells in which it changes the same way with both, which no master curve allows.
+    """
+
+    cells: int
+    same: int
+
+
+def signs_of(points: Sequence[MasterPoint]) -> Signs:
+    """Return how often mu rises, or falls, with both speed and temperature; other axes and compounds are kept apart."""
+    grids: defaultdict[tuple[object, ...], dict[tuple[float, float], float]] = defaultdict(dict)
+    for point in points:
+        key = (point.compound, point.source.name, *sorted(point.held.items()))
+        grids[key][point.block_c, round(log(point.speed_m_s), 2)] = log(point.mu)
+    cells = same = 0
+    for grid in grids.values():
+        celsius, speeds = (sorted({place[i] for place in grid}) for i in (0, 1))
+        for cold, warm in pairwise(celsius):
+            for slow, fast in pairwise(speeds):
+                four = [grid.get((t, v)) for t in (cold, warm) for v in (slow, fast)]
+                if any(value is None for value in four):
+                    continue
+                a, b, c, d = (value for value in four if value is not None)
+                with_speed, with_warmth = 0.5 * (b - a + d - c), 0.5 * (c - a + d - b)
+                if min(abs(with_speed), abs(with_warmth)) >= CLEAR:
+                    cells += 1
+                    same += (with_speed > 0.0) == (with_warmth > 0.0)
+    return Signs(cells, same)

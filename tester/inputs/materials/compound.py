@@ -12,10 +12,15 @@ from pydantic import ValidationError
 from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
 from tester.base.units import shown
 from tester.inputs.materials.dma import MAX_BYTES, read_dma
-from tester.inputs.materials.dma_options import DmaOptions
-from tester.inputs.materials.files import DataFile, DataFileError, MaterialFile, decoded, read_beside
-from tester.inputs.materials.finding import Findings
-from tester.inputs.materials.headings import QUANTITIES, conversion, heading, heading_problems, quantity_named
+from tester.inputs.materials.files import DataFile, DataFileError, Findings, MaterialFile, decoded, read_beside
+from tester.inputs.materials.headings import (
+    QUANTITIES,
+    DmaOptions,
+    conversion,
+    heading,
+    heading_problems,
+    quantity_named,
+)
 from tester.inputs.materials.moduli import ModuliRow, ModuliTable, judge, shift_doubts
 from tester.inputs.materials.schema import CompoundModel, TableFileModel, TableModel
 

@@ -8,15 +8,15 @@ converted is noted, what is doubtful is kept.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from difflib import get_close_matches
 from math import isfinite, nan
+from typing import Final
 
-from tester.inputs.materials.dma_options import DmaOptions
-from tester.inputs.materials.dma_unused import tell_unused
-from tester.inputs.materials.finding import Findings
+from tester.inputs.materials.files import Findings
 from tester.inputs.materials.headings import (
+    DmaOptions,
     Heading,
     UnitRefusedError,
     accepted,
@@ -29,6 +29,48 @@ from tester.inputs.materials.headings import (
 )
 from tester.inputs.materials.layout import DmaLayout, layout_of, without_brackets
 from tester.inputs.materials.moduli import ALIKE, ModuliRow, ModuliTable, judge
+
+_STRAIN: Final = re.compile(r"(dyn(amic)?|shear|tensile|oscillation)?\W*(strain|deformation)\b(?!\W*rate)", re.I)
+_PERCENT: Final = re.compile(r"%|per\s?cent", re.I)
+
+
+def tell_unused(layout: DmaLayout, used: Set[int], result: Findings) -> None:
+    """Note the columns that are not used; note a strain's range, and doubt a table of several strains."""
+    unused = [(at, text) for at, text in enumerate(layout.headings) if text and at not in used]
+    if unused:
+        result.notes.append("columns not used: " + ", ".join(f'"{text}"' for _, text in unused))
+    for at, text in unused:
+        if _STRAIN.match(text):
+            _tell_strain(layout, at, text, result)
+
+
+def _tell_strain(layout: DmaLayout, at: int, text: str, result: Findings) -> None:
+    values = sorted(_values(layout, at))
+    if not values:
+        return
+    below = layout.units[at] if layout.units is not None and at < len(layout.units) else ""
+    unit = " %" if _PERCENT.search(text + below) else ""
+    low, high = values[0], values[-1]
+    phrase = f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
+    result.notes.append(f'strain: {phrase}, from "{text}"' + ("" if unit else ", whose unit is not said"))
+    if high > ALIKE * low:
+        result.doubt(
+            (layout.at + 1, 1),
+            f"measured at strains of {phrase}: moduli of filled rubber fall with strain, and laws take them for one",
+            lasting=True,
+        )
+
+
+def _values(layout: DmaLayout, at: int) -> Iterator[float]:
+    for _, cells in layout.rows():
+        cell = cells[at] if at < len(cells) else ""
+        try:
+            value = abs(float(cell if layout.delimiter == "," else cell.replace(",", ".")))
+        except ValueError:
+            continue
+        if isfinite(value):
+            yield value
+
 
 MAX_BYTES = 16 * 1024 * 1024
 TAN_PERCENT, TAN_LEAST = 2.0, 5e-4

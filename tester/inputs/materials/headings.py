@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import pi
 from types import MappingProxyType
 from typing import Final
@@ -152,3 +152,18 @@ def conversion(quantity: str, unit: str) -> Callable[[float], float]:
     else:
         factor = _MODULUS_UNITS.get(unit, 1.0)
     return lambda value: value * factor
+
+
+@dataclass(frozen=True, slots=True)
+class DmaOptions:
+    """What a person says of a file beside what is in it. ``columns``: heading by quantity; ``units``: by heading."""
+
+    columns: Mapping[str, str] = field(default_factory=dict[str, str])
+    units: Mapping[str, str] = field(default_factory=dict[str, str])
+    frequency_hz: float | None = None
+    temperature_c: float | None = None
+    poisson: float = 0.5
+    ask_column: str = '--columns "{quantity}=HEADING"'
+    ask_unit: str = '--unit "{heading}={unit}"'
+    ask_value: str = '--{quantity} "{example}"'
+    """How it is said, for messages."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import isfinite, log10
 
-from tester.inputs.materials.finding import Findings, Place
+from tester.inputs.materials.files import Findings, Place
 
 LEAST_ROWS = 4
 """With fewer there is nothing to go between [A]."""

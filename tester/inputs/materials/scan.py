@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from tester.base.extras import MissingExtraError, needs
+from tester.base.plugins import MissingExtraError, needs
 from tester.base.source import InvalidSource, Problem
-from tester.inputs.materials.files import decoded
-from tester.inputs.materials.finding import Findings
+from tester.inputs.materials.files import Findings, decoded
 from tester.inputs.materials.radial import Detrend, RadialSpectrum, detrended, radial_spectrum
 
 if TYPE_CHECKING:

@@ -10,10 +10,9 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
-from tester.base.extras import MissingExtraError
+from tester.base.plugins import MissingExtraError
 from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
-from tester.inputs.materials.files import DataFile, DataFileError, MaterialFile, read_beside
-from tester.inputs.materials.finding import Findings
+from tester.inputs.materials.files import DataFile, DataFileError, Findings, MaterialFile, read_beside
 from tester.inputs.materials.radial import RadialSpectrum
 from tester.inputs.materials.scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
 from tester.inputs.materials.schema import RadialModel, ScanModel, SurfaceModel

@@ -5,9 +5,8 @@ The numbers stand in the file itself, so that it is whole without what it was ma
 
 from __future__ import annotations
 
-from tester.base.plain import harmless
-from tester.inputs.materials.files import DataFile
-from tester.inputs.materials.finding import Findings
+from tester.base.words import harmless
+from tester.inputs.materials.files import DataFile, Findings
 from tester.inputs.materials.moduli import ModuliTable
 from tester.inputs.materials.radial import RadialSpectrum
 

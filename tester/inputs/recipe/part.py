@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     from tester.base.axes import Axes
     from tester.base.source import Location, Problem, Tree
     from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
-    from tester.inputs.recipe.plan import Plan, Step
+    from tester.inputs.recipe.plan import Plan, Stand, Step
     from tester.inputs.recipe.plan_json import ConditionJson
-    from tester.inputs.recipe.stand import Stand
     from tester.inputs.rig import Rig
 
 

@@ -19,10 +19,9 @@ from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
 from tester.inputs.recipe.describe import repeats_words, window_words
 from tester.inputs.recipe.estimate import NEW, Outlook, StepEstimate
 from tester.inputs.recipe.part import RecipePart
-from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
 from tester.inputs.recipe.repeats import HISTORIC_PERCENT, expected
 from tester.inputs.recipe.schema import Recipe
-from tester.inputs.recipe.stand import Stand
 from tester.inputs.rig import Rig
 from tester.inputs.rig.ceilings import value_at
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import inf, sqrt
 from typing import TypeVar
 
-from tester.analysis.repeatability import Pool
+from tester.analysis.uncertainty import Pool
 from tester.base.axes import condition_words
 from tester.inputs.recipe.estimate import Estimate, Estimator
 from tester.inputs.recipe.foreseen import Foreseen

@@ -186,7 +186,7 @@ class Rig:
     """Every key on which safety hangs, in the order of the kind's safety page."""
     real: ClassVar[tuple[tuple[str, str], ...]] = ()
     """(text of the packaged file, what a real machine's has there), beside what is the same for all kinds
-    (tester.inputs.rig.template); each must be there exactly once."""
+    (tester.inputs.rig.packaged); each must be there exactly once."""
 
     rig: str
     """What the rig is called."""

@@ -14,10 +14,9 @@ from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
 from tester.inputs.rig.ceilings import Risk, beyond, counts_as_simulated, loosened
 from tester.inputs.rig.checks import problems_of
 from tester.inputs.rig.config import Rig
-from tester.inputs.rig.laws import extension_law
 from tester.inputs.rig.missing import complete, unstated
 from tester.inputs.rig.packaged import new_tree
-from tester.inputs.rig.profiles import extension_drive
+from tester.inputs.rig.profiles import extension_drive, extension_law
 
 OneRig = TypeVar("OneRig", bound=Rig)
 laws.look_up_with(extension_law)

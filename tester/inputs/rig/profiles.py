@@ -1,10 +1,12 @@
-"""Profiles by the names that a rig file gives: packaged, a TOML file beside it, or from an installed package."""
+"""Profiles and friction laws by name: packaged, a TOML file beside the rig file, or from an installed package."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import cast
 
 from drivers.profiles import DeviceProfile, ProfileError, load_profile, profile_names, read_profile
+from sim.physics.laws import LawMaker, OfMaterials
 from tester.base.plugins import PluginError, plugins
 from tester.base.source import Tree, Value
 
@@ -48,3 +50,16 @@ def _find_beside(part: dict[str, Value], folder: Path) -> None:
     name = part.get("profile")
     if isinstance(name, str) and name.endswith(".toml") and (folder / name).is_file():
         part["profile"] = str(folder / name)
+
+
+def extension_law(name: str) -> LawMaker | None:
+    """Return the law of an extension of the group ``laws``, None where there is none of this name.
+
+    Raises PluginError for one that is not allowed, cannot be loaded or makes nothing.
+    """
+    if ":" not in name and name not in plugins().names("laws"):
+        return None
+    maker = plugins().load("laws", name)
+    if not (callable(maker) or isinstance(maker, OfMaterials)):
+        raise PluginError(f'extension "{name}" is no friction law: it cannot be called with a compound and its figures')
+    return cast("LawMaker", maker)

@@ -8,7 +8,7 @@ from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
     from tester.analysis.fit.part import FitPart
-    from tester.analysis.master_curve.part import MasterPart
+    from tester.analysis.master_curve.points import MasterPart
     from tester.analysis.papers.item import Paper
     from tester.inputs.recipe.part import RecipePart
     from tester.inputs.rig import Rig

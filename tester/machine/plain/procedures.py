@@ -7,8 +7,8 @@ from math import nan
 from typing import Final
 
 from tester.analysis.blocks import BlockCounter
-from tester.analysis.collected import collected
 from tester.analysis.judge import ALONE
+from tester.analysis.reduce import collected
 from tester.base.axes import Setpoint
 from tester.base.quantities import Quantities
 from tester.inputs.recipe.plain import Mount, PlainPart

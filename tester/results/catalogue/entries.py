@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from tester.base.as_json import finite
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
+from tester.base.words import finite
 from tester.results.run_results import Measured, results_of
-from tester.store.catalogue import run_folders, under_way
+from tester.store.catalogue import RunStatus, run_folders, under_way
 from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
-from tester.store.status import RunStatus
 
 _MADE_BY = "1"
 """Raised when the same record gives other entries than before: then all are made anew."""
@@ -79,7 +78,7 @@ class ConditionEntry:
     n_valid: int
     n: int
     flags: str = ""
-    """With ``status`` says how far the coefficient can be trusted (tester.analysis.trust)."""
+    """With ``status`` says how far the coefficient can be trusted (tester.analysis.results)."""
 
     def setpoint(self, axes: Axes) -> Setpoint:
         """Return what was held, on the axes of the condition's run."""

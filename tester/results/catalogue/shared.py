@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, fields
 from typing import Any
 
-from tester.base.extras import needs
+from tester.base.plugins import needs
 from tester.results.catalogue.entries import CatalogueError, ConditionEntry, RunEntry, WantedRuns
 
 try:

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from tester.analysis.results import ConditionStatus
-from tester.analysis.trust import WITH_CARE
+from tester.analysis.results import WITH_CARE, ConditionStatus
 from tester.base.axes import Setpoint
 from tester.base.trouble import in_words
 from tester.machine.context import Progress

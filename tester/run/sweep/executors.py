@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Protocol, cast
 
-from tester.base.extras import needs
+from tester.base.plugins import needs
 from tester.base.trouble import in_words
 from tester.run.pool import WorkerPool
 from tester.run.sweep.case import CaseResult, SweepTask

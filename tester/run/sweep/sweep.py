@@ -10,11 +10,10 @@ from typing import Protocol
 
 from recipes import find
 from tester.base.axes import Axes
-from tester.base.exits import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
+from tester.base.processes import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
 from tester.run.folder import make_folder
-from tester.run.kinds import checked_recipe, served_kind
+from tester.run.kinds import checked_recipe, load_rig, served_kind
 from tester.run.materials import kept_files, used_materials
-from tester.run.rigs import load_rig
 from tester.run.sweep.case import CaseResult, SweepTask, not_run, run_case
 from tester.run.sweep.executors import Submit
 from tester.run.sweep.files import SweepFiles, write_sources

@@ -1,4 +1,4 @@
-"""What every dialog has: it leaves the fixed lines visible, Escape closes it, and it never stands in STOP's way."""
+"""The base of every dialog (fixed lines stay visible, Escape closes, STOP works), the event log and the help."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from textual.screen import ModalScreen
 from textual.widget import Widget
 from textual.widgets import Input, Static
 
+from tester.tui.formatting import reflow
 from tester.tui.host import HostApp, host_of
-from tester.tui.widgets.panel import Parts
+from tester.tui.widgets.head import event_row
+from tester.tui.widgets.panel import Parts, rows
 
 
 class Dialog(ModalScreen[None]):
@@ -58,3 +60,43 @@ def field(label: str, entry: Input) -> Horizontal:
 def entry(name: str, value: str = "", *, hint: str = "", limit: int = 200) -> Input:
     """Return an input field of one row."""
     return Input(value, placeholder=hint, id=name, compact=True, max_length=limit)
+
+
+WIDTH = 400
+"""Longest line of the log."""
+
+
+TEXT_WIDTH = 70
+"""Columns in a dialog's box, beside its scroll bar."""
+
+
+class LogDialog(Dialog):
+    """All events that are known, newest first."""
+
+    TITLE = "Events, newest first"
+
+    def on_mount(self) -> None:
+        """Take the whole height."""
+        self.add_class("-tall")
+
+    def content(self) -> Iterable[Widget]:
+        """Return the list."""
+        lines: list[Parts] = [event_row(event, WIDTH) for event in reversed(self.host.scene.events)]
+        yield line(rows(lines) if lines else "nothing has happened yet")
+
+
+class TextDialog(Dialog):
+    """A text to read."""
+
+    def __init__(self, title: str, text: str) -> None:
+        """``text``: paragraphs, and keys with two spaces or more before what they do."""
+        super().__init__()
+        self._title, self._text = title, reflow(text, TEXT_WIDTH)
+
+    def on_mount(self) -> None:
+        """Name the box."""
+        self.query_one("#box").border_title = self._title
+
+    def content(self) -> Iterable[Widget]:
+        """Return the text."""
+        yield line(self._text)

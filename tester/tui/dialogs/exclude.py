@@ -8,10 +8,10 @@ from textual.widget import Widget
 from textual.widgets import Input
 
 from tester.base.lock import user
-from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.formatting import clean
 from tester.tui.host import HostApp
+from tester.tui.starting import call
 from tester.tui.stored import RepeatRow, Row, Stored, row_words
 
 

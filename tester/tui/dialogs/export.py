@@ -11,8 +11,8 @@ from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
 from tester.results.formats import FORMATS, format_names
-from tester.tui.calling import call
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
+from tester.tui.starting import call
 
 
 def _choices() -> list[tuple[str, str, str]]:

@@ -18,9 +18,10 @@ from tester.base import clock, keys
 from tester.base.trouble import in_words
 from tester.machine.commission.person import Asks, Question
 from tester.machine.commission.record import RecordError
-from tester.tui.dialogs.dialog import Dialog
-from tester.tui.dialogs.log import TextDialog
+from tester.tui import theme
+from tester.tui.dialogs.dialog import Dialog, TextDialog
 from tester.tui.formatting import clean
+from tester.tui.gone import SMALLEST
 from tester.tui.guide.guide import Guide, GuideView
 from tester.tui.guide.panels import (
     EndLine,
@@ -32,12 +33,33 @@ from tester.tui.guide.panels import (
     SaidPanel,
     step_row,
 )
-from tester.tui.guide.style import CSS
-from tester.tui.look import LookApp
 from tester.tui.scene import ScreenScene
 from tester.tui.stop_line import stopping
+from tester.tui.theme import LookApp
 from tester.tui.widgets.head import KeyLine
-from tester.tui.widgets.small import SMALLEST
+
+CSS = (
+    theme.CSS
+    + """
+#guide { height: 1fr; }
+#guide-steps { width: 30; height: 100%; }
+#guide-right { width: 1fr; height: 100%; }
+#guide-readings { height: 8; }
+#guide-question { height: 8; border: heavy $accent; }
+#guide-text { height: 1fr; }
+#guide-hint { height: 1; }
+#guide-answer { width: 100%; }
+#guide-said { height: 1fr; }
+Screen.-wide #guide-steps { width: 40; }
+Screen.-wide #guide-readings { height: 10; }
+Screen.-wide #guide-question { height: 10; }
+Screen.-ended #guide-readings { display: none; }
+Screen.-ended #guide-question { height: 2fr; }
+Screen.-small #guide-steps, Screen.-small #guide-said, Screen.-small #guide-readings { display: none; }
+Screen.-small #guide-question { height: 1fr; }
+"""
+)
+
 
 DRAWN_S = 0.1
 """The screen looks at the engine this often, s."""

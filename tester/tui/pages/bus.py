@@ -2,24 +2,59 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from pathlib import Path
 from typing import ClassVar
+from zipfile import ZIP_DEFLATED, ZipFile
 
+from pydantic_core import to_json
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Input
 
+from tester import __version__
 from tester.base import clock
 from tester.base.trouble import in_words
 from tester.base.words import decimal
+from tester.service.address import AddressError, folder
 from tester.service.commands import WatchFrames
 from tester.service.protocol import Frame
 from tester.service.state import BusView as BusState
 from tester.service.state import DeviceView
-from tester.tui.bundle import write_bundle
 from tester.tui.formatting import clean, fit
-from tester.tui.pages.view import Keys, View
+from tester.tui.host import Keys, View
 from tester.tui.scene import STALE_S, ScreenScene
+from tester.tui.starting import LOG
 from tester.tui.widgets.panel import FAINT, NOTICE, WARNING, Panel, Parts, rows
+
+LOG_BYTES = 1_000_000
+"""Of the service's log, from its end."""
+
+
+def write_bundle(scene: ScreenScene, stamp: str, where: Path = Path()) -> Path:
+    """Write ``support-STAMP.zip`` and return its path; raises OSError."""
+    path = where / f"support-{stamp}.zip"
+    with ZipFile(path, "x", ZIP_DEFLATED) as bundle:
+        bundle.writestr("version.txt", f"{__version__}\n")
+        bundle.writestr("state.json", to_json(scene.state, indent=1, inf_nan_mode="null"))
+        bundle.writestr("plan.json", to_json(scene.plan, indent=1, inf_nan_mode="null"))
+        bundle.writestr("events.jsonl", _lines(scene.events))
+        bundle.writestr("frames.jsonl", _lines(scene.frames))
+        bundle.writestr("trend.jsonl", _lines([scene.machine.trend, *scene.trend]))
+        bundle.writestr("serve.log", _log())
+    return path
+
+
+def _lines(things: Iterable[object]) -> bytes:
+    return b"\n".join(to_json(one, inf_nan_mode="null") for one in things)
+
+
+def _log() -> bytes:
+    try:
+        return (folder() / LOG).read_bytes()[-LOG_BYTES:]
+    except (OSError, AddressError) as error:
+        return f"no log of a service started by this screen: {in_words(error)}".encode()
+
 
 HELP = """\
 Devices: state, age of the newest data, requests, errors since the run began and per hour. ✘ is a device that does not

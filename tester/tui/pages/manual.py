@@ -15,9 +15,9 @@ from tester.base.screen import HandAxis
 from tester.service.commands import Arm, Jog, Tare
 from tester.service.state import StateView
 from tester.tui.formatting import clean
-from tester.tui.pages.view import Keys, View
+from tester.tui.host import Keys, View
 from tester.tui.scene import ScreenScene
-from tester.tui.widgets.events import EventsPanel
+from tester.tui.widgets.head import EventsPanel
 from tester.tui.widgets.panel import FAINT, WARNING, Panel, Part, Parts, rows
 from tester.tui.widgets.values import value_row
 

@@ -21,7 +21,7 @@ from tester.service.commands import CheckRecipe
 from tester.tui.dialogs.plan import PlanDialog
 from tester.tui.dialogs.start import StartDialog
 from tester.tui.formatting import clean, clean_lines
-from tester.tui.pages.view import Keys, View
+from tester.tui.host import Keys, View
 from tester.tui.recipe_library import Checked, ListedRecipe, RecipeProblem, own_copy, read_again, shelf
 from tester.tui.scene import ScreenScene
 

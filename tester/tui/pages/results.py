@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import ClassVar
 
@@ -13,19 +13,98 @@ from rich.cells import cell_len
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
+from textual.widget import Widget
 from textual.widgets import DataTable
 
+from tester.base.axes import Axis, condition_words
 from tester.base.trouble import in_words
 from tester.base.words import duration
 from tester.service.commands import ListRuns
 from tester.store.schema import StoreError
+from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.export import ExportDialog
-from tester.tui.dialogs.plot import PlotDialog
 from tester.tui.dialogs.repeats import RepeatsDialog
-from tester.tui.formatting import clean
-from tester.tui.pages.view import Keys, View
-from tester.tui.stored import Row, Stored, read
-from tester.tui.widgets.scatter import PlotPanel
+from tester.tui.formatting import clean, fit
+from tester.tui.host import Keys, View
+from tester.tui.plot import scatter
+from tester.tui.scene import ScreenScene
+from tester.tui.stored import Row, Stored, points, read, series
+from tester.tui.widgets.panel import FAINT, Panel, Parts, rows
+
+
+class PlotDialog(Dialog):
+    """Mu against one setpoint after another."""
+
+    TITLE = "Plot"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("p", "next", "Next", show=False)]
+
+    def __init__(self, stored: Stored, row: Row | None, axis: int) -> None:
+        """``row``: the condition whose series is marked; ``axis``: the first one shown."""
+        super().__init__()
+        self.stored, self.row, self.axis = stored, row, axis
+
+    def content(self) -> Iterable[Widget]:
+        """Return the plot."""
+        yield PlotPanel(id="big-plot")
+
+    def on_mount(self) -> None:
+        """Take the whole height and draw."""
+        self.add_class("-tall")
+        box = self.query_one("#box")
+        box.border_subtitle = "p next axis · Esc closes · F12 STOP"
+        self._plot()
+
+    def _plot(self) -> None:
+        panel = self.query_one(PlotPanel)
+        panel.plot(self.stored, self.row, self.axis)
+        self.query_one("#box").border_title = panel.title
+        panel.show(self.host.scene)
+
+    def action_next(self) -> None:
+        """Plot against the next axis."""
+        self.axis += 1
+        self._plot()
+
+
+class PlotPanel(Panel):
+    """A stored run's coefficients against one of its axes."""
+
+    stored: Stored | None = None
+    row: Row | None = None
+    axis = 0
+
+    def plot(self, stored: Stored | None, row: Row | None, axis: int) -> None:
+        """Plot these from now on; ``row``: the condition whose series is marked."""
+        self.stored, self.row, self.axis = stored, row, axis % len(stored.plotted) if stored is not None else 0
+        self.redraw()
+
+    @property
+    def title(self) -> str:
+        """Return what is plotted, and which series is marked."""
+        along = self.along
+        if along is None:
+            return "mu"
+        what = f"mu against {along.name.replace('_', ' ')} ({along.unit})"
+        if self.stored is None or self.row is None or len(series(self.stored, self.row, along)) < 2:
+            return what
+        held = self.row.held
+        others = [one for one in held.axes if one.name != along.name and not one.at_default(held)]
+        return f"{what}: ● {clean(condition_words(held, others), 80)}   · others"
+
+    @property
+    def along(self) -> Axis | None:
+        """Return the axis that is plotted against; None while no run is chosen."""
+        return self.stored.plotted[self.axis] if self.stored is not None else None
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return the plot."""
+        along = self.along
+        if self.stored is None or along is None:
+            return [("no run chosen", FAINT)]
+        lines = scatter(points(self.stored, along, self.row), width, height)
+        shown: list[Parts] = [[fit(line, width)] for line in lines]
+        return rows(shown) if shown else [("no values to plot", FAINT)]
+
 
 RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
 EMPTY = ("compound", "mu")

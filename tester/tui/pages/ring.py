@@ -17,8 +17,8 @@ from tester.base.trouble import in_words
 from tester.base.words import NONE, decimal
 from tester.store.schema import StoreError
 from tester.tui.formatting import clean
+from tester.tui.host import Keys, View
 from tester.tui.pages.results import TextTable
-from tester.tui.pages.view import Keys, View
 from tester.tui.rings import KeptRings, RingRow
 from tester.tui.widgets.ring import AgePanel, AnglePanel, SpeedPanel
 

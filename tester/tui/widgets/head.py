@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Final
 
 from tester.base.words import conditions_done, counted, decimal, duration
+from tester.service.protocol import Event
 from tester.service.state import Alarm, StateView
 from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.gone import gone_line
 from tester.tui.scene import STALE_S, UNDER_WAY, ScreenScene
-from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts
+from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
 
 Tabs = tuple[tuple[str, str, str], ...]
 TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
@@ -158,3 +159,27 @@ class KeyLine(Panel):
             parts += ["  " if parts else " ", (key, "bold"), f" {label}"]
             room -= len(text)
         return [*parts, " ", stop] if room else [*parts, stop]
+
+
+SIGNS = {"debug": " ", "info": " ", "warning": "!", "alarm": "■", "trip": "■"}
+STYLES = {"debug": FAINT, "info": "", "warning": NOTICE, "alarm": NOTICE, "trip": ABNORMAL}
+
+
+class EventsPanel(Panel):
+    """Alarms first, then as many events as there is room for."""
+
+    def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return a row an alarm and a row an event."""
+        lines: list[Parts] = []
+        for alarm in scene.alarms()[: height // 2]:
+            style = ALARM_STYLES[alarm.priority] if alarm.state != "acknowledged" else NOTICE
+            lines.append([(fit(alarm_words(alarm), width), style)])
+        newest = [event for event in scene.events if event.severity != "debug"][-(height - len(lines)) :]
+        return rows(lines + [event_row(event, width) for event in newest])
+
+
+def event_row(event: Event, width: int) -> Parts:
+    """Return an event: local time of day, sign, what."""
+    when = clock_text(event.utc, seconds=True)
+    text = fit(f"{when} {SIGNS.get(event.severity, ' ')} {clean(event.text)}", width)
+    return [(text, STYLES.get(event.severity, ""))]

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from drivers.transports.serial_line import open_serial_line
 from tester.base import clock
-from tester.base.priority import RealTimePriority
+from tester.base.processes import RealTimePriority
 
 REQUEST, REPLY = bytes(8), bytes(23)
 BAUD = 115200

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import product
 
-from tester.inputs.recipe.check import check
+from tester.inputs.recipe.loader import check
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.rig import RigConfig

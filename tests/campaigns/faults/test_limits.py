@@ -8,7 +8,7 @@ import pytest
 
 from sim.machines.wheel_on_belt.faults import CATALOGUE, PARAMETRIC
 from sim.machines.wheel_on_belt.faults.catalogue import ASSEMBLY
-from tester.inputs.recipe.check import check
+from tester.inputs.recipe.loader import check
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tests.campaigns.faults import limits, magnitudes

@@ -17,7 +17,7 @@ from sim.wires.can_traffic import Beat
 from sim.wires.modbus_wire import Impairment, Kind
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, Severity
-from tester.doctor.table import examined
+from tester.doctor.probe_table import examined
 from tester.doctor.wires import SimulatedWires
 from tester.inputs.rig import Rig
 from tester.kinds import load_rig

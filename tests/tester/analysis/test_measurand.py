@@ -19,11 +19,10 @@ from tester.analysis.measurand import (
     with_budget_of_replicates,
 )
 from tester.analysis.reference import COUNTERFACE, CounterfaceDrift
-from tester.analysis.repeatability import Pool
 from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.results import Judgement, RepeatResult, RepeatStatus
 from tester.analysis.terms import Size
-from tester.analysis.uncertainty import Budget
+from tester.analysis.uncertainty import Budget, Pool
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tests.tester.analysis.series import means_of
 

@@ -8,8 +8,7 @@ from math import isnan, pi, sqrt
 import numpy as np
 import pytest
 
-from tester.analysis.wear import condition_wear, wear_rate
-from tester.analysis.wear_check import WearCheck
+from tester.analysis.wear import WearCheck, condition_wear, wear_rate
 
 FIRST = WearCheck(
     piece=1, method="roll", t_s=100.0, reference_s=100.0, before=1, after=0, diameter_mm=90.0, u_mm=0.008,

@@ -11,9 +11,11 @@ from tester.base.words import (
     counted,
     decimal,
     duration,
+    harmless,
     listed,
     listed_some,
     percent,
+    plain_text,
     rough_duration,
     significant,
 )
@@ -60,3 +62,21 @@ def test_items_are_listed_with_one_word_before_the_last() -> None:
 
 def test_a_long_list_ends_with_how_many_more_there_are() -> None:
     assert [listed_some([1, 2, 3], n) for n in (2, 3)] == ["1, 2 and 1 more", "1, 2, 3"]
+
+
+STEERING = ("\x1b[31m", "\x00", "\x7f", "\x9b", "\u202e", "\u2066", "\u200b", "\u2028", "\ud800", "\t", "\n", "\r")
+
+
+@pytest.mark.parametrize("text", ["", "A. Person", "Ødegård: µ = 0,7 €", "山田太郎", "no-break\u00a0space", "🙂"])
+def test_what_people_write_in_a_line_is_taken_as_it_is(text: str) -> None:
+    assert plain_text(text, "operator") == text
+
+
+@pytest.mark.parametrize("bad", STEERING)
+def test_what_could_steer_a_terminal_is_refused_with_what_and_where(bad: str) -> None:
+    with pytest.raises(ValueError, match=rf"^reason: the character U\+{ord(bad[0]):04X}, number 4, is not accepted"):
+        plain_text(f"ab {bad}", "reason")
+
+
+def test_what_is_shown_anyway_steers_nothing_and_keeps_its_lines() -> None:
+    assert harmless("a\x1b[31m\tb\nc\r") == "a?[31m\tb\nc?"

@@ -16,7 +16,7 @@ from tester.machine.commission.engine import Ended
 from tester.machine.commission.person import Question
 from tester.machine.commission.record import CommissionRecord, record_path
 from tester.run.commissioning import CommissionOptions, commission
-from tester.run.rigs import load_rig
+from tester.run.kinds import load_rig
 from tester.store.reader import RunReader
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, named
 

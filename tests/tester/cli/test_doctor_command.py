@@ -12,9 +12,9 @@ import pytest
 
 from tester.base.lock import FOLDER_VARIABLE, ExclusiveUse
 from tester.cli.main import invoke
-from tester.inputs.rig.reach import reached_over_tcp
 from tester.kinds import load_rig
 from tester.run.preconditions import buses_of
+from tester.run.sim_process import reached_over_tcp
 
 QUICK = ("--quick", "--seconds", "1")
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.base.exits import EXIT_READER_GONE
+from tester.base.processes import EXIT_READER_GONE
 from tester.cli.main import invoke
 from tests.tester.store.build import small_run
 

@@ -10,7 +10,7 @@ import pytest
 from tester.doctor import host_probes
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, Severity
-from tester.doctor.table import Probe
+from tester.doctor.probe_table import Probe
 from tester.doctor.watch import RigWatch
 from tester.doctor.wires import SimulatedWires
 from tester.kinds import load_rig

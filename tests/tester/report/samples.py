@@ -6,7 +6,7 @@ from typing import Final
 
 from tester.analysis.reference import ControlChart, ControlPoint
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
-from tester.report.control import control_chart
+from tester.report.charts import control_chart
 
 NAN = float("nan")
 LOADS = (100.0, 200.0, 300.0, 400.0)

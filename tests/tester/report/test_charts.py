@@ -12,7 +12,7 @@ from sim.physics.materials import Components
 from tester.kinds.wheel_on_belt.fit.setpoints import law_at, law_caveats, published_values
 from tester.report.chart import Chart, ChartSurface, Figure, Series
 from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
-from tester.report.components import components_chart
+from tester.report.law_charts import components_chart
 from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run

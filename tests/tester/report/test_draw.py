@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.base.extras import MissingExtraError
+from tester.base.plugins import MissingExtraError
 from tester.report.draw import COLOURS, DASHES, FORMATS, MARKS, draw
 from tester.report.inline import inline_svg
 from tests.tester.report.samples import CHART, FIGURES

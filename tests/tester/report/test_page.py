@@ -13,8 +13,8 @@ from xml.etree import ElementTree
 import pytest
 
 from tester.analysis.reference import ControlChart, ControlPoint
-from tester.base.extras import MissingExtraError
-from tester.base.plain import FORBIDDEN
+from tester.base.plugins import MissingExtraError
+from tester.base.words import FORBIDDEN
 from tester.report.build import report_of
 from tester.report.charts import Material, values_of
 from tester.report.layout import Paragraph, Report, ReportSection

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.kelvin import KnownSlope
-from tester.analysis.wear_check import WearCheck
+from tester.analysis.wear import WearCheck
 from tester.base.quantities import Means
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES

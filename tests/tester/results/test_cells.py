@@ -9,7 +9,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tester.base.plain import harmless
+from tester.base.words import harmless
 from tester.results.cells import Number, encode, exact, line, nominal, number, text, unescaped
 
 TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=30)

@@ -16,7 +16,7 @@ from random import Random
 import pytest
 
 from tester.base.source import InvalidSource
-from tester.inputs.recipe.check import load_checked
+from tester.inputs.recipe.loader import load_checked
 from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.expand import expand

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.flags import SHORT, THERMOMETER
-from tester.analysis.results import ConditionStatus, RepeatStatus
-from tester.analysis.soak_check import SoakCheck
+from tester.analysis.results import ConditionStatus, RepeatStatus, SoakCheck
 from tester.results.conditions_table import conditions_table
 from tester.results.run_results import RunResults, results_of
 from tester.store.reader import RunReader

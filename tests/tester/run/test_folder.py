@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tester.inputs.recipe.check import load_checked
+from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.run.folder import work_of
 from tester.run.kinds import recipe_part

@@ -12,7 +12,6 @@ from drivers.ports import BusLost
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.servers.server import RigServer
 from tester.base import clock
-from tester.inputs.rig.reach import reached_over_tcp
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -21,6 +20,7 @@ from tester.machine.connect import Connector, Stage
 from tester.machine.tickers import TickStatistics, run_real_time
 from tester.run.bus_log import BusLog
 from tester.run.hardware import hardware_ports
+from tester.run.sim_process import reached_over_tcp
 from tester.run.simulated import simulated_ports
 
 

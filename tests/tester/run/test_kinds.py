@@ -10,8 +10,7 @@ from recipes import find
 from tester import kinds
 from tester.base.source import InvalidSource
 from tester.kinds.wheel_on_belt import KIND
-from tester.run.kinds import checked_recipe, run_parts, served_kind
-from tester.run.rigs import load_rig, load_rig_text
+from tester.run.kinds import checked_recipe, load_rig, load_rig_text, run_parts, served_kind
 
 
 @pytest.mark.parametrize("name", kinds.packaged_rigs())

@@ -256,7 +256,7 @@ def test_a_run_knows_where_its_numbers_come_from(cut: Path) -> None:
 def test_too_little_room_is_refused_with_the_numbers(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import tester.store.space as space
+    import tester.store.disk as space
 
     usage = shutil.disk_usage(tmp_path)
     monkeypatch.setattr(space.shutil, "disk_usage", lambda _path: usage._replace(free=1_000_000))

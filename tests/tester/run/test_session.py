@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from tester.analysis.flags import CARRY_OVER
-from tester.base.signals import HANG_UP
+from tester.base.processes import HANG_UP
 from tester.base.source import InvalidSource
 from tester.cli.ending import ending_lines
 from tester.kinds import load_rig

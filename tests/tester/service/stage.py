@@ -19,7 +19,7 @@ from pydantic import JsonValue
 from recipes import UnknownRecipe
 from tester.base.source import InvalidSource
 from tester.run.endings import CannotStartError
-from tester.run.preparing import Prepared, prepared
+from tester.run.preconditions import Prepared, prepared
 from tester.service.address import UnixAddress
 from tester.service.commands import RigAction
 from tester.service.gateway_link import GatewayLink, LinkConfig

@@ -29,8 +29,8 @@ from tester.machine.prompts import Prompts
 from tester.run.bus_log import BusLog
 from tester.run.folder import part_time
 from tester.run.hardware import hardware_ports
-from tester.service.progress import PlanTrack
 from tester.service.protocol import Frame
+from tester.service.values import PlanTrack
 from tester.service.watch import RunWatch
 from tester.store.recorder import NullRecorder
 from tests.drivers.modbus_rig import Quantities

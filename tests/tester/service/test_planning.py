@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tester.run.endings import CannotStartError
-from tester.run.preparing import prepared
+from tester.run.preconditions import prepared
 from tester.service.planning import Task, planned
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from threading import Event, current_thread
+
+import pytest
+
 from tester.machine.tickers import TickStatistics
-from tester.service.running import Punctuality
+from tester.service.running import Punctuality, aside
 
 
 def test_lateness_is_told_for_a_second_or_two_and_its_worst_for_the_whole_run() -> None:
@@ -23,3 +27,20 @@ def test_a_run_that_begins_after_a_pause_forgets_what_was_before() -> None:
     statistics.note(0.1)
     punctual.look(statistics, 100.0)
     assert punctual.look(statistics, 110.0).late_s == 0.0
+
+
+def test_clients_are_looked_after_until_the_work_is_done() -> None:
+    enough, looks = Event(), list[str]()
+
+    def look() -> None:
+        looks.append(current_thread().name)
+        if len(looks) == 3:
+            enough.set()
+
+    assert aside(lambda: enough.wait(60.0), look)
+    assert len(looks) >= 3 and set(looks) == {current_thread().name}
+
+
+def test_what_goes_wrong_in_the_work_is_raised_here() -> None:
+    with pytest.raises(ZeroDivisionError):
+        aside(lambda: 1 // 0, lambda: None)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import pytest
 
 from tester.base.lock import RUN_LOCK, ExclusiveUse
-from tester.store.catalogue import cut_off, find_run, run_folders, under_way
+from tester.machine.run import Outcome
+from tester.store.catalogue import RunStatus, cut_off, find_run, run_folders, run_status, under_way
 from tester.store.schema import StoreError
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, open_writer, small_run
 
@@ -95,3 +97,36 @@ def test_a_run_that_is_under_way_was_not_cut_off(tmp_path: Path) -> None:
         holder = under_way(folder)
         assert holder is not None and holder.run == "busy" and cut_off(tmp_path) == []
     assert under_way(folder) is None and [f.name for f in cut_off(tmp_path)] == ["busy"]
+
+
+R = RunStatus
+TABLE = {
+    # recorded: nobody holds it, every value there; a value missing; somebody holds it; held, a value missing
+    "running": (R.INTERRUPTED, R.INTERRUPTED, R.RUNNING, R.RUNNING),
+    "interrupted": (R.INTERRUPTED, R.INTERRUPTED, R.RUNNING, R.RUNNING),
+    "done": (R.DONE, R.INCOMPLETE, R.DONE, R.INCOMPLETE),
+    "stopped": (R.STOPPED, R.STOPPED, R.RUNNING, R.RUNNING),
+    "tripped": (R.TRIPPED, R.TRIPPED, R.RUNNING, R.RUNNING),
+    "failed": (R.FAILED, R.FAILED, R.RUNNING, R.RUNNING),
+    "rig unreachable": (R.UNREACHABLE, R.UNREACHABLE, R.RUNNING, R.RUNNING),
+    "a word of tomorrow": (R.FAILED, R.FAILED, R.RUNNING, R.RUNNING),
+    "": (R.FAILED, R.FAILED, R.RUNNING, R.RUNNING),
+}
+
+
+@pytest.mark.parametrize("recorded", TABLE)
+def test_the_status_over_all_states(recorded: str) -> None:
+    found = [run_status(recorded, held=held, missing=missing) for held, missing in product((False, True), repeat=2)]
+    assert tuple(found) == TABLE[recorded]
+
+
+def test_every_outcome_of_a_run_is_in_the_table() -> None:
+    assert {outcome.value for outcome in Outcome} <= TABLE.keys()
+    assert {status for row in TABLE.values() for status in row} == set(RunStatus) - {R.UNREADABLE}
+
+
+def test_what_may_go_on() -> None:
+    assert {status for status in RunStatus if status.can_resume} == {
+        R.INTERRUPTED, R.STOPPED, R.TRIPPED, R.FAILED, R.UNREACHABLE,
+    }  # fmt: skip
+    assert {status for status in RunStatus if status.over} == {R.DONE, R.INCOMPLETE}

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tester.store.exclusions import add_exclusion
+from tester.store.amend import add_exclusion
 from tester.store.merge import HEADER, TABLES, Merge
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, PieceInfo, StoredExclusion

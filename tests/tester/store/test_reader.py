@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
-from tester.base.extras import MissingExtraError
+from tester.base.plugins import MissingExtraError
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.reader import RunReader
 from tester.store.records import PieceInfo

@@ -10,11 +10,10 @@ from pathlib import Path
 import pytest
 
 from tester import __version__
-from tester.analysis.results import Burst, Judgement, RepeatResult
-from tester.analysis.soak_check import SoakCheck
-from tester.analysis.wear_check import WearCheck
+from tester.analysis.results import Burst, Judgement, RepeatResult, SoakCheck
+from tester.analysis.wear import WearCheck
 from tester.store import schema
-from tester.store.exclusions import add_exclusion
+from tester.store.amend import add_exclusion
 from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, PieceInfo, SpecimenInfo, StoredEvent, StoredExclusion
 from tester.store.schema import APPLICATION_ID, VERSION, StoreError, migrate, version_of

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.run.rigs import load_rig
+from tester.run.kinds import load_rig
 from tester.service.commands import (
     Acknowledge,
     Answer,
@@ -381,7 +381,7 @@ def test_commissioning_begins_on_a_screen_of_its_own_with_this_screens_rig_and_r
     house: House, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun: list[list[str]] = []
-    monkeypatch.setattr("tester.tui.commissioning.subprocess.run", lambda command, check: begun.append(command))
+    monkeypatch.setattr("tester.tui.app.subprocess.run", lambda command, check: begun.append(command))
 
     async def act(on: Stage) -> None:
         monkeypatch.setattr(on.app, "suspend", nullcontext)

@@ -122,7 +122,7 @@ def test_columns_are_as_high_as_their_counts_and_the_greatest_has_its_number() -
 
 
 def test_only_runs_of_the_rig_that_ran_last_are_shown(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tester.run.ring import RingFound, ring_part
+    from tester.run.kinds import RingFound, ring_part
 
     part = ring_part("wheel_on_belt")
     assert part is not None

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from tester.analysis.fit.law import FitPoint
-from tester.analysis.master_curve.part import MasterPart
-from tester.analysis.master_curve.points import MasterPoint, MasterRun, MasterSource
+from tester.analysis.master_curve.points import MasterPart, MasterPoint, MasterRun, MasterSource
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
 from tester.kinds.specimen_on_track.fit.heat import BEYOND_BAND, beyond_band, rise_of, warmed_k
 from tester.kinds.specimen_on_track.fit.runs import INTERFACE, LOAD, SPEED, TEMPERATURE, points_of

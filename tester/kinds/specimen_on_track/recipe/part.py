@@ -17,11 +17,10 @@ from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
 from tester.inputs.recipe.describe import repeats_words
 from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
 from tester.inputs.recipe.part import RecipePart
-from tester.inputs.recipe.plan import Plan, PromptStep, Specimen, Step
+from tester.inputs.recipe.plan import Plan, PromptStep, Specimen, Stand, Step
 from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
 from tester.inputs.recipe.settings import Settings
-from tester.inputs.recipe.stand import Stand
 from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS

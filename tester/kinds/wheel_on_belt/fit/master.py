@@ -3,7 +3,7 @@
 A wheel under hundreds of newtons at tenths of a metre a second heats its surface by friction. A repeat is then a
 stretch of a warming surface, within a band of temperature, and the rubber below is at another one. What is measured
 shows it: mu of these rubbers has a maximum over temperature at every speed, and below it rises with speed too, which no
-shift of time against temperature allows (``tester.analysis.master_curve.signs``).
+shift of time against temperature allows (``tester.analysis.master_curve.verdict``).
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ from statistics import median
 from typing import Final
 
 from tester.analysis.fit.law import FitPoint, Sourced
-from tester.analysis.master_curve.part import MasterPart
-from tester.analysis.master_curve.points import MasterPoint, MasterRun, MasterSource
-from tester.analysis.master_curve.signs import signs_of
+from tester.analysis.master_curve.points import MasterPart, MasterPoint, MasterRun, MasterSource
+from tester.analysis.master_curve.verdict import signs_of
 from tester.kinds.wheel_on_belt.fit.data import appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
 

@@ -79,7 +79,7 @@ def _wheel() -> PaperFinding:
 
 
 def _recipe(name: str) -> WheelRecipe:
-    from tester.inputs.recipe.check import load_checked
+    from tester.inputs.recipe.loader import load_checked
     from tester.kinds import load_rig
     from tester.kinds.wheel_on_belt.recipe.part import PART
     from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe

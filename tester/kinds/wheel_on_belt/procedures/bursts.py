@@ -15,8 +15,8 @@ from typing import Final
 
 from sim.physics.slip import slip_velocity
 from tester.analysis.blocks import BlockCounter
-from tester.analysis.collected import collected
 from tester.analysis.judge import ALONE
+from tester.analysis.reduce import collected
 from tester.base.quantities import Quantities
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.axes import held_by

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tester.inputs.recipe.stand import Stand
+from tester.inputs.recipe.plan import Stand
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import CELL
 from tester.kinds.wheel_on_belt.procedures.results import WheelResults

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
-from tester.analysis.soak_check import SoakCheck
+from tester.analysis.results import SoakCheck
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.context import Context
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from tester.analysis.wear_check import NO_CONDITION
+from tester.analysis.wear import NO_CONDITION
 from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import Plan, PromptStep, Step
 from tester.kinds.wheel_on_belt.context import Context

@@ -14,7 +14,7 @@ from dataclasses import replace
 from math import hypot, isfinite, pi
 from typing import Final, NamedTuple
 
-from tester.analysis.wear_check import NO_CONDITION, WearCheck
+from tester.analysis.wear import NO_CONDITION, WearCheck
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import NAN
 from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm

@@ -12,11 +12,10 @@ from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
 from tester.inputs.recipe.part import RecipePart
-from tester.inputs.recipe.plan import Plan, Step
+from tester.inputs.recipe.plan import Plan, Stand, Step
 from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import listed
 from tester.inputs.recipe.settings import values_of
-from tester.inputs.recipe.stand import Stand
 from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.budget import terms_of
 from tester.kinds.wheel_on_belt.image.axes import AXES, KIND, LEAST_SPEED_M_S

@@ -12,8 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import repeat
 
-from tester.inputs.recipe.plan import PromptStep
-from tester.inputs.recipe.stand import Mounted, Stand
+from tester.inputs.recipe.plan import Mounted, PromptStep, Stand
 from tester.kinds.wheel_on_belt.recipe.steps import (
     Cool,
     Heat,

@@ -11,7 +11,7 @@ import pytest
 from tester.analysis.master_curve.collapse import collapse
 from tester.analysis.master_curve.made import Master, master_of
 from tester.analysis.master_curve.points import MasterPoint, set_of
-from tester.analysis.master_curve.verdict import Verdict, judge
+from tester.analysis.master_curve.verdict import Verdict, judge, signs_of
 from tests.campaigns.master.synthetic import FAILING, synthetic
 
 
@@ -86,3 +86,20 @@ def test_two_temperatures_cannot_tell() -> None:
 
 def test_a_ts_that_is_given_wrongly_does_not_collapse() -> None:
     assert master_of(synthetic(0, 0.02), 20.0, 0.0).judged.verdict is Verdict.DOES_NOT
+
+
+def test_on_a_master_curve_warming_does_what_slowing_does() -> None:
+    found = signs_of(synthetic(0, 0.0))
+    assert found.cells > 50 and found.same <= 0.05 * found.cells
+
+
+def test_a_coefficient_that_rises_with_both_is_none() -> None:
+    rising = [replace(one, mu=one.speed_m_s**0.1 * 1.05 ** (one.block_c / 9.0)) for one in synthetic(0, 0.0)]
+    found = signs_of(rising)
+    assert found.same == found.cells == 80
+
+
+def test_compounds_and_loads_are_apart() -> None:
+    points = synthetic(0, 0.0)
+    parted = [replace(one, held={"load": f"{i} N"}) for i, one in enumerate(points)]
+    assert signs_of(parted).cells == 0

@@ -8,8 +8,8 @@ import pytest
 
 from tester.base.source import InvalidSource
 from tester.inputs.materials.dma import read_dma
-from tester.inputs.materials.dma_options import DmaOptions
-from tester.inputs.materials.finding import Findings
+from tester.inputs.materials.files import Findings
+from tester.inputs.materials.headings import DmaOptions
 from tester.inputs.materials.moduli import ModuliTable
 
 TEMPERATURES = range(-60, 60, 8)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tester.inputs.materials.finding import Findings
+from tester.inputs.materials.files import Findings
 from tester.inputs.materials.moduli import FEW_ROWS, LEAST_ROWS, ModuliRow, ModuliTable, judge, shift_doubts
 
 

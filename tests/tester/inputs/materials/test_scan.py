@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tester.base.extras import MissingExtraError
+from tester.base.plugins import MissingExtraError
 from tester.base.source import InvalidSource
-from tester.inputs.materials.finding import Findings
+from tester.inputs.materials.files import Findings
 from tester.inputs.materials.scan import HeightMap, ScanOptions, read_scan, spectrum_of
 
 GRID = np.arange(400.0).reshape(20, 20)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+import recipes
 from tester.base.source import InvalidSource
 from tester.inputs.recipe.conditions import metadata_of
-from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.loader import check, load_checked, load_recipe
 from tester.inputs.recipe.schema import Extent
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, with_line
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, real_rig, recipe, rig, with_line
 
 
 def refused(text: str) -> list[str]:
@@ -261,3 +265,340 @@ def test_form_and_sense_are_reported_together() -> None:
 @pytest.mark.parametrize("text", ["5\n", "- a\n", "null\n", "just text\n"])
 def test_a_file_that_is_no_mapping_is_refused(text: str) -> None:
     assert refused(text) == ["r.yaml:1:1: a recipe is a list of keys: recipe, specimens, measure, grids and others"]
+
+
+FROM_RIG = 'of rig "simulated rubber friction tester")'
+
+
+def problems(text: str, *overrides: str) -> list[str]:
+    return [str(problem) for problem in check(text, rig(*overrides), PART, "r.yaml")]
+
+
+def test_a_recipe_within_the_limits_has_no_problems() -> None:
+    assert problems(PREPARED) == []
+
+
+def test_checking_returns_the_recipe_with_its_text() -> None:
+    loaded = load_checked(PREPARED, rig(), PART, "r.yaml")
+    assert (loaded.recipe.recipe, loaded.tree.text) == ("small", PREPARED)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        (
+            "200 N]",
+            "441 N]",
+            f"r.yaml:9:19: load: 441 N is more than the rig allows (limit 440 N: limits.load {FROM_RIG}",
+        ),
+        (
+            "[40 degC, 25 degC]",
+            "[40 degC, 94 degC]",
+            "r.yaml:10:28: temperature: 94 degC with its band of 2 K is hotter than the rig allows rubber"
+            f" (limit 95 degC: limits.surface {FROM_RIG}",
+        ),
+        (
+            "[40 degC, 25 degC]",
+            "[20 degC, 25 degC]",
+            "r.yaml:10:19: temperature: 20 degC with its band of 2 K is below ambient, and the rig cannot cool"
+            ' (23 degC: ambient of rig "simulated rubber friction tester")',
+        ),
+        (
+            "name: load",
+            "name: load\n    sideslip: [0 deg, -31 deg]",
+            f"r.yaml:8:23: sideslip: -31 deg is more than the rig allows (limit 30 deg: limits.sideslip {FROM_RIG}",
+        ),
+        (
+            "name: load",
+            "name: load\n    camber: 11 deg",
+            f"r.yaml:8:13: camber: 11 deg is more than the rig allows (limit 10 deg: limits.camber {FROM_RIG}",
+        ),
+        (
+            "wheel_speed: 0.8 m/s",
+            "wheel_speed: 1.2 m/s",
+            "r.yaml:5:16: wheel_speed: 1.2 m/s is more than the rig allows"
+            f" (limit 1.1 m/s: limits.wheel_speed {FROM_RIG}",
+        ),
+        (
+            "slip_velocity: 300 mm/s",
+            "slip_velocity: [0.3 m/s, -0.55 m/s]",
+            "r.yaml:8:30: slip_velocity: -0.55 m/s at a wheel speed of 0.8 m/s needs 1.35 m/s of the belt"
+            f" (limit 1.3 m/s: limits.belt_speed {FROM_RIG}",
+        ),
+        (
+            "slip_velocity: 300 mm/s",
+            "slip_velocity: 650 mm/s",
+            "r.yaml:8:20: slip_velocity: 0.65 m/s at a wheel speed of 0.8 m/s is more than is ever loaded"
+            f" (limit 0.6 m/s: interlocks.max_slip {FROM_RIG}",
+        ),
+        (
+            'compound: "1#"',
+            'compound: "4#"',
+            'r.yaml:3:15: compound: the simulated rig has no friction model for "4#" (expected one of 1#, 2#, 3#)',
+        ),
+    ],
+)
+def test_what_is_beyond_the_rig_is_reported_at_the_value_with_the_source_of_the_limit(
+    old: str, new: str, problem: str
+) -> None:
+    assert problem in problems(with_line(old, new))
+
+
+def test_friction_heat_beyond_the_limit_names_the_worst_place() -> None:
+    text = SMALL.replace('"1#"', '"3#"').replace("200 N]", "400 N]").replace("300 mm/s", "[100 mm/s, 500 mm/s]")
+    text = text.replace("[40 degC, 25 degC]", "[40 degC, 70 degC]")
+    (problem,) = problems(text)
+    assert problem.startswith("r.yaml:9:19: load: 400 N makes ")
+    assert 'W of friction heat at 0.5 m/s of slip with "3#" at 72 degC (limit 350 W: limits.slip_power' in problem
+
+
+def test_an_angle_on_an_axis_that_is_set_by_hand_is_refused() -> None:
+    by_hand = rig()
+    by_hand = replace(by_hand, axes=replace(by_hand.axes, sideslip=None))
+    text = SMALL.replace("name: load", "name: load\n    sideslip: [0 deg, 10 deg]")
+    (problem,) = [str(one) for one in check(text, by_hand, PART, "r.yaml")]
+    assert problem.startswith("r.yaml:8:23: sideslip: 10 deg needs a driven axis; this rig's is set by hand")
+
+
+def test_a_compound_without_a_model_has_no_power_to_check_on_a_real_rig() -> None:
+    text = SMALL.replace('"1#"', "EPDM").replace("300 mm/s", "500 mm/s").replace("200 N]", "430 N]")
+    assert check(text, real_rig(), PART, "r.yaml") == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        (
+            "200 N]",
+            "431 N]",
+            "r.yaml:9:19: load: 431 N is too near to limits.load, 440 N, to be held (expected at most 430 N: 10 N of"
+            f" runout below limits.load {FROM_RIG}",
+        ),
+        (
+            "[40 degC, 25 degC]",
+            "[40 degC, 91 degC]",
+            "r.yaml:10:28: temperature: 91 degC with its band of 2 K leaves less than 3 K, by which a burst overshoots,"
+            f" to what rubber may be (limit 95 degC: limits.surface {FROM_RIG}",
+        ),
+        (
+            "slip_velocity: 300 mm/s",
+            "slip_velocity: 595 mm/s",
+            "r.yaml:8:20: slip_velocity: 0.595 m/s at a wheel speed of 0.8 m/s leaves less than 0.01005 m/s, by which"
+            " the speeds may be off (gates.speed), to what is ever loaded"
+            f" (limit 0.6 m/s: interlocks.max_slip {FROM_RIG}",
+        ),
+    ],
+)
+def test_what_would_trip_at_a_limit_is_refused_before_it(old: str, new: str, problem: str) -> None:
+    assert problem in problems(with_line(old, new))
+
+
+def test_friction_heat_leaves_room_for_the_scatter_of_friction() -> None:
+    text = SMALL.replace('"1#"', '"3#"').replace("200 N]", "430 N]").replace("[40 degC, 25 degC]", "[90 degC]")
+    (problem,) = problems(text.replace("300 mm/s", "480 mm/s"))
+    assert "and with the scatter of friction 15 % more (limit 350 W: limits.slip_power" in problem
+    assert problems(text.replace("300 mm/s", "440 mm/s")) == []
+
+
+def test_friction_heat_is_that_of_the_worst_temperature_within_the_band() -> None:
+    text = SMALL.replace('"1#"', '"3#"').replace("200 N]", "430 N]").replace("[40 degC, 25 degC]", "[90 degC]")
+    (problem,) = problems(text.replace("300 mm/s", "450 mm/s"))
+    assert '"3#" at 88 degC' in problem
+
+
+def test_pre_grinding_has_the_same_limits() -> None:
+    text = PREPARED.replace("belt_speed: 0.6 m/s, load: 200 N", "belt_speed: 1.4 m/s, load: 460 N")
+    found = problems(text)
+    assert [line.split(": ")[1] for line in found] == ["belt_speed", "load"]
+    assert all(line.startswith("r.yaml:11:") for line in found)
+
+
+def test_a_load_too_near_to_touching_is_reported_with_the_least_and_its_source() -> None:
+    assert problems(with_line("[100 N, 200 N]", "[5 N, 14.9 N, 15 N]")) == [
+        f"r.yaml:9:{column}: load: {load} is too near to touching, which is 10 N, to be held"
+        f" (expected at least 15 N: 1.5 x loops.load.touch_load {FROM_RIG}"
+        for column, load in ((12, "5 N"), (17, "14.9 N"))
+    ]
+
+
+def test_the_least_load_is_that_of_the_rig() -> None:
+    (problem,) = problems(SMALL.replace("200 N]", "25 N]"), "loops.load.touch_load=20 N")
+    assert problem.startswith("r.yaml:9:") and "25 N is too near to touching" in problem and "at least 30 N" in problem
+
+
+def test_pre_grinding_has_the_same_least_load() -> None:
+    (problem,) = problems(PREPARED.replace("load: 200 N", "load: 10 N"))
+    assert problem.startswith("r.yaml:11:62: load: 10 N is too near to touching")
+
+
+@pytest.mark.parametrize("load", ["0 N", "-10 N"])
+def test_what_is_no_load_is_said_once(load: str) -> None:
+    (problem,) = problems(with_line("[100 N, 200 N]", load))
+    assert "expected more than 0 N" in problem
+
+
+def test_a_rest_that_ambient_never_lets_end_is_reported() -> None:
+    (problem,) = problems(PREPARED, "sim.ambient=27")
+    assert problem.startswith("r.yaml:12:33: until: a wheel at rest does not cool to 27 degC (27 degC: ambient of rig")
+
+
+def test_the_recipes_own_ambient_comes_first() -> None:
+    assert problems(PREPARED + "ambient: 20 degC\n", "sim.ambient=27") == []
+
+
+def test_a_limit_that_was_overridden_is_the_limit() -> None:
+    (problem,) = problems(SMALL, "limits.load=150")
+    assert "200 N is more than the rig allows (limit 150 N" in problem
+
+
+def test_a_grid_of_which_one_condition_wears_a_wheel_out_is_reported() -> None:
+    (problem,) = problems(PREPARED + "wheel: {replace_after: 0.2 mm}\n")
+    assert problem.startswith("r.yaml:7:5: a condition of this grid wears ")
+    assert "more than replace_after, 0.2 mm" in problem
+
+
+def test_more_wear_than_there_is_rubber_is_reported() -> None:
+    (problem,) = problems(PREPARED + "wheel: {replace_after: 17 mm}\n")
+    assert problem.endswith("replace_after: 17 mm is more rubber than there is, 16 mm")
+
+
+MISTAKES = """\
+recipe: five mistakes
+recipe: twice
+specimens:
+  - compound: "1#"
+measure:
+  wheel_speed: 800
+  windw: 30 rev
+  min_valid: 9
+grids:
+  - name: load
+    slip_velocity: 300 mm/s
+    load: [100 N, 500 N]
+    temperature: [25 degC, 99 degC]
+order: {within: random}
+"""
+
+
+def test_mistakes_of_every_kind_are_reported_at_once_with_line_and_column() -> None:
+    assert [line.split(": ")[0] for line in problems(MISTAKES)] == [
+        "r.yaml:2:1",
+        "r.yaml:6:16",
+        "r.yaml:7:3",
+        "r.yaml:12:19",
+        "r.yaml:13:28",
+        "r.yaml:14:17",
+    ]
+
+
+def test_limits_are_found_in_a_grid_whose_other_values_are_wrong() -> None:
+    text = with_line("[100 N, 200 N]", "[100, 600 N, oops]")
+    assert [line.split(": ")[0] for line in problems(text)] == ["r.yaml:9:12", "r.yaml:9:17", "r.yaml:9:24"]
+
+
+def test_every_packaged_recipe_can_be_run_on_the_simulated_rig() -> None:
+    names = [name for name in recipes.names() if not name.startswith(("grosch", "pin-on-disc"))]  # for other rigs
+    assert {name: check(recipes.find(name), rig(), PART) for name in names} == {name: [] for name in names}
+
+
+def test_the_hot_rig_is_not_refused_before_it_has_tried() -> None:
+    hot = rig("sim.friction_heat_fraction=0.5", "sim.belt_conductance=0.3")
+    assert check(recipes.find("table2"), hot, PART) == []
+
+
+def test_a_syntax_error_is_the_only_problem() -> None:
+    assert problems("recipe: [x\nspecimens: {")[0].startswith("r.yaml:2:10: not YAML")
+
+
+fragments = st.sampled_from(
+    [
+        "[",
+        "]",
+        "{",
+        "}",
+        ":",
+        "-",
+        "\n",
+        "  ",
+        "#",
+        '"',
+        "degC",
+        "300 mm/s",
+        "null",
+        "1e9 N",
+        "load",
+        "grids:",
+        "*a",
+        "&a",
+        "é",
+    ]
+)
+
+
+@given(st.integers(0, len(PREPARED)), st.integers(0, 12), fragments)
+@settings(max_examples=150, deadline=None)
+def test_any_damage_to_a_recipe_is_harmless_or_reported(place: int, cut: int, fragment: str) -> None:
+    damaged = PREPARED[:place] + fragment + PREPARED[place + cut :]
+    try:
+        load_checked(damaged, rig(), PART, "r.yaml")
+    except InvalidSource as error:
+        assert error.problems
+        assert all(problem.line >= 1 and problem.column >= 1 for problem in error.problems)
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers(-5, 5) | st.sampled_from(["", "x", "100 N", "25 degC", "0.3 m/s", "1#"]),
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(st.sampled_from(["load", "temperature", "name", "compound", "until", "x"]), inner, max_size=3)
+    ),
+    max_leaves=6,
+)
+KEYS = [
+    "recipe",
+    "specimens",
+    "measure",
+    "grids",
+    "pre_grind",
+    "rest",
+    "order",
+    "wheel",
+    "steps",
+    "experiment",
+    "ambient",
+]
+
+
+@given(st.dictionaries(st.sampled_from(KEYS), values, max_size=6))
+@settings(max_examples=200, deadline=None)
+def test_any_tree_is_a_recipe_or_reported(tree: dict[str, object]) -> None:
+    import json
+
+    try:
+        load_checked(json.dumps(tree), rig(), PART, "r.yaml")
+    except InvalidSource as error:
+        assert error.problems
+
+
+def test_a_recipe_for_a_rig_of_another_kind_is_refused_for_that_alone() -> None:
+    text = "kind: specimen_on_track\ngrids: [{name: slow, track_speed: 1 mm/s}]\n" + SMALL.partition("grids:")[0]
+    (problem,) = check(text, rig(), PART, "r.yaml")
+    told = 'the recipe is for a rig of kind "specimen_on_track"'
+    assert str(problem) == f'r.yaml:1:7: kind: {told}, rig "{rig().name}" is of kind wheel_on_belt'
+
+
+def test_a_recipe_may_say_the_kind_of_its_rig() -> None:
+    assert check("kind: wheel_on_belt\n" + SMALL, rig(), PART) == []
+
+
+@pytest.mark.parametrize("value", ["much", "-0.1"])
+def test_what_replaces_a_bound_of_the_budget_is_a_number(value: str) -> None:
+    said = f"experiment: {{uncertainty.misalignment_deg: {value}}}\n"
+    with pytest.raises(InvalidSource, match=r"misalignment_deg: .* is not a number >= 0"):
+        load_checked(SMALL + said, rig(), PART, "r.yaml")
+
+
+def test_a_setting_that_no_term_of_the_budget_has_is_refused_with_the_nearest() -> None:
+    said = "experiment: {uncertainty.misalignment: 0.1}\n"
+    with pytest.raises(InvalidSource, match=r"no term of this rig's budget .* mean uncertainty.misalignment_deg\?"):
+        load_checked(SMALL + said, rig(), PART, "r.yaml")

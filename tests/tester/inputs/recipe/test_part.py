@@ -11,10 +11,9 @@ from tester.base.source import InvalidSource
 from tester.inputs.recipe.describe import lines
 from tester.inputs.recipe.estimate import estimate
 from tester.inputs.recipe.loader import load_recipe
-from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.recipe.plan_json import json_chunks
 from tester.inputs.recipe.schema import schema_text
-from tester.inputs.recipe.stand import Stand
 from tests.tester.inputs.recipe.track import TrackPart, TrackRecipe
 
 TEXT = """\

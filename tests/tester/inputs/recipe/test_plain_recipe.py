@@ -8,8 +8,7 @@ import pytest
 
 from tester.inputs.recipe.describe import lines
 from tester.inputs.recipe.plain import Mount
-from tester.inputs.recipe.plan import ConditionStep
-from tester.inputs.recipe.stand import Mounted, Stand
+from tester.inputs.recipe.plan import ConditionStep, Mounted, Stand
 from tests.tester.machine.plain.bench import RECIPE, BenchRuns, bench_plan, bench_rig
 
 PART = BenchRuns.part

@@ -8,7 +8,7 @@ from math import sqrt
 import pytest
 
 from tester.analysis.quantiles import t_quantile
-from tester.analysis.repeatability import Pool
+from tester.analysis.uncertainty import Pool
 from tester.inputs.recipe.estimate import estimate
 from tester.inputs.recipe.foreseen import Foreseen, foreseen
 from tester.inputs.recipe.plan import Plan

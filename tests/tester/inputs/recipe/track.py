@@ -13,10 +13,9 @@ from tester.base.units import Quantity, show
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
 from tester.inputs.recipe.estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.inputs.recipe.part import RecipePart
-from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
 from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe, Section
 from tester.inputs.recipe.semantics import listed
-from tester.inputs.recipe.stand import Stand
 from tester.inputs.rig import Rig
 
 TRACK = Axes(

@@ -11,7 +11,7 @@ from sim.physics.laws import LawSetting, make
 from tester.base.source import InvalidSource
 from tester.inputs.materials.library import Library
 from tester.inputs.materials.setting import VARIABLE
-from tester.inputs.recipe.check import load_checked
+from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.recipe.estimate import LIKELY_MU

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tester.inputs.recipe.check import check, load_checked
 from tester.inputs.recipe.describe import lines
-from tester.inputs.recipe.loader import load_recipe
-from tester.inputs.recipe.plan import Plan
-from tester.inputs.recipe.stand import Mounted, Stand
+from tester.inputs.recipe.loader import check, load_checked, load_recipe
+from tester.inputs.recipe.plan import Mounted, Plan, Stand
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition

@@ -6,7 +6,7 @@ import pytest
 
 from tester.base.source import InvalidSource, load_tree
 from tester.inputs.rig.load import load
-from tester.inputs.rig.template import hardware_text
+from tester.inputs.rig.packaged import hardware_text
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.served.alone import left_alone
 

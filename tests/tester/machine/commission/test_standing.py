@@ -9,7 +9,7 @@ import pytest
 from tester.machine.commission.record import BEGUN, DONE, REFUSED, CommissionRecord
 from tester.machine.commission.standing import standing_of
 from tester.machine.commission.step import CommissionStep, sections_sha256
-from tester.run.rigs import load_rig
+from tester.run.kinds import load_rig
 
 STEP = CommissionStep("jog", "a jog", ("can",))
 

@@ -14,7 +14,7 @@ from textual.pilot import Pilot
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.machine.commission.person import Question
 from tester.run.commissioning import CommissionOptions
-from tester.run.rigs import load_rig
+from tester.run.kinds import load_rig
 from tester.tui.guide.app import GuideApp
 from tester.tui.guide.guide import Guide
 from tests.tester.tui.stage import WAIT_S, screen_text

@@ -27,7 +27,7 @@ from tester.machine.commission.engine import CommissionOutcome, Ended
 from tester.machine.commission.person import Question
 from tester.machine.commission.record import BEGUN, DONE, CommissionRecord, record_path
 from tester.run.commissioning import CommissionOptions, commission
-from tester.run.rigs import load_rig
+from tester.run.kinds import load_rig
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a process that is forked is POSIX")
 

@@ -13,7 +13,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.commission.engine import Commissioning, CommissionOutcome
 from tester.machine.commission.record import CommissionRecord
 from tester.machine.commission.step import CommissionStep
-from tester.run.rigs import load_rig
+from tester.run.kinds import load_rig
 from tester.run.simulated import simulated_ports
 
 

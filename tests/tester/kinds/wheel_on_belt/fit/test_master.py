@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tester.analysis.master_curve.signs import signs_of
+from tester.analysis.master_curve.verdict import signs_of
 from tester.kinds.wheel_on_belt.fit.master import MASTERS
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tester.analysis.soak_check import SoakCheck
+from tester.analysis.results import SoakCheck
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
 from tester.kinds.wheel_on_belt.procedures.soak_check import HUB_K, MODEL_SHARE, THERMOMETER_K, allowed_k, soak_check
 from tests.tester.kinds.wheel_on_belt.bench import Bench, make_bench

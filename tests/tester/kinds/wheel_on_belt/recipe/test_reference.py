@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tester.inputs.recipe.check import check
 from tester.inputs.recipe.describe import lines
+from tester.inputs.recipe.loader import check
+from tester.inputs.recipe.plan import Mounted, Stand
 from tester.inputs.recipe.schema import recipe_schema
-from tester.inputs.recipe.stand import Mounted, Stand
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining

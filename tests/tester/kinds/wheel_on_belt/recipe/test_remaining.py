@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from tester.inputs.recipe.plan import PromptStep, Step
-from tester.inputs.recipe.stand import Mounted, Stand
+from tester.inputs.recipe.plan import Mounted, PromptStep, Stand, Step
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
 from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan

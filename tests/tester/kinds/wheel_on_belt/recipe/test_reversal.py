@@ -7,9 +7,9 @@ import json
 import pytest
 
 from tester.analysis.kelvin import Slope
-from tester.inputs.recipe.check import check
 from tester.inputs.recipe.describe import lines
 from tester.inputs.recipe.estimate import Outlook, estimate
+from tester.inputs.recipe.loader import check
 from tester.inputs.recipe.plan_json import json_chunks
 from tester.kinds.wheel_on_belt.procedures.plan_bounds import plan_bounds
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator

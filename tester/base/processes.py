@@ -1,0 +1,137 @@
+"""Processes of ours: how one starts, its real-time priority, the signals that ask it to end, its exit codes.
+
+The signals are INT, TERM, and HUP where the system has it (not Windows).
+
+A process that was started with HUP ignored (nohup, a service) goes on ignoring it: somebody wanted it to outlive its
+terminal.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Final, TypeAlias
+
+Handler: TypeAlias = Callable[[int, FrameType | None], object]
+
+HANG_UP: Final[int] = getattr(signal, "SIGHUP", 0)
+"""The terminal is gone; 0 where there is no such signal."""
+QUIT: Final[int] = getattr(signal, "SIGQUIT", 0)
+"""Ctrl+\\: out, at once; 0 where there is no such signal."""
+SUSPENDING: Final = tuple(
+    int(getattr(signal, name)) for name in ("SIGTSTP", "SIGTTIN", "SIGTTOU") if hasattr(signal, name)
+)
+"""What would suspend a process in the middle of a motion (Ctrl+Z, and a terminal that another one has)."""
+
+
+def asking_to_end() -> list[int]:
+    """Return the numbers of the signals that ask this process to end, as it was started."""
+    numbers = [int(signal.SIGINT), int(signal.SIGTERM), *([QUIT] if QUIT else [])]
+    if HANG_UP and signal.getsignal(HANG_UP) is not signal.SIG_IGN:
+        numbers.append(HANG_UP)
+    return numbers
+
+
+@contextmanager
+def handled(handler: Handler) -> Generator[None]:
+    """Have a handler called with what asks this process to end, and do not be suspended, while the block lasts.
+
+    Main thread only.
+    """
+    before = {number: signal.signal(number, handler) for number in asking_to_end()}
+    before |= {number: signal.signal(number, signal.SIG_IGN) for number in SUSPENDING}
+    try:
+        yield
+    finally:
+        for number, previous in before.items():
+            signal.signal(number, previous)
+
+
+@contextmanager
+def not_inherited() -> Generator[None]:
+    """Let a process that is started in the block ignore Ctrl+C and a hang-up: both reach its parent (main thread)."""
+    numbers = [number for number in asking_to_end() if number != signal.SIGTERM]
+    before = {number: signal.signal(number, signal.SIG_IGN) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, previous in before.items():
+            signal.signal(number, previous)
+
+
+def leave_to_parent() -> None:
+    """Ignore Ctrl+C and a hang-up from now on: the parent hears them too, and says what is to be done."""
+    for number in (int(signal.SIGINT), HANG_UP, QUIT, *SUSPENDING):
+        if number:
+            signal.signal(number, signal.SIG_IGN)
+
+
+_COMMAND = "from tester.cli.main import main; main()"
+
+
+def tester_command(*arguments: str) -> list[str]:
+    """Return the command line of ``tester ARGUMENTS`` as a process of its own."""
+    return [sys.executable, "-P", "-c", _COMMAND, *arguments]
+
+
+def module_command(module: str, *arguments: str) -> list[str]:
+    """Return the command line that runs one of our modules as a process of its own."""
+    return [sys.executable, "-P", "-m", module, *arguments]
+
+
+LEVEL = 10
+"""1 to 99; low: kernel threads that serve interrupts run at 50."""
+
+
+class RealTimePriority:
+    """What this process was granted; ``refused`` says why nothing, "" where it was. ``close`` gives it back."""
+
+    def __init__(self) -> None:
+        """Ask for every thread that runs now: one left behind would keep the others waiting for the interpreter."""
+        self.refused = ""
+        self._threads: list[int] = []
+        if sys.platform != "linux":
+            self.refused = f"not asked for on {sys.platform}"
+            return
+        for thread in threading.enumerate():
+            if thread.native_id is None:
+                continue
+            try:
+                os.sched_setscheduler(
+                    thread.native_id, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(LEVEL)
+                )
+            except OSError as error:
+                self.refused = error.strerror or "refused"
+                return
+            self._threads.append(thread.native_id)
+
+    def close(self) -> None:
+        """Be an ordinary process again; threads that have ended need nothing."""
+        if sys.platform != "linux":
+            return
+        for number in self._threads:
+            try:
+                os.sched_setscheduler(number, os.SCHED_OTHER, os.sched_param(0))
+            except OSError:
+                continue
+        self._threads.clear()
+
+
+EXIT_DONE = 0
+EXIT_FAILED = 1
+"""A run failed, a service refused, a record differs."""
+EXIT_USAGE = 2
+EXIT_INVALID = 3
+"""Recipe or rig file; or recipe, rig or calibration are not those of the run that is to go on."""
+EXIT_UNREACHABLE = 4
+EXIT_TRIPPED = 5
+"""Tripped or stopped."""
+EXIT_INCOMPLETE = 6
+EXIT_INTERRUPTED = 130
+EXIT_READER_GONE = 141
+"""Nobody reads the output any more (`tester runs | head -1`): what a shell calls the end by SIGPIPE."""

@@ -1,0 +1,75 @@
+"""Charts of laws, as data: a master curve, and the parts of a coefficient over one quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+
+from tester.analysis.master_curve.made import Master
+from tester.report.chart import Chart, ChartPanel, Look, Series
+from tester.report.charts import Y_LABEL
+
+PLACES: Final = 300
+"""Of the curve that is drawn."""
+STYLES: Final = 8
+"""Colours and marks that a drawing tells apart."""
+
+
+def master_chart(one: Master) -> Chart:
+    """Return the figure: on the left what was measured, on the right the same over aT v with the spline.
+
+    Each temperature has a colour and a mark of its own; from the ninth on the marks are hollow.
+    """
+    of, rows = one.collapse.of, one.rows()
+    measured: list[Series] = []
+    collapsed: list[Series] = []
+    for i, block_c in enumerate(of.blocks_c):
+        own = [row for row, block in zip(rows, of.block, strict=True) if block == i]
+        mu = tuple(row.mu for row in own)
+        label = f"{block_c:g} °C"
+        look: Look = "published" if i // STYLES % 2 else "measured"
+        measured.append(Series("", tuple(row.speed_m_s for row in own), mu, look, i))
+        collapsed.append(Series(label, tuple(float(10.0**row.x) for row in own), mu, look, i))
+    x = np.linspace(float(np.min(one.collapse.x)), float(np.max(one.collapse.x)), PLACES)
+    curve_x = tuple(float(10.0**at) for at in x - one.back)
+    curve_mu = tuple(float(mu) for mu in np.exp(one.collapse.curve.at(x)))
+    collapsed.append(Series("spline", curve_x, curve_mu, "limit", 0))
+    first = one.points[0]
+    held = "".join(f", {words}" for words in first.held.values())
+    c = one.collapse
+    ts = f"Ts {c.ts_c:.1f} °C" + ("" if c.searched else ", given")
+    return Chart(
+        name="master",
+        title=f"{first.compound}{held}: {one.judged.verdict.value}",
+        x_label="v /m·s⁻¹",
+        y_label="friction coefficient",
+        panels=(
+            ChartPanel("measured", tuple(measured)),
+            ChartPanel(
+                f"shifted by WLF, {ts}", tuple(collapsed), x_label=f"aT v /m·s⁻¹ at {one.reference_c:g} °C",
+                joined=False,
+            ),
+        ),
+        note=f"scatter about the curve {100.0 * c.scatter_rms:.1f} % of mu",
+        own_x=True,
+        log_x=True,
+    )
+
+
+def components_chart(
+    at: Callable[[float], tuple[float, float]], x: Sequence[float], x_label: str, title: str, note: str
+) -> Chart:
+    """Return the chart of a law's parts at values of one quantity (``x``, above 0, which are set out by ratios).
+
+    ``at`` returns adhesion and hysteresis.
+    """
+    found = [at(one) for one in x]
+    lines = {
+        "adhesion": tuple(one for one, _ in found),
+        "hysteresis": tuple(one for _, one in found),
+        "sum": tuple(sum(one) for one in found),
+    }
+    series = tuple(Series(name, tuple(x), y, "law", style) for style, (name, y) in enumerate(lines.items()))
+    return Chart("components", title, x_label, Y_LABEL, (ChartPanel("", series),), note, log_x=True)
