@@ -7,15 +7,12 @@ from enum import Enum
 from functools import partial
 from typing import Final
 
-from drivers.canopen import objects as o
-from sim.faults import actuators, can, drives, modbus, operator_faults
+from sim.faults import drives, modbus
+from sim.faults.common import SCAN_S, bus_rows, computer_rows, drive_rows, left_operation_rows
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.language import FaultLanguage
 from sim.wires.modbus_wire import Kind
 
-OVERCURRENT: Final = 0x2310
-SCAN_S: Final = 0.05
-"""The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
 STEPS: Final = ("connect", "mount", "settle", "slide")
 """Names of steps that a fault can wait for."""
 
@@ -35,17 +32,6 @@ _SPOILED: Final[tuple[tuple[str, Kind], ...]] = (("silent", "silence"), ("CRC er
 _ENABLED, _MOVING = PlainExposure.ENABLED, PlainExposure.MOVING
 
 
-def _of_drive(axis: str) -> Iterator[FaultKind]:
-    yield FaultKind(f"{axis} drive fault", partial(drives.DriveFault, axis, OVERCURRENT), _DRIVES, _TRIP, 0.02 + SCAN_S)
-    yield FaultKind(f"{axis} drive heartbeat lost", partial(drives.HeartbeatLost, axis), _DRIVES, _TRIP, 0.2 + SCAN_S)
-    yield FaultKind(f"{axis} drive off the bus", partial(can.NodeCut, axis), _DRIVES, _TRIP, 0.2 + SCAN_S)
-    yield FaultKind(
-        f"{axis} drive data lost", partial(can.FramesLost, axis, o.TPDO1_BASE), _ENABLED, _TRIP, 0.2 + SCAN_S
-    )
-    yield FaultKind(f"{axis} drive in local mode", partial(drives.Local, axis), _ENABLED, _TRIP, 0.1 + SCAN_S)
-    yield FaultKind(f"{axis} drive jammed", partial(drives.Jammed, axis), _MOVING, _TRIP, 1.2 + SCAN_S)
-
-
 def _of_sensor(device: str) -> Iterator[FaultKind]:
     for what, kind in _SPOILED:
         yield FaultKind(
@@ -56,23 +42,11 @@ def _of_sensor(device: str) -> Iterator[FaultKind]:
     )
 
 
-def _of_the_rest() -> Iterator[FaultKind]:
-    yield FaultKind("CAN adapter gone", can.AdapterGone, _DRIVES, _TRIP, SCAN_S)
-    yield FaultKind("CAN bus off", can.BusSilent, _DRIVES, _TRIP, 0.2 + SCAN_S)
-    yield FaultKind("safety chain opened", actuators.ChainOpen, _DRIVES, _TRIP, SCAN_S)
-    yield FaultKind("guard opened", actuators.GuardOpen, _ENABLED, _TRIP, SCAN_S)
-    yield FaultKind(
-        "scan stalled", operator_faults.Stall, _ENABLED, _TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5
-    )
-    yield FaultKind("process killed", operator_faults.Killed, _ALWAYS, Expected.DEVICES, 0.25)
-    for action, reaction in (("hold", Expected.HOLD), ("release", Expected.RIDE), ("stop", Expected.STOP),
-                             ("fast stop", Expected.STOP)):  # fmt: skip
-        yield FaultKind(f"operator {action}", partial(operator_faults.Operator, action), _DRIVES, reaction, SCAN_S)
-
-
 def plain_language(axes: Iterable[str], sensors: Iterable[str], *own: FaultKind) -> FaultLanguage:
     """Return what the scripts of a plain machine can say; ``sensors`` by the names that people use of them."""
-    rows = [*own, *_of_the_rest()]
-    rows += [row for axis in axes for row in _of_drive(axis)]
+    rows = [*own, *bus_rows(_DRIVES, _ENABLED), *computer_rows(_ALWAYS, _DRIVES, _ENABLED)]
+    for axis in axes:
+        rows += [*drive_rows(axis, _DRIVES, _ENABLED), *left_operation_rows(axis, _ENABLED)]
+        rows.append(FaultKind(f"{axis} drive jammed", partial(drives.Jammed, axis), _MOVING, _TRIP, 1.2 + SCAN_S))
     rows += [row for device in sensors for row in _of_sensor(device)]
     return FaultLanguage({row.phrase: row for row in rows}, STEPS)

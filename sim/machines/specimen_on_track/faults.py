@@ -11,8 +11,8 @@ from enum import Enum
 from functools import partial
 from typing import Final
 
-from drivers.canopen import objects as o
-from sim.faults import actuators, can, drives, modbus, operator_faults, sdo
+from sim.faults import actuators, can, drives, modbus
+from sim.faults.common import SCAN_S, bus_rows, computer_rows, connecting_rows, drive_rows, left_operation_rows
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.language import FaultLanguage
 from sim.faults.scene import Effect, Scene
@@ -24,9 +24,6 @@ from sim.wires.modbus_wire import Kind
 STEPS: Final = ("connect", "install", "temper", "settle", "tare", "lower", "slide", "lift", "prompt")
 """Names of steps that a fault can wait for."""
 AXES: Final = ("track", "lift")
-SCAN_S: Final = 0.05
-"""The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
-OVERCURRENT: Final = 0x2310
 
 
 class Onset(Enum):
@@ -100,42 +97,17 @@ class EndSwitchDead(Effect):
 
 
 def _drive_rows() -> Iterator[FaultKind]:
-    drives_on, trip = Onset.DRIVES, Expected.TRIP
+    trip = Expected.TRIP
     for axis in AXES:
-        yield FaultKind(f"{axis} drive fault", partial(drives.DriveFault, axis, OVERCURRENT), drives_on, trip,
-                        0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive heartbeat lost", partial(drives.HeartbeatLost, axis), drives_on, trip,
-                        0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive off the bus", partial(can.NodeCut, axis), drives_on, trip, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive without supply", partial(drives.Unpowered, axis), drives_on, trip, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive reboots", partial(drives.Reboot, axis), drives_on, trip, 0.25 + SCAN_S,
-                        lasts_s=1.0)
-        yield FaultKind(f"{axis} drive data lost", partial(can.FramesLost, axis, o.TPDO1_BASE), Onset.ENABLED, trip,
-                        0.15 + SCAN_S)
-        yield FaultKind(f"{axis} drive torque off", partial(drives.TorqueOff, axis), Onset.ENABLED, trip,
-                        0.1 + SCAN_S)
-        yield FaultKind(f"{axis} drive in local mode", partial(drives.Local, axis), Onset.ENABLED, trip,
-                        0.1 + SCAN_S)
-        yield FaultKind(f"{axis} drive of another make", partial(drives.WrongIdentity, axis), Onset.CONNECTING,
-                        trip, 3.0)
-        yield FaultKind(f"{axis} drive SDO abort", partial(sdo.SdoSpoiled, axis, "abort"), Onset.CONNECTING, trip,
-                        3.0)
+        yield from drive_rows(axis, Onset.DRIVES, Onset.ENABLED)
+        yield from left_operation_rows(axis, Onset.ENABLED)
+        yield from connecting_rows(axis, Onset.CONNECTING)
     yield FaultKind("track stalls", partial(drives.Jammed, "track"), Onset.MOVING, trip, 1.2 + SCAN_S)
     yield FaultKind("track overspeeds", TrackOverspeeds, Onset.ENABLED, trip, 1.2 + SCAN_S, "mm/s", 10.0)
     yield FaultKind("lift stuck", partial(drives.Jammed, "lift"), Onset.LIFTING, trip, 5.0,
                     note="a move that does not arrive within its time")
     yield FaultKind("end switch dead", EndSwitchDead, Onset.NEAR_THE_END, Expected.MAY, 0.0,
                     note="a second line: the track turns back before it")
-
-
-def _bus_rows() -> Iterator[FaultKind]:
-    drives_on, trip = Onset.DRIVES, Expected.TRIP
-    yield FaultKind("CAN adapter gone", can.AdapterGone, drives_on, trip, SCAN_S)
-    yield FaultKind("CAN bus off", can.BusSilent, drives_on, trip, 0.2 + SCAN_S)
-    yield FaultKind("CAN frames repeated", can.FramesRepeated, Onset.ALWAYS, Expected.RIDE, 0.0)
-    yield FaultKind("safety chain opened", actuators.ChainOpen, drives_on, trip, SCAN_S)
-    yield FaultKind("guard opened", actuators.GuardOpen, Onset.ENABLED, trip, SCAN_S)
-    yield FaultKind("emergency stop pressed", partial(actuators.EmergencyStop, ("track",)), drives_on, trip, SCAN_S)
 
 
 _SILENT_S: Final = {"load cell": (Onset.SLIDING, 0.2 + SCAN_S), "chamber": (Onset.TEMPERED, 3.0 + SCAN_S)}
@@ -186,21 +158,14 @@ def _device_rows() -> Iterator[FaultKind]:
                         10.0, note="recorded, not controlled by")
 
 
-def _computer_rows() -> Iterator[FaultKind]:
-    yield FaultKind("scan stalled", operator_faults.Stall, Onset.ENABLED, Expected.TRIP, 0.4 + SCAN_S, "ms", 0.4,
-                    lasts_s=0.5)
-    yield FaultKind("process killed", operator_faults.Killed, Onset.ALWAYS, Expected.DEVICES, 0.25)
-    for action, reaction in (("hold", Expected.HOLD), ("abort", Expected.STOP), ("stop", Expected.STOP),
-                             ("fast stop", Expected.STOP)):
-        yield FaultKind(f"operator {action}", partial(operator_faults.Operator, action), Onset.DRIVES, reaction,
-                        SCAN_S)
-
-
 def _rows() -> Iterator[FaultKind]:
     yield from _drive_rows()
-    yield from _bus_rows()
+    yield from bus_rows(Onset.DRIVES, Onset.ENABLED)
+    yield FaultKind("CAN frames repeated", can.FramesRepeated, Onset.ALWAYS, Expected.RIDE, 0.0)
+    yield FaultKind("emergency stop pressed", partial(actuators.EmergencyStop, ("track",)), Onset.DRIVES, Expected.TRIP,
+                    SCAN_S)
     yield from _device_rows()
-    yield from _computer_rows()
+    yield from computer_rows(Onset.ALWAYS, Onset.DRIVES, Onset.ENABLED)
 
 
 CATALOGUE: dict[str, FaultKind] = {row.phrase: row for row in _rows()}

@@ -18,6 +18,7 @@ from sim.faults import drives as d
 from sim.faults import modbus as m
 from sim.faults import operator_faults as p
 from sim.faults import sdo
+from sim.faults.common import SCAN_S, bus_rows, connecting_rows, drive_rows, left_operation_rows
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.scene import Effect
 from sim.faults.sensors import CROSSED, ControllerOutput, SensorFault
@@ -34,9 +35,7 @@ STOPPED_BY_THE_CHAIN = ("wheel", "belt", "press")
 MODBUS_DEVICES = ("load cell", "thermometer", "jacket")
 STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
 """Names of steps that a fault can wait for."""
-OVERCURRENT, OVERHEATING, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x2310, 0x4310, 0x8611, 0x7305, 0x8110
-SCAN_S = 0.05
-"""The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
+OVERHEATING, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x4310, 0x8611, 0x7305, 0x8110
 CELL, SURFACE, HUB = (partial(SensorFault, device) for device in MODBUS_DEVICES)
 OUTPUT = partial(ControllerOutput, "jacket")
 
@@ -70,17 +69,9 @@ _ENABLE_AND_GO = b"\x0f\x00" + (50_000).to_bytes(4, "little", signed=True)
 
 def _drive_rows() -> Iterator[FaultKind]:
     for axis in AXES:
-        yield FaultKind(f"{axis} drive fault", partial(d.DriveFault, axis, OVERCURRENT), DRIVES, TRIP, 0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive heartbeat lost", partial(d.HeartbeatLost, axis), DRIVES, TRIP, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive reboots", partial(d.Reboot, axis), DRIVES, TRIP, 0.25 + SCAN_S,
-                        lasts_s=1.0, note="its boot-up message comes after 0.2 s")
-        yield FaultKind(f"{axis} drive off the bus", partial(c.NodeCut, axis), DRIVES, TRIP, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive without supply", partial(d.Unpowered, axis), DRIVES, TRIP, 0.2 + SCAN_S)
-        yield FaultKind(f"{axis} drive data lost", partial(c.FramesLost, axis, o.TPDO1_BASE), ENABLED, TRIP,
-                        0.15 + SCAN_S)
-        yield FaultKind(f"{axis} drive of another make", partial(d.WrongIdentity, axis), CONNECTING, TRIP, 3.0)
+        yield from drive_rows(axis, DRIVES, ENABLED)
+        yield from connecting_rows(axis, CONNECTING)
         yield FaultKind(f"{axis} drive mode refused", partial(sdo.ModeRefused, axis), CONNECTING, TRIP, 5.0)
-        yield FaultKind(f"{axis} drive SDO abort", partial(sdo.SdoSpoiled, axis, "abort"), CONNECTING, TRIP, 3.0)
         yield FaultKind(f"{axis} drive SDO toggle error", partial(sdo.SdoSpoiled, axis, "toggle"), CONNECTING, TRIP,
                         10.0, note="in segmented uploads, which a device may choose for any object")
         yield FaultKind(f"{axis} drive SDO of another object", partial(sdo.SdoSpoiled, axis, "other object"),
@@ -95,8 +86,7 @@ def _drive_rows() -> Iterator[FaultKind]:
         yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, TRIP,
                         0.2 + SCAN_S, note="the drive's own deadline (0x1400:05), or sooner a speed or load error")
         yield _frozen_feedback(axis)
-        yield FaultKind(f"{axis} drive in local mode", partial(d.Local, axis), ENABLED, TRIP, 0.1 + SCAN_S)
-        yield FaultKind(f"{axis} drive torque off", partial(d.TorqueOff, axis), ENABLED, TRIP, 0.1 + SCAN_S)
+        yield from left_operation_rows(axis, ENABLED)
     yield FaultKind("press drive inputs lost", partial(c.FramesLost, "press", o.TPDO2_BASE), DRIVES, TRIP,
                     0.25 + 2.0 * SCAN_S, note="safety chain, guard and contactor are not known any more; idle at 10 Hz")
     yield FaultKind("press drive outputs lost shortly", partial(c.FramesLost, "press", o.RPDO2_BASE), ALWAYS, RIDE, 0.0,
@@ -114,8 +104,7 @@ def _frozen_feedback(axis: str) -> FaultKind:
 
 
 def _bus_rows() -> Iterator[FaultKind]:
-    yield FaultKind("CAN adapter gone", c.AdapterGone, DRIVES, TRIP, SCAN_S)
-    yield FaultKind("CAN bus off", c.BusSilent, DRIVES, TRIP, 0.2 + SCAN_S)
+    yield from bus_rows(DRIVES, ENABLED)
     yield FaultKind("CAN frames lost", c.FrameLoss, ENABLED, TRIP, 10.0, "%", 20.0,
                     note="by chance: three frames of a drive in a row at 20 Hz")
     yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.0, "ms", 0.1,
@@ -251,8 +240,6 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     note="there is no encoder on the belt itself: by the drive's torque, beyond elastic creep (2 %)")
     yield FaultKind("wheel slips on its shaft", k.WheelSlipsOnShaft, SLIDING, MAY, 0.0,
                     note="the shaft's encoder turns on, and friction does not vanish: held by the clamping")
-    yield FaultKind("safety chain opened", a.ChainOpen, DRIVES, TRIP, SCAN_S)
-    yield FaultKind("guard opened", a.GuardOpen, ENABLED, TRIP, SCAN_S)
     yield FaultKind("emergency stop pressed", partial(a.EmergencyStop, STOPPED_BY_THE_CHAIN), DRIVES, TRIP, SCAN_S)
 
 
