@@ -70,7 +70,7 @@ class AxisConfig:
     acceleration_increments: float = 0.0             # counts of 0x6083-85 and 0x609A per speed unit per s
     max_speed_increments: float = 0.0                # counts of 0x6080 per unit of speed
     gear: float = 1.0                                # motor turns in one of the shaft that rated_torque is of
-    wiring: DigitalWiring | None = None              # bits of 0x60FD and 0x60FE:01; as in docs/safety.md unless stated
+    wiring: DigitalWiring | None = None              # bits of 0x60FD and 0x60FE:01; None: USUAL_WIRING of digital_io
     parameters: Mapping[str, float] = field(default_factory=dict[str, float])
     """Values of the profile's further objects (its table ``writes``), by name."""
 

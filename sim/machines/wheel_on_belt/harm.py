@@ -1,6 +1,6 @@
 """Harm, as the plant sees it: an observer that looks at what is, never at what somebody measured or meant.
 
-The figures are those of docs/safety.md [A].
+The figures are those of docs/kinds/wheel-on-belt.md [A].
 """
 
 from __future__ import annotations

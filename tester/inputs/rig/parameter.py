@@ -1,7 +1,7 @@
 """A parameter of an interlock: what it is, its unit, what the packaged rig file says, how far it may be loosened.
 
 A parameter is declared beside the row that it belongs to, and nowhere else: the rig file's section ``interlocks`` with
-its comments, ``tester rig init`` and the page docs/safety.md are made from these declarations.
+its comments, ``tester rig init`` and the page docs/kinds/wheel-on-belt.md are made from these declarations.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ KIND: Final = Kind(
     },
     rig=_rig,
     interlocks=_interlocks,
-    page="docs/track-safety.md",
+    page="docs/kinds/specimen-on-track.md",
     recipe=_recipe,
     runs=_runs,
     papers=_papers,

@@ -23,7 +23,7 @@ TURNS_M_S = 0.04
 FITTED_S = 1.1
 """After a wheel was changed two readings of a temperature are not compared for a second."""
 LOADED_N = 20.0
-"""Below this the contact counts as unloaded (docs/safety.md)."""
+"""Below this the contact counts as unloaded (docs/kinds/wheel-on-belt.md)."""
 HELD_SHARE = 0.45
 """A load is held from this share of the recipe's greatest on: the interlocks of a held load begin at half of it."""
 LIFTS_MM_S = -5.0

@@ -1,8 +1,8 @@
 """What software cannot hold, and which device of the rig must.
 
 Pairs of faults in which harm is possible whatever the software does, each with the device that has to prevent it.
-Single faults after which the load stays on where the press holds its place without power. docs/safety.md shows both
-lists to users; whatever else does harm fails the campaign.
+Single faults after which the load stays on where the press holds its place without power. docs/kinds/wheel-on-belt.md
+shows both lists to users; whatever else does harm fails the campaign.
 """
 
 from __future__ import annotations

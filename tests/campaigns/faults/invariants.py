@@ -1,4 +1,4 @@
-"""The invariants of docs/safety.md that can be seen in one scan: what is commanded against what is known.
+"""The invariants of docs/kinds/wheel-on-belt.md that can be seen in one scan: what is commanded against what is known.
 
 I5 (safe in three seconds), I4 (budgets) and I8 (nothing committed after a trip) are the judge's; I12 is the service's.
 """

@@ -26,7 +26,7 @@ from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit
 from tests.campaigns.faults.stage import Stage
 
 WRITTEN = Path(__file__).resolve().parents[3] / "docs" / "hardware-magnitudes.csv"
-"""The written table: magnitudes that harm unseen, with the device that must hold. docs/safety.md shows it."""
+"""Magnitudes that harm unseen, with the device that must hold; docs/kinds/wheel-on-belt.md shows the table."""
 CORNERS = ("1#, stiffness -25%, friction heat +30%", "3#, stiffness +30%, friction heat +30%")
 """Corners that places are looked for in: the softest and the stiffest rubber, least and most friction."""
 UNLIKE = {CORNERS[0]: ("sim.thermal.hub_capacity=399 J/K",), CORNERS[1]: ("sim.thermal.hub_capacity=441 J/K",)}

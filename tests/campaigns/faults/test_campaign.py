@@ -112,7 +112,7 @@ def test_the_sample_of_the_command_meets_every_figure():
 
 
 def test_the_safety_page_lists_what_hardware_must_hold():
-    page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "kinds" / "wheel-on-belt.md").read_text(encoding="utf-8")
     shown = page.split("<!-- double faults: begin -->")[1].split("<!-- double faults: end -->")[0]
     for row in HARDWARE_MUST_HOLD:
         assert f"| {row.one} + {' or '.join(row.others)} | {row.device} | {row.why} |" in shown
@@ -140,7 +140,7 @@ def test_a_second_stop_in_the_cool_down_ends_safely():
 
 
 def test_the_safety_page_lists_after_which_faults_a_press_without_spring_is_not_lifted():
-    page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "kinds" / "wheel-on-belt.md").read_text(encoding="utf-8")
     shown = page.split("<!-- unlifted: begin -->")[1].split("<!-- unlifted: end -->")[0]
     assert PRESS_RELEASE in " ".join(page.split())
     assert shown.splitlines()[3:] == [f"| {fault} | {why} |" for fault, why in UNLIFTED]

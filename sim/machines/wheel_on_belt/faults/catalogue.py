@@ -1,8 +1,8 @@
 """The catalogue of faults: one row each. A fault without a row does not exist for language and campaign.
 
-Budgets are those of docs/safety.md, from the onset (or from when the fault can be noticed) to the safe commands,
-with one scan of 50 ms at the slow rate on top; [A] where that page gives none. A row that MAY trip has none, and says
-why nothing can be asked of it.
+Budgets are those of docs/kinds/wheel-on-belt.md, from the onset (or from when the fault can be noticed) to the safe
+commands, with one scan of 50 ms at the slow rate on top; [A] where that page gives none. A row that MAY trip has none
+and says why nothing can be asked of it.
 """
 
 from __future__ import annotations

@@ -73,4 +73,4 @@ _OWN: Final = (
 )  # fmt: skip
 
 CEILINGS: Final[tuple[Ceiling, ...]] = (*_OWN, *ceilings_of(SECTION, PARAMETERS))
-"""Every safety key of a rig file, in the order of the page docs/safety.md."""
+"""Every safety key of a rig file, in the order of the page docs/kinds/wheel-on-belt.md."""

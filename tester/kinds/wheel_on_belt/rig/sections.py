@@ -53,14 +53,14 @@ class _LimitsConfig:
     """Hard limits: no recipe and no loop gets past them."""
 
     load_n: Annotated[float, "N", Range(gt=0.0, le=HARMFUL_N)]
-    """At most 500 N: above it docs/safety.md counts harm."""
+    """At most 500 N: above it docs/kinds/wheel-on-belt.md counts harm."""
     wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     slip_power_w: Annotated[float, "W", _POSITIVE]
     jacket_c: Annotated[float, "degC", Range(gt=0.0, le=155.0)]
-    """At most 155 degC: above it docs/safety.md counts harm."""
+    """At most 155 degC: above it docs/kinds/wheel-on-belt.md counts harm."""
     surface_c: Annotated[float, "degC", Range(gt=0.0, le=130.0)]
-    """At most 130 degC: above it docs/safety.md counts harm."""
+    """At most 130 degC: above it docs/kinds/wheel-on-belt.md counts harm."""
 
     def positions(self) -> dict[str, float]:
         """Return how far the positioned axes may go to either side, by name."""

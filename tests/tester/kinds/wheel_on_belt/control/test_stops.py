@@ -72,7 +72,7 @@ def test_a_drive_that_goes_on_turning_loses_its_power_the_later_the_faster_it_tu
     began_s = r.now_s - 0.01
     while not bench.state.setpoints.power_off:
         bench.scan()
-        assert r.now_s - began_s < 2.5, "docs/safety.md: 1.5 s + v / deceleration + v / quick-stop deceleration"
+        assert r.now_s - began_s < 2.5, "docs/kinds/wheel-on-belt.md: 1.5 s + v / ramp + v / quick stop"
     assert r.now_s - began_s == pytest.approx(after_s, abs=0.03)
 
 

@@ -48,7 +48,7 @@ def run(tree: Path, *arguments: str) -> str:
 
 
 def test_tables_and_rig_file_have_the_row(tree: Path) -> None:
-    assert f"| {ROW} |" in (tree / "docs" / "safety.md").read_text(encoding="utf-8")
+    assert f"| {ROW} |" in (tree / "docs" / "kinds" / "wheel-on-belt.md").read_text(encoding="utf-8")
     assert "  surface_excess: 20 K  " in (tree / "sim" / "rig.yaml").read_text(encoding="utf-8")
 
 

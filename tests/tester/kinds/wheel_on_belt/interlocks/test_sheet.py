@@ -13,7 +13,7 @@ from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS
 from tester.machine.wires import LATE_WARN_S
 
 DOCS = Path(__file__).parents[5] / "docs"
-PAGE = DOCS / "safety.md"
+PAGE = DOCS / "kinds" / "wheel-on-belt.md"
 SHEET = find("wheel_on_belt").interlocks()
 OTHER_KEYS = {"slip_power", "software_limits"}
 """Words of the table that are keys of other sections."""
