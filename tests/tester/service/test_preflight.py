@@ -45,7 +45,7 @@ def test_a_disk_that_is_low_is_wrong() -> None:
 
 def test_standing_alarms_are_wrong_and_named() -> None:
     found = alarms_check(with_alarm(state()).alarms)
-    assert (found.ok, found.text) == (False, "1 standing: overload") and alarms_check(()).ok
+    assert (found.ok, found.text) == (False, "1 in the list: overload") and alarms_check(()).ok
 
 
 @pytest.mark.parametrize(
