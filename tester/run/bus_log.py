@@ -1,7 +1,7 @@
-"""Frame logs of a run: CAN as a candump log, Modbus as one line a frame.
+"""Frame logs of a run: CAN as a candump log, Modbus with one line a frame.
 
-``can.log`` is written by python-can's own candump writer, so any CAN tool reads it. ``modbus-<line>.log`` holds
-``(time in s) direction bytes``; ``axes.json`` says how to turn a drive's counts into engineering units.
+``can.log`` is written by python-can's own candump writer, so any CAN tool reads it. ``modbus-<line>.log`` holds ``(time
+in s) direction bytes``; ``axes.json`` holds the factors from a drive's counts to engineering units.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class CanLog:
         self._writer = can.CanutilsLogWriter(path, channel=CHANNEL)
 
     def frame(self, t: float, can_id: int, data: bytes, from_pc: bool) -> None:
-        """Write one frame that was complete at ``t`` s of the run."""
+        """Write a frame that was complete at ``t`` s of the run."""
         self._writer.on_message_received(
             can.Message(
                 timestamp=t,
@@ -53,7 +53,7 @@ class LineLog:
         self._file: TextIO = path.open("w", encoding="utf-8", newline="\n")
 
     def frame(self, t: float, data: bytes, from_pc: bool) -> None:
-        """Write one frame that was complete at ``t`` s of the run."""
+        """Write a frame that was complete at ``t`` s of the run."""
         self._file.write(f"({t:.6f}) {'TX' if from_pc else 'RX'} {data.hex(' ')}\n")
 
     def close(self) -> None:
@@ -72,7 +72,7 @@ class BusLog:
         (folder / "axes.json").write_text(json.dumps(_axes(rig), indent=2) + "\n", encoding="utf-8")
 
     def watch(self, can: CanPort, lines: Mapping[str, LinePort]) -> None:
-        """Write down what goes over these ports; ``lines`` by their names in the rig file."""
+        """Log the traffic of these ports; ``lines`` by their names in the rig file."""
         can.watch(self.can.frame)
         for name, line in lines.items():
             line.watch(self.lines[name].frame)
@@ -88,7 +88,7 @@ _FEEDBACK = {"velocity": "606C velocity", "position": "6064 position"}
 
 
 def _axes(rig: Rig) -> dict[str, dict[str, object]]:
-    """Say, for each drive, what its PDOs carry and how many counts make a unit."""
+    """Return each drive's PDO contents and counts per unit."""
     return {
         name: {
             "node": axis.node_id,

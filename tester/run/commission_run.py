@@ -1,4 +1,4 @@
-"""A recipe that is run within a commissioning: a run like any other, its results handed back as plain data."""
+"""Runs a recipe within a commissioning: an ordinary run, with its results returned as plain data."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from tester.run.session import Session, SessionOptions
 from tester.store.reader import RunReader
 
 STOPS: Final = frozenset({STOP.command, FAST_STOP.command})
-COMMANDS: Final = frozenset(one.command for one in MEANINGS)
+COMMANDS: Final = frozenset(meaning.command for meaning in MEANINGS)
 
 
 class PersonScreen:
-    """The person of the commissioning as the screen of a run (tester.run.reporter.ReportScreen)."""
+    """Shows a run to the person who commissions (tester.run.reporter.ReportScreen)."""
 
     def __init__(self, person: Person, *, answer_yes: bool) -> None:
-        """``answer_yes``: the simulated person does what is asked."""
+        """``answer_yes``: the simulated person does what each prompt asks."""
         self.person = person
         self.answer_yes = answer_yes
         self.can_ask = not answer_yes
@@ -36,17 +36,17 @@ class PersonScreen:
         self._title = ""
 
     def begin(self, name: str) -> None:
-        """Say that it begins."""
+        """Report that the run begins."""
         self.person.tell(f"  run {name}")
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Say what the run does, step by step."""
+        """Report each step as it begins."""
         if run.title != self._title:
             self._title = run.title
             self.person.tell(f"  {100 * at.share:3.0f} %  {run.title}")
 
     def attend(self, prompts: Prompts) -> None:
-        """Put the question that waits, and take its answer."""
+        """Ask the waiting question, and take its answer."""
         waiting = prompts.waiting
         if waiting is None:
             return
@@ -66,27 +66,27 @@ class PersonScreen:
         self.person.put(Question(f"prompt {prompt.number}", prompt.text, Asks.CHOICE, (DONE,)))
 
     def commands(self) -> list[str]:
-        """Return what was asked for."""
-        found = [one for one in self.person.poll() if one in COMMANDS]
-        self.stopped = self.stopped or not STOPS.isdisjoint(found)
-        return found
+        """Return the person's commands."""
+        wanted = [command for command in self.person.poll() if command in COMMANDS]
+        self.stopped = self.stopped or not STOPS.isdisjoint(wanted)
+        return wanted
 
     def end(self) -> None:
-        """Nothing to take away."""
+        """Do nothing: there is no progress display."""
 
     def message(self, text: str) -> None:
-        """Say it."""
+        """Show the message."""
         self.person.tell(f"  {text}")
 
     def emit(self, record: dict[str, object]) -> None:
-        """Nobody reads records here."""
+        """Do nothing: no program reads records here."""
 
     def result(self, line: str) -> None:
-        """The folder goes into the results."""
+        """Do nothing: the results contain the folder."""
 
 
 def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str, text: str) -> Mapping[str, Any]:
-    """Run a recipe; ``options`` name the rig. Raises StepRefused where it did not go through, CannotStartError."""
+    """Run a recipe; ``options`` name the rig. Raises StepRefused if it did not complete, CannotStartError."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.yaml"
     path.write_text(text, encoding="utf-8")
@@ -98,18 +98,18 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
         raise StepRefused(f"the recipe {name} was not run (exit code {code})")
     with RunReader(where) as reader:
         results = results_of(reader)
-        found = [row.result for row in results.rows]
+        measured = [row.result for row in results.rows]
         rig_s = results.run.rig_seconds
     if code:
         why = ending.reason or "a condition is without a value"
         raise StepRefused(f"the run {where.name} ended with {ending.outcome.value}: {why}")
-    angle = misalignment(found)
+    angle = misalignment(measured)
     conditions = [
         {
-            "mu": one.mu, "s": finite(one.s), "n": one.n_valid, "expanded": finite(one.expanded),
-            "difference_percent": finite(one.both_ways.difference_percent) if one.both_ways is not None else None,
+            "mu": row.mu, "s": finite(row.s), "n": row.n_valid, "expanded": finite(row.expanded),
+            "difference_percent": finite(row.both_ways.difference_percent) if row.both_ways is not None else None,
         }
-        for one in found
+        for row in measured
     ]  # fmt: skip
     return {
         "run": where.name, "rig_s": rig_s, "conditions": conditions, "angle_deg": finite(angle.deg),
@@ -118,5 +118,5 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
 
 
 def _scripted(person: Person) -> bool:
-    """Tell whether a person reads a simulated rig: the run then mounts and answers by itself."""
+    """Return whether the person reads a simulated rig: the run then mounts and answers by itself."""
     return hasattr(person, "at")

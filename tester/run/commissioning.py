@@ -1,4 +1,4 @@
-"""Commission a rig from the outside: its wires, its record, its locks, signals, and a recipe run in between."""
+"""Commissions a rig from start to finish: its wires, record, locks and signals, and the recipe it runs."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from tester.run.session import SessionOptions
 
 @dataclass(frozen=True, slots=True)
 class CommissionOptions:
-    """What the command line said."""
+    """Options of the command line."""
 
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
@@ -44,11 +44,11 @@ class CommissionOptions:
 
 
 def part_of(rig: Rig) -> CommissionPart:
-    """Return how a rig is commissioned; raises InvalidSource where its kind guides nobody."""
+    """Return the commissioning of a rig; raises InvalidSource if its kind has none."""
     part = kinds.find(rig.kind).commissions
     if part is None:
-        said = f"kind: nobody is guided through commissioning a rig of the kind {rig.kind}"
-        raise InvalidSource([Problem(f"rig {rig.name}", 1, 1, said)])
+        text = f"kind: a rig of the kind {rig.kind} has no guided commissioning"
+        raise InvalidSource([Problem(f"rig {rig.name}", 1, 1, text)])
     return part()
 
 
@@ -59,7 +59,7 @@ def commission(
     twin: AtTheTwin | None = None,
     onlooker: Onlooker | None = None,
 ) -> CommissionOutcome:
-    """Walk a rig through its commissioning; ``twin``: the person, where it reads a simulated rig.
+    """Guide a person through commissioning a rig; ``twin``: the person, if it reads a simulated rig.
 
     Raises CannotStartError, InvalidSource, RecordError, OSError.
     """
@@ -91,7 +91,7 @@ def commission(
 
 
 def _connect(rig: Rig, seed: int, twin: AtTheTwin | None) -> tuple[Ports, TickedWorld | None, Any]:
-    """Open the wires of a rig that nobody else uses until they are closed again. Raises CannotStartError, BusLost."""
+    """Open the wires of a rig for exclusive use until they are closed. Raises CannotStartError, BusLost."""
     with ExitStack() as opened:
         use = opened.enter_context(ExclusiveUse())
         hold_rig(use, rig, FOLDER)
@@ -103,22 +103,23 @@ def _connect(rig: Rig, seed: int, twin: AtTheTwin | None) -> tuple[Ports, Ticked
 
 
 class stopped_by_signals:  # noqa: N801 - reads as a statement
-    """STOP on INT, TERM and HUP while the block lasts, fast on a second one; only the main thread can be told."""
+    """While the block lasts, stops on INT, TERM and HUP, fast on a second one; only the main thread receives signals.
+    """
 
     def __init__(self, walk: Commissioning) -> None:
-        """``walk``: what is stopped."""
+        """``walk``: the commissioning to stop."""
         self._walk = walk
         self._count = 0
         self._handled: Any = None
 
     def __enter__(self) -> None:
-        """Listen."""
+        """Install the handlers."""
         if current_thread() is main_thread():
             self._handled = handled(self._on_signal)
             self._handled.__enter__()
 
     def __exit__(self, *error: Any) -> None:
-        """Listen no more."""
+        """Restore the earlier handlers."""
         if self._handled is not None:
             self._handled.__exit__(*error)
 

@@ -1,4 +1,4 @@
-"""How parts end, what that makes of the run, and the exit code."""
+"""How parts end, the resulting end of the run, and its exit code."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ _BY_SEVERITY = (Outcome.DONE, Outcome.STOPPED, Outcome.UNREACHABLE, Outcome.FAIL
 
 
 class CannotStartError(Exception):
-    """The run cannot begin; the message says why, ``code`` is the exit code."""
+    """The run cannot begin; the message gives the reason, ``code`` is the exit code."""
 
     def __init__(self, message: str, code: int = 1) -> None:
-        """``code``: 1 unless told."""
+        """``code``: the exit code."""
         super().__init__(message)
         self.code = code
 
 
 class StopLevel(IntFlag):
-    """Who wants a run to stop. Wishes add up: what one has ordered, no other takes back."""
+    """Who wants a run to stop. Requests add up; none takes back another's."""
 
     NONE = 0
     OTHER_PART = 1
     UNSEEN = 2
-    """Nothing can be shown any more: screen, pipe or file is gone."""
+    """The run can no longer be shown: screen, pipe or file is gone."""
     HUNG_UP = 4
     """The terminal is gone (HUP)."""
     TERMINATED = 8
@@ -51,11 +51,11 @@ class StopLevel(IntFlag):
 
     @property
     def text(self) -> str:
-        """The reason that is recorded: that of the highest."""
+        """The recorded reason: that of the highest level."""
         return next((text for stop, text in _STOP_TEXTS.items() if stop in self), "")
 
     def tell(self, run: Run) -> None:
-        """Have a run stop. Who sends TERM or closes the terminal gets the end at standstill, without the cool-down."""
+        """Stop a run. After TERM or a closed terminal it ends at standstill, without the cool-down."""
         run.request_stop(self.text, fast=StopLevel.FAST in self, cool=not self & _NOT_COOLED)
 
 
@@ -72,7 +72,7 @@ _STOP_TEXTS = {
 
 @dataclass(frozen=True, slots=True)
 class PartEnd:
-    """How one part ended. ``failed``: why not everything could be recorded, None where it could."""
+    """How one part ended. ``failed``: why recording was incomplete, None if it was complete."""
 
     part: int
     outcome: Outcome
@@ -89,7 +89,7 @@ class RunEnding:
     failed: str | None
 
     def exit_code(self, *, interrupted_once: bool, missing: bool) -> int:
-        """Return the exit code; ``missing``: a condition has no value to be trusted."""
+        """Return the exit code; ``missing``: a condition has no trustworthy value."""
         if self.outcome is Outcome.STOPPED and interrupted_once:
             return EXIT_INTERRUPTED
         if self.failed:
@@ -100,9 +100,9 @@ class RunEnding:
 
 
 def ending_of(ends: Sequence[PartEnd], parts: int, stop: StopLevel = StopLevel.NONE) -> RunEnding:
-    """Return the ending of a run of ``parts`` parts, of which those in ``ends`` were begun; ``stop``: who wanted one.
+    """Return the ending of a run of ``parts`` parts, with the ends of those that began; ``stop``: who wanted a stop.
 
-    The first of the worst gives the reason. A run with a part that was not begun has been stopped, if nothing worse.
+    The first of the worst gives the reason. A run with a part that never began counts as stopped, if nothing worse.
     """
     failed = next((end.failed for end in ends if end.failed), None)
     worst = max(ends, key=lambda end: (_BY_SEVERITY.index(end.outcome), -end.part), default=None)

@@ -1,4 +1,4 @@
-"""A run on a simulated rig that things happen to: what stands between ticker, run and rig when faults are scripted."""
+"""A run on a simulated rig with scripted faults: a layer between ticker, run and rig."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sim.rig import SimRig
 from tester.machine.run import Run
 
 RIG_STEP_S = 0.01
-"""Without a controlling process the rig is advanced in steps of this length, s."""
+"""Step of the rig without a controlling process, s."""
 
 
 class Skew:
@@ -20,15 +20,15 @@ class Skew:
     __slots__ = ("ahead_s",)
 
     def __init__(self) -> None:
-        """No difference."""
+        """Begin without a difference."""
         self.ahead_s = 0.0
 
 
 class SkewedCan:
-    """A CAN port on which the computer's times are those of its own clock."""
+    """A CAN port with times of the computer's own clock."""
 
     def __init__(self, port: CanPort, skew: Skew) -> None:
-        """Translate for ``port``."""
+        """Wrap ``port``."""
         self.port = port
         self.skew = skew
 
@@ -46,15 +46,15 @@ class SkewedCan:
         return [(t + ahead_s, can_id, data) for t, can_id, data in self.port.receive(now - ahead_s)]
 
     def watch(self, watcher: CanWatcher) -> Unwatch:
-        """Have ``watcher`` told of every frame, by the computer's clock."""
+        """Call ``watcher`` with every frame, at the computer's time."""
         return self.port.watch(lambda t, can_id, data, sent: watcher(t + self.skew.ahead_s, can_id, data, sent))
 
 
 class SkewedLine:
-    """A Modbus line on which the computer's times are those of its own clock."""
+    """A Modbus line with times of the computer's own clock."""
 
     def __init__(self, port: LinePort, skew: Skew) -> None:
-        """Translate for ``port``."""
+        """Wrap ``port``."""
         self.port = port
         self.skew = skew
 
@@ -68,18 +68,18 @@ class SkewedLine:
         return [(t + ahead_s, data) for t, data in self.port.read(now - ahead_s)]
 
     def watch(self, watcher: LineWatcher) -> Unwatch:
-        """Have ``watcher`` told of all bytes, by the computer's clock."""
+        """Call ``watcher`` with all bytes, at the computer's time."""
         return self.port.watch(lambda t, data, sent: watcher(t + self.skew.ahead_s, data, sent))
 
 
 class FaultyRun:
-    """Run and rig under a fault script: what a ticker drives in place of both (``Ticked`` and ``World``).
+    """Run and rig under a fault script; a ticker drives it in place of both (``Ticked`` and ``World``).
 
-    ``killed`` is set when the controlling process is killed; ``on_kill``, where given, is called then.
+    ``killed`` is set when the controlling process is killed; ``on_kill``, if given, is called then.
     """
 
     def __init__(self, run: Run, rig: SimRig, script: FaultScript, on_kill: Callable[[], None] | None = None) -> None:
-        """Begin with what the script says for time 0."""
+        """Begin with the script's faults for time 0."""
         self.run = run
         self.script = script
         self.killed = False
@@ -97,24 +97,24 @@ class FaultyRun:
 
     @property
     def finished(self) -> bool:
-        """Nothing is left to do."""
+        """Whether the run has nothing left to do."""
         return self.run.finished
 
     @property
     def waiting(self) -> bool:
-        """A person is asked."""
+        """Whether a prompt waits for a person."""
         return self.run.waiting
 
     @property
     def urgent_s(self) -> float:
-        """When something arrives that a scan should not wait for, or happens by script, s."""
+        """Time of the next arrival that a scan should not wait for, or of the next scripted fault, s."""
         urgent = self.script.due_s
         if not self.killed and self._stalled_until_s <= self._now_s:
             urgent = min(urgent, self._rig.urgent_s)
         return urgent
 
     def advance(self, now: float) -> None:
-        """Let the rig live until ``now`` s, and let happen on the way what is to happen."""
+        """Advance the rig to ``now`` s, beginning and ending faults on the way."""
         script, scene = self.script, self._scene
         while script.due_s <= now:
             due_s = max(script.due_s, self._now_s)
@@ -125,7 +125,7 @@ class FaultyRun:
             self._tell(now)
 
     def tick(self, now: float) -> float:
-        """Do what is due in the controlling process, if it gets to do anything."""
+        """Do whatever is due in the controlling process, unless it is killed or stalled."""
         if self.killed:
             return now + RIG_STEP_S
         if now < self._stalled_until_s:
@@ -144,7 +144,7 @@ class FaultyRun:
         self._now_s = until_s
 
     def _notice(self, now: float) -> None:
-        """Tell the script where the run is; the names of a step count once, when it begins."""
+        """Report the run's position to the script; the names of a step count once, when it begins."""
         engine = self.run.engine
         progress = engine.ctx.progress
         names: list[str] = []
@@ -166,7 +166,7 @@ class FaultyRun:
         self.script.notice(now, engine.scans, names)
 
     def _tell(self, now: float) -> None:
-        """Write into the run's journal what was done to it."""
+        """Record the faults in the run's journal."""
         for t, text in self.script.happened:
             self.run.engine.ctx.journal.event(t, "injected", text)
         self.script.happened.clear()
@@ -174,17 +174,17 @@ class FaultyRun:
     # the script's side ---------------------------------------------------------------------------------------
 
     def stall(self, seconds: float) -> None:
-        """Do no scan for this long."""
+        """Do no scan for this long, s."""
         self._stalled_until_s = max(self._stalled_until_s, self._now_s + seconds)
 
     def kill(self) -> None:
-        """Do no scan ever again."""
+        """Do no further scan."""
         self.killed = True
         if self._on_kill is not None:
             self._on_kill()
 
     def jump(self, seconds: float) -> None:
-        """Let the computer's clock be ahead by this much more."""
+        """Move the computer's clock ahead by this much more, s."""
         if self.skew.ahead_s == 0.0:
             devices = self.run.engine.devices
             lines = [SkewedLine(port, self.skew) for port, _ in devices.lines]
@@ -192,7 +192,7 @@ class FaultyRun:
         self.skew.ahead_s += seconds
 
     def operate(self, action: str) -> None:
-        """Let the operator ask for something."""
+        """Press one of the operator's keys."""
         run = self.run
         if action == "hold":
             run.request_hold()

@@ -1,4 +1,4 @@
-"""A run's folder: what lies where in it, and what of it a process needs that carries out a part."""
+"""A run's folder: its layout, and what a process needs from it to run a part."""
 
 from __future__ import annotations
 
@@ -26,34 +26,34 @@ from tester.store.resume import ResumePoint
 from tester.store.writer import RunWriter
 
 PARTS = "parts"
-"""Folder of the parts' records, each a run folder by its number, until they are merged."""
+"""Folder of the parts' records until they are merged, each a numbered run folder."""
 
 Begin = Callable[[RunWriter], None]
-"""Tells a record what is going to be done."""
+"""Begins a record with the planned work."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A run as plain data: what a process that carries out a part of it needs besides the folder's files."""
+    """A run as plain data: everything besides the folder's files that a process needs to run a part."""
 
     folder: Path
     seed: int = 0
     lapse: float | None = None
-    """Rig seconds per second of wall time; None: as fast as it goes."""
+    """Rig seconds per second of wall time; None: as fast as possible."""
     bus_log: Path | None = None
     samples: bool = True
-    """Whether samples are kept."""
+    """Whether samples are stored."""
     faults: tuple[str, ...] = ()
-    """Lines of a fault script (sim.faults.language), beside those of the rig file."""
+    """Lines of a fault script (sim.faults.language), in addition to the rig file's."""
     history: History | None = None
-    """What earlier runs make known of the rig, None for nothing: the same for every part."""
+    """What earlier runs show about the rig, None for nothing: the same for every part."""
     good: GoodRun | None = field(default=None, compare=False)
-    """The last good run on the rig, with whose parameters those read while connecting are compared."""
+    """The last good run on the rig, for comparison with the parameters read while connecting."""
 
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What is to be done: rig, plan, and the plan's parts; ``point`` is where an interrupted run goes on."""
+    """The work of a run: rig, plan, and the plan's parts; ``point`` is where an interrupted run resumes."""
 
     rig: Rig
     plan: Plan
@@ -61,31 +61,31 @@ class Work:
     point: ResumePoint | None = None
 
     def folder_of(self, part: Part, folder: Path) -> Path:
-        """Return where a part's record lies: the run's own folder where it is the only one."""
+        """Return the folder of a part's record: the run's own folder if it is the only part."""
         return folder if len(self.parts) == 1 else folder / PARTS / str(part.number)
 
 
 def work_of(recipe: Recipe, rig: Rig) -> Work:
-    """Return the work that a recipe is on a rig."""
+    """Return the work of a recipe on a rig."""
     plan = recipe_part(rig).expand(recipe, rig)
     return Work(rig, plan, run_parts(rig).split(plan) if rig.simulated else (Part(1, plan),))
 
 
 def part_time(rig: Rig, plan: Plan, expected: Estimate | None = None) -> PartTime:
-    """Return what a part is expected to take; ``expected``: of its plan, where that is known already."""
-    found = expected or recipe_part(rig).estimate(plan, rig)
-    seconds = tuple(one.seconds for one in found.steps)
-    return PartTime(plan, seconds, max(found.rig_seconds - fsum(seconds), 0.0))
+    """Return a part's expected duration; ``expected``: the estimate of its plan, if known already."""
+    estimate = expected or recipe_part(rig).estimate(plan, rig)
+    seconds = tuple(step.seconds for step in estimate.steps)
+    return PartTime(plan, seconds, max(estimate.rig_seconds - fsum(seconds), 0.0))
 
 
 def parts_time(work: Work, expected: Estimate | None = None) -> list[PartTime]:
-    """Return what each part of a run is expected to take; ``expected``: of the whole plan, where that is known."""
+    """Return the expected duration of each part of a run; ``expected``: the estimate of the whole plan, if known."""
     whole = expected if len(work.parts) == 1 else None
     return [part_time(work.rig, part.plan, whole) for part in work.parts]
 
 
 def earlier_of(point: ResumePoint | None) -> Earlier:
-    """Return what earlier stretches of a run have done, for its count."""
+    """Return what earlier stretches of a run have completed, for the count of its steps."""
     if point is None:
         return Earlier()
     repeats = {number: len(condition.results) for number, condition in point.conditions.items()}
@@ -93,13 +93,13 @@ def earlier_of(point: ResumePoint | None) -> Earlier:
 
 
 def write_sources(folder: Path, recipe_text: str, rig: Rig) -> None:
-    """Write recipe and rig file, as they are used, into the run's folder."""
+    """Write the recipe and rig file in use into the run's folder."""
     write_text(folder / "recipe.yaml", recipe_text)
     write_text(folder / "rig.yaml", rig.text)
 
 
 def read_work(folder: Path) -> Work:
-    """Return the work of a run's folder; raises InvalidSource where its files are not as they were written."""
+    """Return the work of a run's folder; raises InvalidSource if its files have become invalid."""
     rig = load_rig_text(folder / "rig.yaml")
     return work_of(checked_recipe(folder / "recipe.yaml", rig).recipe, rig)
 
@@ -116,16 +116,17 @@ def make_folder(out: Path, name: str) -> Path:
         except FileExistsError:
             continue
         return folder
-    raise CannotStartError(f"{out} holds a thousand runs of this second")
+    raise CannotStartError(f"{out} holds a thousand runs started in this second")
 
 
 def specimens_of(plan: Plan) -> list[SpecimenInfo]:
-    """Return a plan's specimens as the store keeps them."""
-    return [SpecimenInfo(one.index, one.compound, one.note) for one in plan.specimens]
+    """Return a plan's specimens as records for the store."""
+    return [SpecimenInfo(specimen.index, specimen.compound, specimen.note) for specimen in plan.specimens]
 
 
 def beginning_of(part: Part, job: Job, work: Work) -> Begin:
-    """Return what begins a part's own record. Texts and provenance are in the run's, into which it is merged."""
+    """Return the function that begins a part's record. Texts and provenance are in the run's record, its merge target.
+    """
 
     def begin(writer: RunWriter) -> None:
         info = RunInfo(

@@ -1,4 +1,4 @@
-"""Open the wires to a real rig: a CAN adapter and Modbus lines, all stamped by the run's one clock."""
+"""Opens the wires to a real rig: a CAN adapter and Modbus lines, all stamped by the run's one clock."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tester.machine.ports import Ports
 from tester.run.bus_log import BusLog
 
 CATCH_UP_S = 0.002
-"""The CAN edge's thread takes some 0.1 ms for a frame, and 20 are on their way after a late scan, s [A]."""
+"""Time to read the frames of a late scan, s [A]: the CAN thread takes some 0.1 ms a frame, and 20 may be waiting."""
 
 
 def hardware_ports(rig: Rig, log: BusLog | None) -> Ports:
-    """Open every wire of a rig file; raises BusLost for the first that cannot be opened, with none left open."""
+    """Open every wire of a rig file; raises BusLost for the first that fails, leaving none open."""
     pace = UrgentPace(CATCH_UP_S)
     with ExitStack() as opened:
         bus = open_can(rig.can.interface, rig.can.channel, rig.can.bitrate, pace.now, pace.hurry)

@@ -1,7 +1,7 @@
-"""What a drive was set up with and this program does not write: read at a run's good end, and kept with the run.
+"""Reads drive settings that this program does not write, at a run's good end, and stores them with the run.
 
-It is what a later look compares with (``tester bus params compare``). Read once everything stands and the drives are
-released: it takes no time from the scan, and nothing that was measured depends on it.
+``tester bus params compare`` compares later readings with them. They are read after standstill, with the drives
+released: this takes no time from the scan, and no measurement depends on it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ IDENTITY: tuple[Key, ...] = (
     (o.HARDWARE_VERSION, 0),
     (o.SOFTWARE_VERSION, 0),
 )
-"""Who a node is; its texts are optional (CiA 301, 7.5.2)."""
+"""Identity of a node; its texts are optional (CiA 301, 7.5.2)."""
 
 KEPT: tuple[Key, ...] = (
     (o.SUPPORTED_MODES, 0),
@@ -45,29 +45,31 @@ KEPT: tuple[Key, ...] = (
     (0x6073, 0),
     (0x6410, 1),
 )
-"""What a drive was set up with, and this program does not write: ratings, polarity, encoder, gear, feed, units,
-greatest current, motor (CiA 402-2, 6.3 and 6.4). Most are optional."""
+"""Settings of a drive that this program does not write: ratings, polarity, encoder, gear, feed, units, greatest
+current, motor (CiA 402-2, 6.3 and 6.4). Most are optional.
+"""
 
 STEP_S = 0.002
-"""How often the bus is looked at while answers are awaited, s."""
+"""Period for reading the bus while waiting for answers, s."""
 MOST_S = 3.0
-"""A run's end waits no longer for this, s: some twenty objects a drive, four drives at a time, take a tenth of it."""
+"""Most time that this adds to a run's end, s: some twenty objects a drive, four drives at a time, take a tenth of it.
+"""
 
 
 def object_key(key: Key) -> str:
-    """Return how an object is called in records and dumps."""
+    """Return an object's name in records and dumps."""
     return f"0x{key[0]:04X}:{key[1]:02X}"
 
 
 def object_name(key: Key) -> str:
-    """Return what an object is called, "" where the dictionary does not have it."""
+    """Return an object's title, "" if the dictionary lacks it."""
     return DICTIONARY[key].name if key in DICTIONARY else ""
 
 
 def record_kept(rig: Rig, ports: Ports, world: TickedWorld | None, now_s: float, recorder: Recorder) -> None:
-    """Store identity and set-up of every drive, as far as it has them; nothing where the bus is gone.
+    """Store identity and settings of every drive, as far as it has them; nothing if the bus is gone.
 
-    ``now_s``: the run's time. Drives are asked by SDO alone, and nothing is written to them.
+    ``now_s``: the run's time. Drives are only read, by SDO.
     """
     names = {config.node_id: name for name, config in rig.drives().items()}
     scan, clock_s, wait = SdoScan({node: [*IDENTITY, *KEPT] for node in names}), now_s, _waiting(ports, world)

@@ -1,4 +1,4 @@
-"""What the kind of a rig brings: the one place, beside the commands, that looks a kind up."""
+"""Parts that a rig's kind provides; only this module and the commands look kinds up."""
 
 from __future__ import annotations
 
@@ -26,31 +26,31 @@ Part = TypeVar("Part")
 
 
 def to_be_run(rig: Rig) -> Rig:
-    """Return the rig; raises InvalidSource, as all here, where its kind brings nothing to run a recipe with."""
+    """Return the rig; raises InvalidSource, as all here, if its kind cannot run recipes."""
     _brought(rig, "runs", find(rig.kind).runs)
     return rig
 
 
 def run_parts(rig: Rig) -> KindRun:
-    """Return how runs on a rig are built, and what goes with them."""
+    """Return the kind's part that builds runs."""
     return _brought(rig, "runs", find(rig.kind).runs)()
 
 
 def served_kind(rig: Rig) -> ServedKind:
-    """Return what the kind of a rig answers a service."""
+    """Return the kind's part for the service."""
     return _brought(rig, "service", find(rig.kind).served)()
 
 
 def recipe_part(rig: Rig) -> RecipePart:
-    """Return what the kind of a rig says about recipes."""
+    """Return the kind's part for recipes."""
     return _brought(rig, "recipes", find(rig.kind).recipe)()
 
 
 def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> LoadedRecipe:
     """Return a recipe that a rig can carry out (tester.inputs.recipe.loader.load_checked).
 
-    Raises InvalidSource with every problem; of a recipe that does not name its kind, and is plainly written for a
-    packaged kind other than the rig's, with that alone.
+    Raises InvalidSource with every problem. A recipe that does not name its kind, and is plainly written for another
+    packaged kind than the rig's, gives only that problem.
     """
     from tester.inputs.recipe.loader import load_checked
 
@@ -63,12 +63,12 @@ def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> Loa
         first = error.problems[0]
         there = next(iter(find(other).rigs))
         meant = f"the keys are of a recipe for a rig of kind {other} (such as --rig {there})"
-        said = f'{meant}, rig "{rig.name}" is of kind {rig.kind}'
-        raise InvalidSource([Problem(first.file, first.line, first.column, said)]) from error
+        text = f'{meant}, rig "{rig.name}" is of kind {rig.kind}'
+        raise InvalidSource([Problem(first.file, first.line, first.column, text)]) from error
 
 
 def _kind_written_for(source: Path | str, rig: Rig, problems: int) -> str:
-    """Return the packaged kind in whose schema a recipe has less than half as many problems, "" where none is so."""
+    """Return the packaged kind whose schema gives a recipe less than half as many problems, "" without any."""
     from tester.inputs.recipe.loader import validated
 
     try:
@@ -86,8 +86,8 @@ def _kind_written_for(source: Path | str, rig: Rig, problems: int) -> str:
 
 def _brought(rig: Rig, what: str, part: Callable[[], Part] | None) -> Callable[[], Part]:
     if part is None:
-        said = f"kind: no recipe can be run on a rig of the kind {rig.kind}, for the kind brings no {what}"
-        raise InvalidSource([Problem(f"rig {rig.name}", 1, 1, said)])
+        text = f"kind: a rig of the kind {rig.kind} cannot run recipes, because the kind has no {what}"
+        raise InvalidSource([Problem(f"rig {rig.name}", 1, 1, text)])
     return part
 
 

@@ -1,6 +1,6 @@
-"""A trip that nobody has acknowledged latches a hardware rig, whoever comes next: it stands in the run's record.
+"""An unacknowledged trip blocks the next start on a real rig, even after a restart. It is stored in the run.
 
-The service asks for an acknowledgement, also after a restart. In the foreground the next start is the acknowledgement.
+The service asks for an acknowledgement. In the foreground the next start is the acknowledgement.
 """
 
 from __future__ import annotations
@@ -25,24 +25,24 @@ from tester.store.schema import StoreError
 MANUAL_RUNS = ".manual"
 """Folder beside the runs for the journals of manual mode."""
 NEWEST_RUNS = 50
-"""So many runs, and stays in manual mode, are looked at, the newest first [A]."""
+"""Number of newest runs, and of stays in manual mode, searched for trips [A]."""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenTrip:
-    """A trip that nobody has acknowledged, and the run that has it."""
+    """An unacknowledged trip, and the folder of its run."""
 
     folder: Path
     trip: StoredTrip
 
     def __str__(self) -> str:
-        """Say which."""
+        """Return interlock, run and time."""
         compared = f" ({self.trip.compared})" if self.trip.compared else ""
         return f"{self.trip.interlock}{compared} in {self.folder.name}, {self.trip.utc}"
 
 
 def made_on(rig: Rig, reader: RunReader) -> bool:
-    """Tell whether a stored run was made on a rig of this name: the rest of its file may have changed since."""
+    """Return whether a stored run was made on a rig of this name; the rest of its file may have changed since."""
     info = reader.run().info
     if info.simulated is not rig.simulated:
         return False
@@ -54,9 +54,9 @@ def made_on(rig: Rig, reader: RunReader) -> bool:
 
 
 def open_trips(runs: Path, rig: Rig, own: Path | None = None) -> list[OpenTrip]:
-    """Return the trips on a hardware rig that nobody has acknowledged; a simulated one is new at every start.
+    """Return the unacknowledged trips on a hardware rig; a simulated rig has none, being new at every start.
 
-    Runs under way are left out, but for ``own``.
+    Skips runs under way, except ``own``.
     """
     return [] if rig.simulated else [*_found(runs, rig, own)]
 
@@ -67,15 +67,16 @@ def _found(runs: Path, rig: Rig, own: Path | None) -> Iterator[OpenTrip]:
         if folder != own and under_way(folder) is not None:
             continue
         with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
-            trips = [one for one in reader.trips() if not one.acknowledged_utc]
+            trips = [trip for trip in reader.trips() if not trip.acknowledged_utc]
             if trips and made_on(rig, reader):
-                yield from (OpenTrip(folder, one) for one in trips)
+                yield from (OpenTrip(folder, trip) for trip in trips)
 
 
 def acknowledge(found: Sequence[OpenTrip], by: str, own: Path | None = None) -> None:
-    """Record who has acknowledged trips, and make tables and manifest of their runs anew, but for ``own``.
+    """Record who acknowledged trips, and rewrite tables and manifest of their runs, except for ``own``.
 
-    A folder that is not as its manifest says keeps its manifest: a new one would hide that. Raises StoreError, OSError.
+    A folder that differs from its manifest keeps it: a new manifest would hide the difference. Raises StoreError,
+    OSError.
     """
     for folder in dict.fromkeys(one.folder for one in found):
         sound = folder != own and (folder / MANIFEST).is_file() and not _problems(folder)

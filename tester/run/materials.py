@@ -1,7 +1,7 @@
-"""Files of the compounds and the surface that a recipe names: found, copied into the run's folder, kept in its record.
+"""Material files of a recipe: finds those of its compounds and surface, copies them to the run's folder, records them.
 
-The copies lie beside the run's recipe as the originals lie beside theirs, so whoever reads the run's recipe finds them
-first. A name that no file has is a name and no more.
+The copies lie beside the run's recipe as the originals lie beside theirs, so a reader of the run's recipe finds them
+first. A name without a file remains just a name.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from tester.store.records import StoredMaterial
 from tester.store.statements import text_sha256
 
 SHORT_BYTES = 256 * 1024
-"""A file of data that is a text and no longer than this is kept in the record, too."""
+"""Limit for recording the content of a data file, if it is a text, bytes."""
 PACKAGED = "packaged: "
 
 
 @dataclass(frozen=True, slots=True)
 class KeptFile:
-    """A file to be copied into a run's folder: what the record keeps of it, and its bytes."""
+    """A file to copy into a run's folder: its record and its content."""
 
     stored: StoredMaterial
     content: bytes
@@ -40,21 +40,21 @@ class KeptFile:
 
 @dataclass(frozen=True, slots=True)
 class UsedMaterials:
-    """What a recipe's names stand for: files, and names that no file has (role and name)."""
+    """The files that a recipe's names stand for, and the names without a file (role and name)."""
 
     files: tuple[MaterialFile, ...] = ()
     bare: tuple[tuple[Role, str], ...] = ()
 
     @property
     def doubts(self) -> list[str]:
-        """Return what is doubtful in the files, a line each."""
-        return [str(doubt) for one in self.files for doubt in one.doubts]
+        """Return the doubts about the files, a line each."""
+        return [str(doubt) for file in self.files for doubt in file.doubts]
 
 
 def used_materials(recipe: Recipe, path: Path, leave_out: Iterable[str] = ()) -> UsedMaterials:
-    """Return the files that a recipe at ``path`` names; raises InvalidSource with every problem of the first bad one.
+    """Return the files that a recipe at ``path`` names; raises InvalidSource with all problems of the first bad file.
 
-    ``leave_out``: names that are not looked for.
+    ``leave_out``: names to skip.
     """
     library = Library.beside(path)
     known = set(leave_out)
@@ -73,48 +73,49 @@ def used_materials(recipe: Recipe, path: Path, leave_out: Iterable[str] = ()) ->
 
 
 def described_compounds(recipe: Recipe, path: Path, rig: Rig) -> dict[str, CompoundModel]:
-    """Return what the files of a recipe's compounds say, by name; nothing where rubber on the rig is not as they say.
+    """Return the models in the files of a recipe's compounds, by name; empty if they do not apply to the rubber on the
+    rig.
 
-    A file that cannot be read is left out: what is wrong with it is a problem of the recipe, not of this.
+    Skips unreadable files: the recipe's check reports them.
     """
     if not recipe_part(rig).rubs_as_described(rig):
         return {}
-    library, found = Library.beside(path), dict[str, CompoundModel]()
-    for name in dict.fromkeys(one.compound for one in recipe.specimens):
+    library, models = Library.beside(path), dict[str, CompoundModel]()
+    for name in dict.fromkeys(specimen.compound for specimen in recipe.specimens):
         with suppress(UnknownMaterialError, InvalidSource):
-            found[name] = library.compound(name).model
-    return found
+            models[name] = library.compound(name).model
+    return models
 
 
 def _named(recipe: Recipe) -> Iterator[tuple[Role, str]]:
-    for name in dict.fromkeys(one.compound for one in recipe.specimens):
+    for name in dict.fromkeys(specimen.compound for specimen in recipe.specimens):
         yield "compound", name
     if recipe.abrasive is not None:
         yield "surface", recipe.abrasive.name
 
 
 def kept_files(files: Sequence[MaterialFile], taken: Iterable[str] = ()) -> tuple[KeptFile, ...]:
-    """Return what of materials goes into a run's folder, each file before what it refers to.
+    """Return the copies for a run's folder, each file before the files it refers to.
 
-    ``taken``: files that lie there already. Two of one name get folders of their own.
+    ``taken``: files that exist there already. A second file of the same name gets its own folder.
     """
     there = {name.casefold() for name in taken}
     kept: list[KeptFile] = []
-    for one in files:
-        names = [one.path.name, *(data.name for data in one.data)]
-        folder = next(place for place in _places(FOLDERS[one.role]) if not there & {_at(place, n) for n in names})
+    for file in files:
+        names = [file.path.name, *(data.name for data in file.data)]
+        folder = next(place for place in _places(FOLDERS[file.role]) if not there & {_at(place, n) for n in names})
         there |= {_at(folder, name) for name in names}
-        doubts = "\n".join(map(str, one.doubts))
-        source = _source(one.path)
+        doubts = "\n".join(map(str, file.doubts))
+        source = _source(file.path)
         stored = StoredMaterial(
-            one.role, one.name, f"{folder}/{one.path.name}", source, text_sha256(one.text), one.text, doubts
+            file.role, file.name, f"{folder}/{file.path.name}", source, text_sha256(file.text), file.text, doubts
         )
-        kept.append(KeptFile(stored, one.text.encode()))
-        for data in one.data:
-            of = StoredMaterial(
+        kept.append(KeptFile(stored, file.text.encode()))
+        for data in file.data:
+            record = StoredMaterial(
                 "data", data.name, f"{folder}/{data.name}", source, data.sha256, _short_text(data.content)
             )
-            kept.append(KeptFile(of, data.content))
+            kept.append(KeptFile(record, data.content))
     return tuple(kept)
 
 
@@ -128,7 +129,7 @@ def _at(folder: str, name: str) -> str:
 
 
 def _source(path: Path) -> str:
-    """Return where a file was read from, as it is stored."""
+    """Return where a file was read from, as stored."""
     if recipes.FOLDER in path.parents:
         return f"{PACKAGED}{path.relative_to(recipes.FOLDER).as_posix()}"
     return str(path.absolute())
@@ -145,8 +146,8 @@ def _short_text(content: bytes) -> str | None:
 
 def write_materials(folder: Path, kept: Iterable[KeptFile]) -> None:
     """Copy materials into a run's folder; raises OSError."""
-    for one in kept:
-        _write(folder / one.stored.file, one.content)
+    for file in kept:
+        _write(folder / file.stored.file, file.content)
 
 
 def _write(path: Path, content: bytes) -> None:
@@ -159,19 +160,19 @@ def _write(path: Path, content: bytes) -> None:
 
 
 def put_back(folder: Path, stored: Iterable[StoredMaterial]) -> tuple[list[str], list[str]]:
-    """Make the copies in a run's folder what its record says they were.
+    """Restore the copies in a run's folder from the record.
 
-    Returns the files that were put back, and those that cannot be: changed, and held by their hash alone.
+    Returns the restored files, and those that cannot be restored: changed, with only their hash on record.
     """
     restored: list[str] = []
     lost: list[str] = []
-    for one in stored:
-        path = folder / one.file
-        if path.is_file() and sha256(path.read_bytes()).hexdigest() == one.sha256:
+    for material in stored:
+        path = folder / material.file
+        if path.is_file() and sha256(path.read_bytes()).hexdigest() == material.sha256:
             continue
-        if one.text is None:
-            lost.append(one.file)
+        if material.text is None:
+            lost.append(material.file)
             continue
-        _write(path, one.text.encode())
-        restored.append(one.file)
+        _write(path, material.text.encode())
+        restored.append(material.file)
     return restored, lost

@@ -1,4 +1,4 @@
-"""The parts of a run put together: one record, one ending."""
+"""Merges the parts of a run into one record and one ending."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tester.store.schema import NotBegunError, StoreError
 from tester.store.writer import RunWriter
 
 MERGED = "parts.merged"
-"""The parts' folder once the run's own record holds everything: to be deleted."""
+"""Name of the parts' folder once the run's own record holds everything: to be deleted."""
 
 
 def put_together(
@@ -33,9 +33,10 @@ def put_together(
     wanted: Callable[[], StopLevel],
     tell: Callable[[PartEnd], None],
 ) -> RunEnding:
-    """Merge the records of parts, as they end, into the run's own, in the plan's order; return the run's ending.
+    """Merge the parts' records into the run's own, in the plan's order, as they end; return the run's ending.
 
-    ``wanted`` says who wants a stop, ``tell`` is told of every part's end. The parts' own records go when all are in.
+    ``wanted`` returns who wants a stop, ``tell`` gets every part's end. The parts' own records are deleted when all are
+    in.
     """
     ended: dict[int, PartEnd] = {}
     failed: str | None = None
@@ -54,16 +55,16 @@ def put_together(
 
 
 def recover(folder: Path) -> None:
-    """Merge the parts of a run that was cut off, as far as they are recorded; nothing where there are none.
+    """Merge the recorded parts of an interrupted run; do nothing without parts.
 
-    Afterwards the run's own record stands for all of it, and the run can go on there. Raises StoreError, OSError.
+    Afterwards the run's own record holds everything, and the run can resume there. Raises StoreError, OSError.
     """
     if (folder / PARTS).is_dir():
-        found = sorted((folder / PARTS).glob(f"*/{DATABASE}"), key=lambda record: int(record.parent.name))
+        records = sorted((folder / PARTS).glob(f"*/{DATABASE}"), key=lambda record: int(record.parent.name))
         try:
             with Merge(folder) as merge:
-                for record in found:
-                    with suppress(NotBegunError):  # cut off as it began: nothing was measured in it
+                for record in records:
+                    with suppress(NotBegunError):  # interrupted as it began: it has no measurements
                         merge.add(record.parent)
         except sqlite3.Error as error:
             raise StoreError(f"the parts of {folder.name} cannot be put together: {error}") from error
@@ -71,7 +72,7 @@ def recover(folder: Path) -> None:
 
 
 def drop_parts(folder: Path) -> None:
-    """Delete the parts' records, whole or not at all as far as anybody can see who comes after a power cut."""
+    """Delete the parts' records atomically: after a power cut a reader sees all of them or none."""
     if (folder / PARTS).is_dir():
         (folder / PARTS).rename(folder / MERGED)
         sync_folder(folder)
@@ -80,7 +81,7 @@ def drop_parts(folder: Path) -> None:
 
 
 def _begin(folder: Path, quantities: Quantities, begin: Begin) -> None:
-    """Record what is going to be done: a run that is cut off shows what it was to be."""
+    """Record the planned work, so that an interrupted run shows its intent."""
     record = folder / DATABASE
     with closing(RunWriter(record, quantities, clock=clock.monotonic, utc=clock.utc_now, synchronous=True)) as writer:
         begin(writer)
@@ -94,7 +95,7 @@ def _merge(
     merge: Merge,
     tell: Callable[[PartEnd], None],
 ) -> None:
-    """Add every part as soon as those before it are in; then those behind one that was never begun."""
+    """Add each part once those before it are in; then the parts behind one that never began."""
     folders = {part.number: work.folder_of(part, job.folder) for part in work.parts}
     for end in ends:
         ended[end.part] = end

@@ -1,4 +1,4 @@
-"""One part from its connection to its standstill, recorded in a file of its own."""
+"""Runs one part from its connection to its standstill, recorded in its own file."""
 
 from __future__ import annotations
 
@@ -35,31 +35,31 @@ if TYPE_CHECKING:
     from sim.rig import SimRig
 
 KILLED = 137
-"""Exit status of a process that a fault script kills: what a shell shows for SIGKILL."""
+"""Exit status of a process killed by a fault script: the one a shell shows for SIGKILL."""
 INTERRUPTED = "interrupted"
-"""Status of a run that the program broke off."""
+"""Status of a run that ended with an error of the program."""
 STATE_EVERY_S = 1.0
-"""The state of the specimen is stored this often of wall time: what an interruption loses of it."""
+"""Period for storing the specimen's state, s of wall time: an interruption loses at most this much."""
 
 
 class Watch(Protocol):
-    """Who looks after a part while it runs."""
+    """Watches a part while it runs."""
 
     statistics: TickStatistics
-    """Is told how punctual the ticks are, in real time."""
+    """Receives how punctual the ticks are, in real time."""
     track: TimeLeft
-    """Counts the run's steps; looks at a part before each poll."""
+    """Counts the run's steps; updated before each poll."""
 
     def begun(self, run: Run) -> None:
-        """Take notice of the run: from now on it can be stopped."""
+        """Receive the run: from now on it can be stopped."""
         ...
 
     def say(self, text: str) -> None:
-        """Tell people something about the run that has begun."""
+        """Show a message about the run under way."""
         ...
 
     def rested(self) -> None:
-        """Take notice that the run is at rest: nothing ticks any more, its record is not closed yet."""
+        """Note that the run is at rest: nothing ticks any more, but its record is still open."""
         ...
 
     def poll(self, now_s: float, run: Run) -> None:
@@ -68,19 +68,19 @@ class Watch(Protocol):
 
 
 class Unsampled(RunWriter):
-    """A record without samples: repeats and conditions are all that is wanted of it."""
+    """A record without samples, with only repeats and conditions."""
 
     def sample(self, row: tuple[float, ...]) -> None:
-        """Forget the sample."""
+        """Drop the sample."""
 
 
 class RunNotes:
-    """What is stored beside the scan: parameters once they were read back, and the state of the specimen."""
+    """Stores data beside the scan: the parameters read from devices, and the specimen's state."""
 
     def __init__(self, run: Run, recorder: RunWriter, good: GoodRun | None, say: Callable[[str], None]) -> None:
-        """Nothing is stored before the rig is connected.
+        """Store nothing before the rig is connected.
 
-        ``good``: the last good run, with which the parameters are compared; ``say`` is told what differs.
+        ``good``: the last good run, for comparison of the parameters; ``say`` shows the differences.
         """
         self.run = run
         self.recorder = recorder
@@ -91,15 +91,15 @@ class RunNotes:
         self.state_due_s = 0.0
 
     def poll(self, now_s: float) -> None:
-        """Store what is due; ``now_s`` is rig time."""
+        """Store whatever is due; ``now_s`` is rig time."""
         if not self.run.connected:
             return
         if not self.connected:
             self.connected, engine = True, self.run.engine
-            told = record_parameters(engine.ctx.rig, engine.devices, self.recorder, now_s, self.good)
-            if told:
-                engine.ctx.journal.event(now_s, "arming", told, "warning")
-                self.say(f"warning: {told}")
+            difference = record_parameters(engine.ctx.rig, engine.devices, self.recorder, now_s, self.good)
+            if difference:
+                engine.ctx.journal.event(now_s, "arming", difference, "warning")
+                self.say(f"warning: {difference}")
         wall_s = clock.monotonic()
         if wall_s >= self.state_due_s:
             self.state_due_s = wall_s + STATE_EVERY_S
@@ -107,7 +107,7 @@ class RunNotes:
 
 
 def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, prompts: Prompts) -> PartEnd:
-    """Carry out a part; its record is closed when this returns. Raises OSError, sqlite3.Error, StoreError."""
+    """Run a part; its record is closed on return. Raises OSError, sqlite3.Error, StoreError."""
     folder = work.folder_of(part, job.folder)
     folder.mkdir(parents=True, exist_ok=True)
     open_record = RunWriter if job.samples else Unsampled
@@ -127,33 +127,33 @@ def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, promp
 
 
 class closed_early:  # noqa: N801 - reads as a statement
-    """Record what has broken the program off, if anything has: the run is interrupted, and can go on later."""
+    """Marks the run interrupted, with the error, if the block raises; it can be resumed later."""
 
     def __init__(self, writer: RunWriter) -> None:
-        """``writer``: its record stays open."""
+        """``writer``: writer of the open record."""
         self.writer = writer
 
     def __enter__(self) -> None:
-        """Nothing has happened yet."""
+        """Do nothing."""
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
-        """Record the error, if there is one, and let it go on."""
+        """Record the error, if any, and let it propagate."""
         if kind is not None:
             self.writer.finish(INTERRUPTED, _broken_off(kind, error))
 
 
 class left_safe:  # noqa: N801 - reads as a statement
-    """Send safe outputs once if the block is left with the rig still running, whatever the reason."""
+    """Sends safe outputs once if the block ends with the rig still running, for any reason."""
 
     def __init__(self, run: Run) -> None:
-        """``run``: the one that is ticked in the block."""
+        """``run``: the run that the block ticks."""
         self.run = run
 
     def __enter__(self) -> None:
-        """Nothing has happened yet."""
+        """Do nothing."""
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
-        """Send, write it down, and let the error go on."""
+        """Send safe outputs, record it, and let the error propagate."""
         if kind is not None and not self.run.finished:
             self.run.abandon()
             ctx = self.run.engine.ctx
@@ -182,10 +182,10 @@ def _execute(
             attendant = Witnessed(attendant, truth, part.plan, writer)
         build = run_parts(rig).build
         run = build(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
-        run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be a part of one
+        run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be one part of a larger plan
         watch.track.begin_part(part.plan)
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
-        with collector_at_rest():  # already: from here to the first tick nothing takes long, and STOP waits for that
+        with collector_at_rest():  # before the first tick: STOP must not wait for a collection
             watch.begun(run)
             with left_safe(run):
                 seconds = _tick(run, ticked, lives, ports.pace, job.lapse, writer, watch, job.good)
@@ -227,13 +227,13 @@ def _tick(
             run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
 
     if world is not None:
-        # Also at --speed 1: counted ticks, not measured ones, so that no speed changes a result.
+        # Even at --speed 1, count ticks instead of measuring them: no speed may change a result.
         return run_simulated(ticked, world, lapse=lapse, poll=poll)
     return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
 
 
 def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked, TickedWorld]:
-    """Return what a ticker drives in place of run and rig while faults happen to them."""
+    """Return a stand-in for run and rig that injects faults, for the ticker to drive."""
     from sim import machines
     from sim.faults import FaultScript
     from tester.run.fault_injection import FaultyRun
@@ -244,7 +244,7 @@ def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked,
 
 
 def _die() -> None:
-    """End this process as a kill does: at once, nothing closed, nothing flushed."""
+    """End this process as a kill does: at once, with nothing closed or flushed."""
     os._exit(KILLED)
 
 
@@ -257,11 +257,10 @@ def connect_ports(
     recipe: Path | None = None,
     surface: str = "",
 ) -> tuple[Ports, SimRig | None, Any]:
-    """Open the wires to the rig: simulated in this process (its bus spoilable where ``faulty``), or real.
+    """Open the wires to the rig: simulated in this process (with a faulty bus if ``faulty``), or real.
 
-    ``recipe`` and ``surface``: as ``simulated_ports`` takes them.
-
-    Return them, the simulated rig, and the hands at the rig (tester.machine.run_parts).
+    ``recipe`` and ``surface`` as in ``simulated_ports``. Returns the wires, the simulated rig, and the hands at the rig
+    (tester.machine.run_parts).
     """
     if rig.can.interface == "sim":
         from tester.run.simulated import simulated_ports

@@ -1,4 +1,4 @@
-"""Before a run begins: its recipe read and planned on a rig; room on the disk, the buses, its folder."""
+"""Before a run begins: reads and plans its recipe, checks room on the disk, locks buses and folder."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from tester.store.disk import expected_bytes, too_little_room
 
 
 def enough_room(folder: Path, plan: Plan, rig: Rig, expected: Estimate | None = None) -> None:
-    """Raise CannotStartError unless twice what the run will take is free; ``expected``: its estimate."""
+    """Raise CannotStartError unless twice the run's expected size is free; ``expected``: its estimate."""
     missing = too_little_room(folder, expected_bytes(plan, expected or recipe_part(rig).estimate(plan, rig)))
     if missing:
         raise CannotStartError(missing, EXIT_CODES[Outcome.FAILED])
 
 
 def hold_rig(use: ExclusiveUse, rig: Rig, run: str) -> None:
-    """Lock a rig's buses; nothing for a rig simulated in this process. Raises CannotStartError."""
+    """Lock a rig's buses; do nothing for a rig simulated in this process. Raises CannotStartError."""
     try:
         use.lock(buses_of(rig), run)
     except RigInUseError as error:
@@ -38,7 +38,7 @@ def hold_rig(use: ExclusiveUse, rig: Rig, run: str) -> None:
 
 
 def hold_run(use: ExclusiveUse, folder: Path) -> None:
-    """Lock a run's folder, so that nobody resumes a run that is under way. Raises CannotStartError."""
+    """Lock a run's folder, so that a run under way cannot be resumed. Raises CannotStartError."""
     try:
         use.lock_file(f"the run {folder.name}", folder / RUN_LOCK, folder.name, lasting=False)
     except RigInUseError as error:
@@ -54,9 +54,9 @@ def buses_of(rig: Rig) -> list[str]:
 
 
 def told_before(rig: Rig, today: date) -> list[str]:
-    """Return what somebody should know before a rig starts: certificates that have ended, lines set otherwise.
+    """Return warnings before a rig starts: expired certificates, lines with other settings.
 
-    Raises CannotStartError where a certificate has and that refuses a start (``calibration.overdue``).
+    Raises CannotStartError if a certificate has expired and that refuses a start (``calibration.overdue``).
     """
     calibration = rig.certificates()
     over = calibration.over(today)

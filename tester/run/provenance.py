@@ -1,4 +1,4 @@
-"""What a run keeps of where its numbers come from: software, libraries, rig, calibration, devices, bus counters."""
+"""Provenance stored with a run: software, libraries, rig, calibration, devices, bus counters."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pys
 """Distributions whose versions are stored with a run."""
 
 ABSENT = "not installed"
-"""Stands for the version of a distribution that is not there, as of one that comes with an extra."""
+"""Version of a distribution that is not installed, for example one from an extra."""
 
 PACKAGED = "packaged: "
-"""Begins the source of a recipe that comes with the program."""
+"""Prefix of the source of a recipe that comes with the program."""
 
 _GIT_AT_MOST_S = 2.0
 
@@ -66,7 +66,7 @@ def run_info(
     risks: Mapping[str, str] | None = None,
     materials: Sequence[StoredMaterial] = (),
 ) -> RunInfo:
-    """Return what the store keeps of a run's beginning. ``risks``: as ``accepted_risks`` returns them."""
+    """Return the store's record of a run's beginning. ``risks``: as ``accepted_risks`` returns them."""
     return RunInfo(
         name=name,
         recipe_name=plan.name,
@@ -93,21 +93,21 @@ def run_info(
 
 
 def _known_slopes(plan: Plan, rig: Rig, materials: Sequence[StoredMaterial]) -> tuple[KnownSlope, ...]:
-    """Return what the compounds' files say of friction over temperature, where it holds for the rubber on the rig."""
+    """Return friction's slopes over temperature from the compounds' files, if they apply to the rubber on the rig."""
     if not recipe_part(rig).rubs_as_described(rig):
         return ()
-    files = [one for one in materials if one.role == "compound" and one.text]
-    return tuple(known_slopes(plan, {one.name: compound_model(one.text or "", one.file) for one in files}))
+    files = [file for file in materials if file.role == "compound" and file.text]
+    return tuple(known_slopes(plan, {file.name: compound_model(file.text or "", file.file) for file in files}))
 
 
 def accepted_risks(rig: Rig, reason: str) -> dict[str, str]:
-    """Return what is kept with a run of the safety keys that are looser than they should be; nothing where none is."""
+    """Return the metadata about safety keys that are looser than they should be; empty without any."""
     risks = risks_of(rig)
     return {ACCEPTED_RISK: reason, LOOSE_KEYS: "; ".join(map(str, risks))} if risks else {}
 
 
 def session_info(number: int, origin_s: float, operator: str) -> SessionInfo:
-    """Return what the store keeps of the stretch that begins now."""
+    """Return the store's record of the stretch that begins now."""
     return SessionInfo(
         session=number,
         origin_s=origin_s,
@@ -146,7 +146,7 @@ def rig_source(name: str, overrides: tuple[str, ...]) -> str:
 
 
 def calibration_of(rig: Rig) -> tuple[Calibration, ...]:
-    """Return every figure that turns what devices say into quantities."""
+    """Return every figure that converts device readings into quantities."""
     return tuple(_calibration_of(rig))
 
 
@@ -173,7 +173,7 @@ def _calibration_of(rig: Rig) -> Iterator[Calibration]:
 
 
 def read_back(rig: Rig, devices: DeviceList, now_s: float) -> Iterator[StoredParameter]:
-    """Yield everything that was read back from the devices before the run was armed."""
+    """Yield everything read from the devices before the run is armed."""
     for drive in devices.drives:
         name, drive_profile = drive.config.name, drive.config.drive
         if drive_profile.name != GENERIC:
@@ -191,7 +191,7 @@ def read_back(rig: Rig, devices: DeviceList, now_s: float) -> Iterator[StoredPar
 def record_parameters(
     rig: Rig, devices: DeviceList, recorder: Recorder, now_s: float, good: GoodRun | None = None
 ) -> str:
-    """Store what was read back; return what of it is not as in the last good run, "" where all is."""
+    """Store the parameters read from devices; return the differences from the last good run, "" without any."""
     rows = list(read_back(rig, devices, now_s))
     for row in rows:
         recorder.device_parameter(row.t_s, row.device, row.parameter, row.value, row.name)
@@ -199,7 +199,7 @@ def record_parameters(
 
 
 def record_statistics(devices: DeviceList, recorder: Recorder, now_s: float) -> None:
-    """Store the counters of the buses as they stand."""
+    """Store the present counters of the buses."""
     recorder.bus_statistic(now_s, "can", "", "unknown frames", devices.master.unknown_frames)
     for drive in devices.drives:
         recorder.bus_statistic(now_s, "can", drive.config.name, "malformed", drive.malformed)
@@ -219,7 +219,7 @@ def record_statistics(devices: DeviceList, recorder: Recorder, now_s: float) -> 
 
 
 def git_revision() -> str:
-    """Return the revision this program runs from, with ``-dirty`` where files differ; empty outside a checkout."""
+    """Return the revision of this program, with ``-dirty`` if files differ; empty outside a checkout."""
     root = Path(__file__).resolve().parent.parent
     if not (root / ".git").exists():
         return ""

@@ -1,4 +1,4 @@
-"""Frames of live wires, written down as a run's own bus log is: what a test can replay to the drivers."""
+"""Records frames of live wires in the format of a run's own bus log, for a test to replay to the drivers."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from tester.base import clock
 from tester.run.bus_log import CanLog, LineLog
 
 LOOK_S = 0.002
-"""How often the wires are looked at, s: stamps are no better than this [A]."""
+"""Period for reading the wires, s: time stamps are no better than this [A]."""
 _MASTER_FUNCTIONS = frozenset((0x000, 0x200, 0x300, 0x400, 0x500, 0x600))
-"""Function codes of frames that a master sends, besides SYNC: NMT, RPDOs, SDO requests (CiA 301, 7.3.3)."""
+"""Function codes of a master's frames, besides SYNC: NMT, RPDOs, SDO requests (CiA 301, 7.3.3)."""
 _SYNC, _HEARTBEAT = 0x080, 0x700
 
 
 @dataclass(frozen=True, slots=True)
 class LineTapped:
-    """A serial port that only listens: its name in the record, and its settings (bit/s)."""
+    """A serial port to listen on: its name in the record, and its settings (bit/s)."""
 
     name: str
     port: str
@@ -31,36 +31,36 @@ class LineTapped:
 
 @dataclass(frozen=True, slots=True)
 class RecordOptions:
-    """What to listen to, and for how long (s)."""
+    """Wires to listen on, and for how long (s)."""
 
     folder: Path
     seconds: float
     can: tuple[str, str] | None = None
     bitrate: int = 500_000
     master: int = 127
-    """Node id of the master, whose heartbeats are its own."""
+    """Node id of the master, whose heartbeats count as the master's."""
     lines: tuple[LineTapped, ...] = ()
 
 
 @dataclass(slots=True)
 class Recorded:
-    """How many frames were written of each wire, and the bytes that belong to none."""
+    """The number of recorded frames on each wire, and the number of bytes outside any frame."""
 
     frames: dict[str, int] = field(default_factory=dict[str, int])
     garbage: int = 0
 
 
 def from_master(can_id: int, master: int) -> bool:
-    """Tell whether a frame is one that the master sends."""
+    """Return whether the master sends this frame."""
     return can_id == _SYNC or can_id == _HEARTBEAT + master or can_id & 0x780 in _MASTER_FUNCTIONS
 
 
 def record(options: RecordOptions, stopped: Callable[[], bool]) -> Recorded:
-    """Listen until the time is over, or ``stopped``; return what was heard. Raises BusLost and OSError.
+    """Listen until the time is over, or ``stopped``; return the counts. Raises BusLost and OSError.
 
-    Nothing is sent: a CAN adapter acknowledges frames, as any node does.
+    Sends nothing, but a CAN adapter acknowledges frames as any node does.
     """
-    found = Recorded()
+    counts = Recorded()
     with ExitStack() as opened:
         begin = clock.monotonic()
         options.folder.mkdir(parents=True, exist_ok=True)
@@ -68,13 +68,13 @@ def record(options: RecordOptions, stopped: Callable[[], bool]) -> Recorded:
         if options.can is not None:
             bus = open_can(*options.can, options.bitrate, lambda: clock.monotonic() - begin)
             opened.callback(bus.close)
-            found.frames["can"] = 0
+            counts.frames["can"] = 0
         lines: list[tuple[LineTapped, SerialLine, LineTap]] = []
         for line in options.lines:
             port = open_serial_line(line.port, line.baud)
             opened.callback(port.close)
             lines.append((line, port, LineTap()))
-            found.frames[line.name] = 0
+            counts.frames[line.name] = 0
         can_log = CanLog(options.folder / "can.log") if bus is not None else None
         if can_log is not None:
             opened.callback(can_log.close)
@@ -89,12 +89,12 @@ def record(options: RecordOptions, stopped: Callable[[], bool]) -> Recorded:
             if bus is not None and can_log is not None:
                 for t, can_id, data in bus.receive(now):
                     can_log.frame(t, can_id, data, from_master(can_id, options.master))
-                    found.frames["can"] += 1
+                    counts.frames["can"] += 1
             for line, port, tap in lines:
                 for t, data in port.read(now):
                     for frame, sent in tap.feed(data):
                         logs[line.name].frame(t, frame, sent)
-                        found.frames[line.name] += 1
-        found.garbage = sum(tap.garbage for _, _, tap in lines)
-    return found
+                        counts.frames[line.name] += 1
+        counts.garbage = sum(tap.garbage for _, _, tap in lines)
+    return counts
 

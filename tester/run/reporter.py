@@ -1,4 +1,4 @@
-"""Who shows a run to people, and what becomes of the run when nothing can be shown any more."""
+"""Screens that show a run, and a wrapper that stops the run when its screen is lost."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from tester.machine.time_left import RunPosition
 
 
 class ReportScreen(Protocol):
-    """Who shows a run to people. A method whose screen, pipe or file is gone raises OSError."""
+    """Shows a run to people. A method raises OSError if its screen, pipe or file is gone."""
 
     answer_yes: bool
 
     @property
     def can_ask(self) -> bool:
-        """A person is there to answer prompts."""
+        """Whether a person can answer prompts."""
         ...
 
     def begin(self, name: str) -> None:
@@ -27,7 +27,7 @@ class ReportScreen(Protocol):
         ...
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Show where the run is, or one of its parts where they run side by side."""
+        """Show where the run is, or one of its parts when they run side by side."""
         ...
 
     def attend(self, prompts: Prompts) -> None:
@@ -35,11 +35,11 @@ class ReportScreen(Protocol):
         ...
 
     def end(self) -> None:
-        """Take the progress away."""
+        """Remove the progress display."""
         ...
 
     def message(self, text: str) -> None:
-        """Say something to people."""
+        """Show a message."""
         ...
 
     def emit(self, record: dict[str, object]) -> None:
@@ -56,19 +56,19 @@ class Commanding(Protocol):
     """A screen at which a person can give commands to the run."""
 
     def commands(self) -> list[str]:
-        """Return the commands given since the last call: those of ``tester.base.keys``."""
+        """Return the commands since the last call, out of those in ``tester.base.keys``."""
         ...
 
 
 class LastingScreen:
-    """A screen that may fail without taking the run with it.
+    """A screen whose failure does not break the run.
 
-    With its first error nothing more is shown or asked, and ``lost`` is called with the cause; messages and records are
-    still tried, in case only one of two outputs is gone.
+    After its first error it shows and asks nothing more, and calls ``lost`` with the cause. It still tries messages and
+    records, in case only one of two outputs is gone.
     """
 
     def __init__(self, screen: ReportScreen, lost: Callable[[str], None]) -> None:
-        """``lost``: called once."""
+        """``lost`` is called once."""
         self._screen = screen
         self._lost = lost
         self.answer_yes = screen.answer_yes
@@ -76,18 +76,15 @@ class LastingScreen:
 
     @property
     def can_ask(self) -> bool:
-        """A person is there to answer prompts."""
         return self._screen.can_ask
 
     def begin(self, name: str) -> None:
-        """Show that a run has begun."""
         try:
             self._screen.begin(name)
         except OSError as error:
             self._lose(error)
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Show where the run is."""
         if self.gone:
             return
         try:
@@ -96,7 +93,6 @@ class LastingScreen:
             self._lose(error)
 
     def attend(self, prompts: Prompts) -> None:
-        """Ask and answer prompts without blocking."""
         if self.gone:
             return
         try:
@@ -105,7 +101,6 @@ class LastingScreen:
             self._lose(error)
 
     def commands(self) -> list[str]:
-        """Return the commands given since the last call."""
         if self.gone or not isinstance(self._screen, Commanding):
             return []
         try:
@@ -115,28 +110,24 @@ class LastingScreen:
             return []
 
     def end(self) -> None:
-        """Take the progress away."""
         try:
             self._screen.end()
         except OSError as error:
             self._lose(error)
 
     def message(self, text: str) -> None:
-        """Say something to people."""
         try:
             self._screen.message(text)
         except OSError as error:
             self._lose(error)
 
     def emit(self, record: dict[str, object]) -> None:
-        """Write a record for programs."""
         try:
             self._screen.emit(record)
         except OSError as error:
             self._lose(error)
 
     def result(self, line: str) -> None:
-        """Write the run's folder."""
         try:
             self._screen.result(line)
         except OSError as error:

@@ -1,7 +1,7 @@
-"""Prepare an interrupted run to go on: what is left of its plan, and whether recipe and rig are still its own.
+"""Prepares an interrupted run to resume: the rest of its plan, and a check that recipe and rig are unchanged.
 
-The run's folder holds the texts it began with. Somebody may have changed those on purpose, or the files they were
-copied from: both are found by their hashes, and told with what is to be done.
+The run's folder holds the texts it began with. These, or the files they were copied from, may have been changed on
+purpose: hashes find both, and each is reported with the remedy.
 """
 
 from __future__ import annotations
@@ -27,27 +27,27 @@ from tester.store.resume import ResumePoint, resume_point
 from tester.store.statements import calibration_sha256, text_sha256
 from tester.store.writer import RunWriter
 
-LATER = "asked for when it is known which text the run goes on with"
-"""Stands for the word that a rig's risks need, while texts are compared."""
+LATER = "asked for once it is known with which text the run resumes"
+"""Stands in for the reason that a rig's risks need, while texts are compared."""
 
 
 @dataclass(frozen=True, slots=True)
 class Resumed:
-    """An interrupted run that can go on."""
+    """An interrupted run, ready to resume."""
 
     rig: Rig
     plan: Plan
-    """What is left to do."""
+    """The rest of the plan."""
     seed: int
     point: ResumePoint
     begin: Callable[[RunWriter], None]
     summary: str
-    """What goes on, a line for people."""
+    """Summary for people, in one line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """The texts a run is to go on with, and what in them is not as it was."""
+    """The texts to resume with, and their changes."""
 
     recipe_text: str
     rig: Rig
@@ -59,21 +59,21 @@ class Found:
 
 
 def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> Resumed | str:
-    """Return the run in a folder as it can go on, or why it is refused.
+    """Return the run in a folder, ready to resume, or the reason for refusing.
 
-    ``reason``: why it may go on although recipe, rig or calibration changed; stored with each change. ``accept_risk``:
-    why safety keys of the rig may be looser than they should be: asked for again whenever a run goes on. Raises
-    StoreError for a record that cannot be read, InvalidSource for a recipe or rig file that is invalid now.
+    ``reason``: why it may resume although recipe, rig or calibration changed; stored with each change. ``accept_risk``:
+    why safety keys of the rig may be looser than they should be; needed again at every resume. Raises StoreError for an
+    unreadable record, InvalidSource for a recipe or rig file that is invalid now.
     """
     with RunReader(folder) as reader:
         run, stored, point = reader.run(), reader.conditions(), resume_point(reader)
     found = _found(folder, run, point.session, reason)
     if found.changes and not reason:
         subjects = ", ".join(dict.fromkeys(change.subject for change in found.changes))
-        return f"{subjects} changed since the run began ({'; '.join(found.where)}): --reason TEXT goes on all the same"
+        return f"{subjects} changed since the run began ({'; '.join(found.where)}): --reason TEXT resumes all the same"
     risks = accepted_risks(found.rig, accept_risk)
     if risks and not accept_risk:
-        return f"{risks[LOOSE_KEYS]}: --accept-risk REASON goes on all the same"
+        return f"{risks[LOOSE_KEYS]}: --accept-risk REASON resumes all the same"
     part = recipe_part(found.rig)
     recipe = checked_recipe(found.recipe_text, found.rig, str(folder / "recipe.yaml"))
     plan = part.expand(recipe.recipe, found.rig)
@@ -83,7 +83,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
         return refused
     restored, lost = put_back(folder, run.info.materials)
     if lost:
-        return f"{', '.join(lost)}: not what the run was made with, and the record has its hash alone: put it back"
+        return f"{', '.join(lost)}: changed since the run began, and the record has only its hash: put it back"
     added = _added_materials(folder, run, recipe.recipe, found)
     begun = {s.info.condition for s in stored if _begun(s)}
     to_come = [c for c in conditions if c.condition not in begun]
@@ -99,7 +99,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
             writer.replace_rig(found.rig.text, calibration_of(found.rig), point.session, found.rig_source)
         if added:
             write_materials(folder, added)
-            writer.add_materials([one.stored for one in added])
+            writer.add_materials([file.stored for file in added])
         if found.changes:
             write_text(folder / "recipe.yaml", found.recipe_text)
             write_text(folder / "rig.yaml", found.rig.text)
@@ -109,7 +109,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
         writer.event(0.0, "resume", f"stretch {session.session} of the run{': ' + reason if reason else ''}")
 
     if any(change.subject == "calibration" for change in found.changes):
-        # Another scale, another zero: the old reference says nothing.
+        # A new scale or zero makes the old reference meaningless.
         point = replace(point, reference_tare=None)
     return Resumed(
         rig=found.rig,
@@ -122,19 +122,19 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
 
 
 def _added_materials(folder: Path, run: StoredRun, recipe: Recipe, found: Found) -> tuple[KeptFile, ...]:
-    """Return the files of what a changed recipe names besides; what is on record stays as it is there."""
+    """Return the files that only the changed recipe names; recorded files stay as they are."""
     if not any(change.subject == "recipe" for change in found.changes):
         return ()
     recorded = run.info.materials
     source = Path(found.recipe_source) if found.recipe_source else folder / "recipe.yaml"
-    used = used_materials(recipe, source, [one.name for one in recorded if one.role != "data"])
-    return kept_files(used.files, [one.file for one in recorded])
+    used = used_materials(recipe, source, [file.name for file in recorded if file.role != "data"])
+    return kept_files(used.files, [file.file for file in recorded])
 
 
 def _summary(folder: Path, point: ResumePoint, conditions: int, restored: Sequence[str]) -> str:
     over = len(point.stand.ended)
     at = point.next_repeat
-    where = f", goes on at repeat {at[1]} of condition {at[0]}" if at is not None else ""
+    where = f", resumes at repeat {at[1]} of condition {at[0]}" if at is not None else ""
     back = f"; {', '.join(restored)} put back as recorded" if restored else ""
     return f"{folder.name}: {over} of {conditions} conditions are over{where}{back}"
 
@@ -172,14 +172,14 @@ def _found(folder: Path, run: StoredRun, session: int, reason: str) -> Found:
 def _present(
     stored: str, copy: Path, read: Callable[[Path], str], source: str, at_source: str | None, where: list[str]
 ) -> tuple[str, str]:
-    """Return the text to go on with, and its source: the folder's copy where that was changed, else its original."""
+    """Return the text to resume with, and its source: the folder's copy if it was changed, else the original."""
     if copy.is_file():
         text = read(copy)
         if text != stored:
             where.append(str(copy))
             return text, ""
     if at_source is not None and at_source != stored:
-        where.append(f"what {copy.name} was copied from: {source}")
+        where.append(f"the original of {copy.name}, {source}")
         return at_source, source
     return stored, source
 
@@ -189,7 +189,7 @@ def _text_of(path: Path) -> str:
 
 
 def _rig_text(path: Path | str, stored: str, overrides: Sequence[str] = ()) -> str:
-    """Return what a rig file says now: as it is stored where that is the same rig, written by an older version."""
+    """Return a rig file's present text, or the stored text if it is the same rig, written by an older version."""
     rig = load_rig(path, overrides, LATER)
     return stored if rig == load_rig_text(stored) else rig.text
 
@@ -202,7 +202,7 @@ def _recipe_at_source(run: StoredRun) -> str | None:
 
 
 def _rig_at_source(run: StoredRun) -> str | None:
-    """Return the rig as its file says now; None for a packaged one, which changes with the program alone."""
+    """Return the rig file's present text; None for a packaged rig, which changes only with the program."""
     where, *overrides = shlex.split(run.info.rig_source) or [""]
     if not (Path(where).is_absolute() and Path(where).is_file()):
         return None
@@ -214,12 +214,12 @@ def _begun(stored: StoredCondition) -> bool:
 
 
 def _another_plan(conditions: Sequence[ConditionInfo], stored: Sequence[StoredCondition]) -> str:
-    """Return why a changed recipe is another test: a condition that was begun is not in it as it was."""
+    """Return why a changed recipe is a different test: it lacks, or alters, a condition that has begun."""
     now = {condition.condition: condition for condition in conditions}
-    for one in stored:
-        if _begun(one) and now.get(one.info.condition) != one.info:
+    for begun in stored:
+        if _begun(begun) and now.get(begun.info.condition) != begun.info:
             return (
-                f"the recipe is another one: condition {one.info.condition}, of which something was measured, "
-                "is not in it as it was; begin a new run"
+                f"the recipe is a different test: it lacks or alters condition {begun.info.condition}, which has "
+                "measurements; begin a new run"
             )
     return ""

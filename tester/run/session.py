@@ -1,4 +1,4 @@
-"""One recipe on one rig from the outside: files, folder, rig, parts, results, exit code."""
+"""Runs a recipe on a rig from start to finish: files, folder, rig, parts, results, exit code."""
 
 from __future__ import annotations
 
@@ -63,28 +63,28 @@ Got = TypeVar("Got")
 
 @dataclass(frozen=True, slots=True)
 class SessionOptions:
-    """What the command line said."""
+    """Options of the command line."""
 
     recipe: str = ""
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
     accept_risk: str = ""
-    """Why safety keys may be looser than they should be; "" = they may not."""
+    """Reason for accepting safety keys that are looser than they should be; "" = they are refused."""
     out: Path = Path("runs")
     seed: int = 0
     lapse: float | None = None
     bus_log: Path | None = None
     operator: str = ""
     jobs: int = 1
-    """Processes in which independent parts run side by side (simulated rig only)."""
+    """Number of processes that run independent parts side by side (simulated rig only)."""
     samples: bool = True
-    """Whether samples are kept."""
+    """Whether samples are stored."""
     faults: tuple[str, ...] = ()
-    """Lines of a fault script (sim.faults.language), beside those of the rig file."""
+    """Lines of a fault script (sim.faults.language), in addition to the rig file's."""
 
 
 def only_plain(**texts: str) -> None:
-    """Raise CannotStartError for a text of a person's that holds more than a line of characters, with its name."""
+    """Raise CannotStartError, naming the text, if a person's text is more than one line of printable characters."""
     try:
         for where, text in texts.items():
             plain_text(text, where)
@@ -96,29 +96,32 @@ class Session:
     """Prepares, runs and closes one run."""
 
     def __init__(self, options: SessionOptions, screen: ReportScreen) -> None:
-        """Nothing is read or written before ``run``."""
+        """Read and write nothing before ``run``."""
         self.options = options
         self.screen = LastingScreen(screen, self._lose_screen)
         self.interrupts = 0
         self.run_: Run | None = None
-        """The part that runs in this process, or ran in it last."""
+        """The part that runs, or ran last, in this process."""
         self.folder: Path | None = None
         self.ending: RunEnding | None = None
         self.prompts = Prompts(automatic=screen.answer_yes)
-        """Of all parts that run in this process: each has a number of its own."""
+        """Prompts of all parts in this process; each prompt has its own number."""
         self.statistics = TickStatistics()
         self.track = TimeLeft([])
-        """Counts the steps of the whole run, once it is known."""
+        """Counts the steps of the whole run, once the plan exists."""
         self._level = StopLevel.NONE
         self._pool: WorkerPool | None = None
 
     def run(self) -> int:
-        """Run to the end; return the exit code. Raises InvalidSource for an invalid recipe or rig file,
-        FileNotFoundError where there is no such recipe, CannotStartError."""
+        """Run to the end; return the exit code.
+
+        Raises InvalidSource for an invalid recipe or rig file, FileNotFoundError for a missing recipe,
+        CannotStartError.
+        """
         options = self.options
         only_plain(operator=options.operator, recipe=options.recipe, rig=options.rig)
-        found = self.prepare()
-        work, rig, recipe = found.work, found.work.rig, found.recipe
+        preparation = self.prepare()
+        work, rig, recipe = preparation.work, preparation.work.rig, preparation.recipe
         faults = rig.faults + options.faults
         if faults:
             _check_faults(faults, rig)
@@ -129,22 +132,22 @@ class Session:
         self._foretell(rig)
         options.out.mkdir(parents=True, exist_ok=True)
         for left in cut_off(options.out):
-            self.screen.message(f"{left.name} was cut off: tester resume {left} goes on with it")
-        enough_room(options.out, work.plan, rig, found.expected)
+            self.screen.message(f"{left.name} was cut off: tester resume {left} resumes it")
+        enough_room(options.out, work.plan, rig, preparation.expected)
         with ExclusiveUse() as use:
             hold_rig(use, rig, work.plan.name)
             folder = make_folder(options.out, work.plan.name)
             hold_run(use, folder)
             write_sources(folder, recipe.tree.text, rig)
-            kept = kept_files(found.materials.files)
+            kept = kept_files(preparation.materials.files)
             write_materials(folder, kept)
-            for doubt in (*found.materials.doubts, *found.recipe.doubts):
+            for doubt in (*preparation.materials.doubts, *preparation.recipe.doubts):
                 self.screen.message(f"doubt: {doubt}")
-            begin = self._beginning(folder, found.path, recipe, work, kept)
+            begin = self._beginning(folder, preparation.path, recipe, work, kept)
             return self._record(self._job(folder, options.seed, rig), work, begin)
 
     def tracked(self, work: Work) -> TimeLeft:
-        """Return what counts the steps of a run."""
+        """Return the counter of a run's steps."""
         return TimeLeft(parts_time(work), earlier_of(work.point))
 
     def prepare(self) -> Prepared:
@@ -153,7 +156,7 @@ class Session:
         return prepared(options.recipe, options.rig, options.overrides, options.accept_risk)
 
     def resume(self, folder: Path, reason: str = "") -> int:
-        """Go on with an interrupted run; return the exit code. ``reason``: why it may although something changed.
+        """Resume an interrupted run; return the exit code. ``reason``: why it may resume although something changed.
 
         Raises CannotStartError, StoreError, InvalidSource.
         """
@@ -180,16 +183,18 @@ class Session:
             enough_room(folder, resumed.plan, resumed.rig)
             hold_rig(use, resumed.rig, folder.name)
             self.screen.message(resumed.summary)
-            # What is left goes on in the run's own record, one specimen after the other.
+            # The rest is recorded in the run's own record, one specimen after the other.
             work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan),), resumed.point)
             return self._record(self._job(folder, resumed.seed, resumed.rig), work, resumed.begin)
 
     def aside(self, work: Callable[[], Got]) -> Got:
-        """Do what reads or writes many files while nothing moves; a service hears its clients meanwhile."""
+        """Run slow file work while nothing moves; a service keeps serving its clients meanwhile."""
         return work()
 
     def stop(self, level: StopLevel) -> None:
-        """Stop the run, from a signal handler or another thread too: what is begun ends, and nothing more is begun."""
+        """Stop the run, even from a signal handler or another thread: the present part ends, and no further part
+        begins.
+        """
         self._level |= level
         if self._pool is not None:
             self._pool.stop(self._level)
@@ -197,7 +202,7 @@ class Session:
             self._level.tell(self.run_)
 
     def _lose_screen(self, text: str) -> None:
-        """Stop a run that nobody sees any more: it is not left to itself."""
+        """Stop a run that can no longer be shown: it must not continue unwatched."""
         if self.run_ is not None:
             self.run_.reason = self.run_.reason or text
         self.stop(StopLevel.UNSEEN)
@@ -205,20 +210,20 @@ class Session:
     # -- a watch over the part in this process (tester.run.part_run.Watch) -----------------------------------
 
     def begun(self, run: Run) -> None:
-        """Take notice of a part's run; a stop that came between two parts is for it."""
+        """Store the run of a part, and apply a stop that arrived between two parts."""
         self.run_ = run
         if self._level:
             self.stop(self._level)
 
     def say(self, text: str) -> None:
-        """Tell it at the screen."""
+        """Show a message on the screen."""
         self.screen.message(text)
 
     def rested(self) -> None:
-        """Nothing: who is at this screen asks for nothing while a record is closed."""
+        """Do nothing: the foreground takes no requests while a record is closed."""
 
     def poll(self, now_s: float, run: Run) -> None:
-        """Show the run, of which a part runs in this process, and attend to its prompts."""
+        """Show the run and attend to its prompts."""
         ctx = run.engine.ctx
         self.screen.show(now_s, ctx.progress, self.track.standing())
         self.screen.attend(ctx.prompts)
@@ -226,7 +231,7 @@ class Session:
             self._command(run, command)
 
     def _command(self, run: Run, command: str) -> None:
-        """Carry out what was asked for at the screen; what has no effect is said."""
+        """Carry out a command from the screen, or report why it has no effect."""
         refused = ""
         if command == "hold":
             refused = run.request_hold()
@@ -241,36 +246,36 @@ class Session:
     # -- parts ------------------------------------------------------------------------------------------------
 
     def _refusal(self, rig: Rig) -> str:
-        """Return why the options do not go with the rig or the recipe, "" where they do."""
+        """Return why the options do not fit the rig or the recipe, "" if they do."""
         jobs = self.options.jobs
         if jobs > 1 and not rig.simulated:
-            return f"--jobs {jobs}: only a simulated rig can be there several times, and this one is real"
+            return f"--jobs {jobs}: only a simulated rig can run several parts at a time, and this rig is real"
         if self.screen.answer_yes and not (self.screen.can_ask or counts_as_simulated(rig)):
-            return "--yes: nobody is at this terminal, and only a person can answer what is asked beside a real rig"
+            return "--yes: this is no interactive terminal, and only a person can answer the prompts of a real rig"
         if self.screen.answer_yes:
             return ""
         if jobs > 1:
-            return f"--jobs {jobs}: nobody can answer the prompts of several parts; use --yes, or one job"
+            return f"--jobs {jobs}: prompts of several parts at a time cannot be answered; use --yes, or one job"
         if not self.screen.can_ask:
-            return "the recipe asks a person, and nobody is at this terminal: use --yes"
+            return "the recipe has prompts, and this is no interactive terminal: use --yes"
         return ""
 
     def _foretell(self, rig: Rig) -> None:
-        """Say what somebody should know of a rig before it starts. Raises CannotStartError."""
+        """Show warnings about a rig before it starts. Raises CannotStartError."""
         for text in told_before(rig, date.fromisoformat(utc_now()[:10])):
             self.screen.message(text)
 
     def _job(self, folder: Path, seed: int, rig: Rig) -> Job:
         o = self.options
         history = self.aside(lambda: run_parts(rig).history(folder.parent, rig))
-        # One simulated in this process is built from its file anew each time: it has no settings of its own.
+        # A rig simulated in this process is rebuilt from its file each time: it keeps no settings.
         good = self.aside(lambda: last_good_run(rig, folder.parent)) if rig.can.interface != "sim" else None
         return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history, good)
 
     def _beginning(
         self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work, kept: Sequence[KeptFile]
     ) -> Begin:
-        """Return what begins the run's record: the whole plan, and where everything comes from."""
+        """Return the function that begins the run's record with the whole plan and its provenance."""
         o = self.options
         info = run_info(
             folder.name,
@@ -282,7 +287,7 @@ class Session:
             recipe_source=recipe_source(path),
             rig_source=rig_source(o.rig, o.overrides),
             risks=accepted_risks(work.rig, o.accept_risk),
-            materials=[one.stored for one in kept],
+            materials=[file.stored for file in kept],
         )
 
         def begin(writer: RunWriter) -> None:
@@ -315,14 +320,14 @@ class Session:
             return self._report(job.folder, self.ending)
 
     def _acknowledge(self, folder: Path, rig: Rig) -> None:
-        """Take this start as the acknowledgement of what has tripped on the rig before. Raises StoreError, OSError."""
-        found = open_trips(self.options.out, rig, folder)
-        for one in found:
-            self.screen.message(f"acknowledged by this start: {one}")
-        acknowledge(found, f"{self.options.operator or user()}, by the start of {folder.name}", folder)
+        """Record this start as the acknowledgement of earlier trips on the rig. Raises StoreError, OSError."""
+        trips = open_trips(self.options.out, rig, folder)
+        for trip in trips:
+            self.screen.message(f"acknowledged by this start: {trip}")
+        acknowledge(trips, f"{self.options.operator or user()}, by the start of {folder.name}", folder)
 
     def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
-        """Yield how the parts ended: one after the other in this process, or side by side in others."""
+        """Yield the parts' ends: run in turn in this process, or side by side in others."""
         if self.options.jobs > 1:
             yield from side_by_side(job, work, self.options.jobs, self._show, self._take)
             return
@@ -347,7 +352,7 @@ class Session:
 
     @contextmanager
     def _signals(self) -> Generator[None]:
-        """Stop on INT, TERM and HUP while the block lasts; only the main thread can be told."""
+        """Stop on INT, TERM and HUP while the block lasts; only the main thread receives signals."""
         if current_thread() is not main_thread():
             yield
             return
@@ -355,7 +360,7 @@ class Session:
             yield
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
-        """Stop: TERM, HUP and a first INT in a controlled way, a second INT and QUIT fast."""
+        """Stop in a controlled way on TERM, HUP and a first INT, fast on a second INT and on QUIT."""
         if number == QUIT:
             self.stop(StopLevel.FAST)
             return
@@ -368,9 +373,9 @@ class Session:
     # -- results ----------------------------------------------------------------------------------------------
 
     def _report(self, folder: Path, ending: RunEnding) -> int:
-        """Write the tables, say what to do about what is missing in them, and return the exit code.
+        """Write the tables, print advice about missing values, and return the exit code.
 
-        Conditions that the run did not come to are no news each: the screen's result counts them.
+        Conditions that the run did not reach are not listed; the screen's result counts them.
         """
         try:
             lost, advice = self.aside(lambda: _tables(folder))
@@ -390,11 +395,11 @@ class Session:
 
 
     def _without_tables(self, folder: Path, ending: RunEnding, why: str) -> int:
-        """Say how a run has ended whose tables cannot be written, and return the exit code."""
+        """Report the end of a run whose tables cannot be written, and return the exit code."""
         self.screen.message(f"{ending.outcome.value}: {ending.reason}" if ending.reason else ending.outcome.value)
         if ending.failed:
             self.screen.message(f"not everything could be recorded: {ending.failed}")
-        then = f"; then `tester resume {folder}` goes on" if (folder / DATABASE).is_file() else ""
+        then = f"; `tester resume {folder}` tries again" if (folder / DATABASE).is_file() else ""
         self.screen.message(f"the tables cannot be written: {why}{then}")
         code = EXIT_CODES[Outcome.FAILED]
         self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": []})
@@ -403,7 +408,7 @@ class Session:
 
 
 def _tables(folder: Path) -> tuple[list[TableRow], list[str]]:
-    """Write a run's tables; return what is missing in them, and lines of advice and of wear."""
+    """Write a run's tables; return the rows without a value, and lines of advice and of wear."""
     lost = list(write_all(folder))
     advice = [row.advise() for row in [*(row for row in lost if row.tried), *doubtful(folder)]]
     with RunReader(folder) as reader:
@@ -411,7 +416,7 @@ def _tables(folder: Path) -> tuple[list[TableRow], list[str]]:
 
 
 def _check_faults(texts: tuple[str, ...], rig: Rig) -> None:
-    """Raise CannotStartError for a fault script that cannot be read, or a rig that is real."""
+    """Raise CannotStartError for an invalid fault script or a real rig."""
     if rig.can.interface != "sim":
         raise CannotStartError("faults happen only on a rig that is simulated in this process", EXIT_USAGE)
     from sim import machines

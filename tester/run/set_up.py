@@ -1,4 +1,4 @@
-"""What devices were set to, as runs have it on record: what a connect writes, what differs from the last good run."""
+"""Device settings in stored runs: what a connect writes, and what differs from the last good run."""
 
 from __future__ import annotations
 
@@ -20,44 +20,44 @@ from tester.store.records import StoredParameter
 from tester.store.schema import StoreError
 
 NAMED = 8
-"""So many differences are told one by one at a run's start; of more the number is."""
+"""Most differences listed at a run's start; further ones are counted."""
 
 
 def written(config: AxisConfig) -> dict[Key, int]:
-    """Return what every connect writes into an axis' drive but for its process data, by object.
+    """Return what every connect writes into an axis' drive, by object, except for its process data.
 
-    What stands in for an object that the maker's drive lacks has another value, which follows from the drive: it is
-    left out, as are homing parameters of an axis that is not homed.
+    Left out: substitutes for objects that the maker's drive lacks, whose values follow from the drive, and homing
+    parameters of an axis that is not homed.
     """
-    made = plan(config)
-    settings = [*made.settings, *made.homing] if config.mode == "position" else made.settings
-    found = {one.key: one.value for one in settings if one.substitute is None}
-    return found | {(o.PRODUCER_HEARTBEAT, 0): round(config.heartbeat_s * 1000)}
+    settings_plan = plan(config)
+    settings = [*settings_plan.settings, *settings_plan.homing] if config.mode == "position" else settings_plan.settings
+    values = {setting.key: setting.value for setting in settings if setting.substitute is None}
+    return values | {(o.PRODUCER_HEARTBEAT, 0): round(config.heartbeat_s * 1000)}
 
 
 def mapped(config: AxisConfig) -> dict[Key, int]:
     """Return what every connect writes into the objects of an axis' process data, by object."""
-    found: dict[Key, int] = {}
-    for one in plan(config).pdos:
-        if one.mapped is None:
+    values: dict[Key, int] = {}
+    for pdo in plan(config).pdos:
+        if pdo.mapped is None:
             continue
-        found[one.communication, 1] = one.cob_id
-        found[one.communication, 2] = one.kind
-        entries = one.mapped.parameters()
-        found[one.mapping, 0] = len(entries)
-        found |= {(one.mapping, sub): entry for sub, entry in enumerate(entries, start=1)}
-    return found
+        values[pdo.communication, 1] = pdo.cob_id
+        values[pdo.communication, 2] = pdo.kind
+        entries = pdo.mapped.parameters()
+        values[pdo.mapping, 0] = len(entries)
+        values |= {(pdo.mapping, sub): entry for sub, entry in enumerate(entries, start=1)}
+    return values
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceParameter:
-    """One parameter as it was read."""
+    """One parameter, as read."""
 
     value: str
     name: str = ""
-    """What it is, in words."""
+    """Its name, in words."""
     written: bool = False
-    """A connect writes it: where it differs before one, nothing is wrong."""
+    """A connect writes it, so a difference before the connect is no fault."""
 
 
 Parameters = Mapping[str, Mapping[str, DeviceParameter]]
@@ -66,7 +66,7 @@ Parameters = Mapping[str, Mapping[str, DeviceParameter]]
 
 @dataclass(frozen=True, slots=True)
 class ParameterDifference:
-    """A parameter that is not what it was; ``str`` gives its line. ``was`` or ``found`` is None where it is missing."""
+    """A changed parameter; ``str`` gives its line. ``was`` or ``found`` is None if it is missing."""
 
     device: str
     key: str
@@ -74,29 +74,29 @@ class ParameterDifference:
     was: str | None
     found: str | None
     written: bool = field(default=False)
-    """A connect writes it, so that it does not matter before one."""
+    """A connect writes it, so the difference does not matter before a connect."""
 
     def __str__(self) -> str:
-        """Return the line that is printed."""
+        """Return the printed line."""
         named = f" ({self.name})" if self.name else ""
         was = "missing" if self.was is None else self.was
-        found = "missing" if self.found is None else self.found
-        return f"{self.device} {self.key}{named}: was {was}, is {found}"
+        now = "missing" if self.found is None else self.found
+        return f"{self.device} {self.key}{named}: was {was}, is {now}"
 
 
 def stored(rig: Rig, rows: Iterable[StoredParameter]) -> Parameters:
-    """Return what a run has stored of its devices, as far as a dump has it; the last value of each counts.
+    """Return a run's stored device parameters, as far as a dump has them; the last value of each counts.
 
-    Commands that a connect reads back are no set-up, and are left out.
+    Leaves out commands that a connect reads back: they are not settings.
     """
     written = {name: written_at_connect(config) for name, config in rig.drives().items()}
     kept = {object_key(key) for key in (*IDENTITY, *KEPT)}
-    found: dict[str, dict[str, DeviceParameter]] = {}
+    parameters: dict[str, dict[str, DeviceParameter]] = {}
     for row in rows:
         by_connect = row.device in written and row.parameter in written[row.device]
         if row.device not in written or by_connect or row.parameter in kept:
-            found.setdefault(row.device, {})[row.parameter] = DeviceParameter(row.value, row.name, by_connect)
-    return found
+            parameters.setdefault(row.device, {})[row.parameter] = DeviceParameter(row.value, row.name, by_connect)
+    return parameters
 
 
 def written_at_connect(config: AxisConfig) -> set[str]:
@@ -104,7 +104,7 @@ def written_at_connect(config: AxisConfig) -> set[str]:
 
 
 def last_good(rig: Rig, runs: Path) -> Path | None:
-    """Return the folder of the newest run on a rig of this name that went through its plan; None: there is none."""
+    """Return the folder of the newest run on a rig of this name that completed its plan; None without any."""
     for folder in sorted(run_folders(runs), key=lambda path: path.name, reverse=True):
         try:
             with RunReader(folder) as reader:
@@ -119,41 +119,41 @@ def last_good(rig: Rig, runs: Path) -> Path | None:
 
 
 def differences(before: Parameters, now: Parameters) -> list[ParameterDifference]:
-    """Return what differs, of parameters that ``before`` has; by device, in its order."""
-    found: list[ParameterDifference] = []
+    """Return the parameters of ``before`` that differ, by device, in its order."""
+    changes: list[ParameterDifference] = []
     for device, parameters in before.items():
         present = now.get(device, {})
-        for key, one in parameters.items():
+        for key, earlier in parameters.items():
             other = present.get(key)
-            if other is None or other.value != one.value:
-                name = (other.name if other is not None else "") or one.name
-                written = one.written or (other is not None and other.written)
+            if other is None or other.value != earlier.value:
+                name = (other.name if other is not None else "") or earlier.name
+                written = earlier.written or (other is not None and other.written)
                 value = None if other is None else other.value
-                found.append(ParameterDifference(device, key, name, one.value, value, written))
-    return found
+                changes.append(ParameterDifference(device, key, name, earlier.value, value, written))
+    return changes
 
 
 @dataclass(frozen=True, slots=True)
 class GoodRun:
-    """What the devices were set to in the last good run, and which that was: plain data."""
+    """The device settings of the last good run, and its name: plain data."""
 
     name: str
     devices: Parameters
 
     def told(self, rig: Rig, rows: Iterable[StoredParameter]) -> str:
-        """Return what of ``rows``, read while connecting, is not as it was then; "" where all is."""
+        """Return the differences between ``rows``, read while connecting, and the good run; "" without any."""
         now = stored(rig, rows)
         before = {
-            device: {key: one for key, one in parameters.items() if key in now[device]}
+            device: {key: value for key, value in parameters.items() if key in now[device]}
             for device, parameters in self.devices.items() if device in now
         }  # fmt: skip
-        found = [str(one) for one in differences(before, now)]
-        more = f"; and {len(found) - NAMED} more" if len(found) > NAMED else ""
-        return f"not as in the last good run {self.name}: {'; '.join(found[:NAMED])}{more}" if found else ""
+        lines = [str(difference) for difference in differences(before, now)]
+        more = f"; and {len(lines) - NAMED} more" if len(lines) > NAMED else ""
+        return f"differs from the last good run {self.name}: {'; '.join(lines[:NAMED])}{more}" if lines else ""
 
 
 def last_good_run(rig: Rig, runs: Path) -> GoodRun | None:
-    """Return the newest run on a rig of this name that went through its plan; None where none can be read."""
+    """Return the newest run on a rig of this name that completed its plan; None without a readable one."""
     folder = last_good(rig, runs)
     if folder is None:
         return None

@@ -1,4 +1,4 @@
-"""What a person, or a script, can tell a simulated rig while it lives: faults, its speed, how it is."""
+"""Commands that a person or a script gives a simulated rig while it runs: faults, its speed, its state."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from sim.rig import SimRig
 from tester.base import clock
 
 SLOWEST, FASTEST = 0.01, 100.0
-"""Bounds of a speed [A]: below, nobody waits for anything; above, no computer keeps up."""
+"""Bounds of a speed [A]: a slower rig takes too long to watch; no computer keeps up with a faster one."""
 
 HELP = (
     "fault WHAT [VALUE] [for TIME]   from now on, e.g.: fault belt drive heartbeat lost for 3 s",
     "fault t=TIME: WHAT ...          at a time of the rig's clock, e.g.: fault t=130 s: load cell gain 70 %",
-    "faults                          what is wrong now, and what is to come",
-    "clear                           end all of it",
-    "catalogue [WORD]                every fault there is, or those with a word in their name",
-    "speed [X]                       let the rig live X times as fast, for every program at it",
+    "faults                          list active and planned faults",
+    "clear                           end all faults",
+    "catalogue [WORD]                list all faults, or those with a word in their name",
+    "speed [X]                       run the rig X times as fast, for every program at it",
     "idle speed [X]                  the same while no program is on its CAN bus",
     "state                           the rig's true state",
     "end                             end the rig",
@@ -31,12 +31,12 @@ HELP = (
 class RigClock:
     """Seconds of the rig: this computer's clock, ``speed`` times as fast.
 
-    With another speed than 1 every program at the rig sees it live faster or slower than its own clock: a time-out of
-    T s in a simulated device is over after T/speed s of the program's clock.
+    At any speed but 1, every program at the rig sees it run faster or slower than its own clock: a time-out of T s in a
+    simulated device is over after T/speed s of the program's clock.
     """
 
     def __init__(self, speed: float = 1.0, idle_speed: float | None = None, now: Callable[[], float] = clock.monotonic):
-        """Begin at 0 s. ``idle_speed`` counts while no program is on the CAN bus, None = ``speed`` then too."""
+        """Begin at 0 s. ``idle_speed`` applies while no program is on the CAN bus; None = ``speed`` applies always."""
         self._now = now
         self._origin_s = now()
         self._rig_s = 0.0
@@ -45,34 +45,34 @@ class RigClock:
 
     @property
     def speed(self) -> float:
-        """Seconds of the rig in a second of this computer's clock, just now."""
+        """Seconds of the rig in a second of this computer's clock, at present."""
         always, idle = self._speeds
         return always if self._controlled or idle is None else idle
 
     @property
     def idle_speed(self) -> float | None:
-        """Speed while no program is on the CAN bus; None = the same as else."""
+        """Speed while no program is on the CAN bus; None = ``speed``."""
         return self._speeds[1]
 
     def __call__(self) -> float:
-        """Return seconds of the rig."""
+        """Return the rig's time, s."""
         return self._rig_s + (self._now() - self._origin_s) * self.speed
 
     def computer_s(self, rig_s: float) -> float:
-        """Return this computer's clock at a time of the rig, s, as if the speed had been the same since then."""
+        """Return this computer's clock at a time of the rig, s, assuming the present speed since then."""
         return self._origin_s + (rig_s - self._rig_s) / self.speed
 
     def set(self, speed: float | None = None, idle_speed: float | None = None) -> None:
-        """Go on at other speeds; None leaves one as it is. Raises ValueError for what is no speed."""
-        for one in (speed, idle_speed):
-            if one is not None and not SLOWEST <= one <= FASTEST:
-                raise ValueError(f"a speed is {SLOWEST:g} to {FASTEST:g}, not {one:g}")
+        """Change the speeds; None keeps a speed. Raises ValueError for a speed out of bounds."""
+        for value in (speed, idle_speed):
+            if value is not None and not SLOWEST <= value <= FASTEST:
+                raise ValueError(f"a speed is {SLOWEST:g} to {FASTEST:g}, not {value:g}")
         self._settle()
         was, idle = self._speeds
         self._speeds = (was if speed is None else speed, idle if idle_speed is None else idle_speed)
 
     def controlled(self, so: bool) -> None:
-        """Take note whether a program is on the CAN bus."""
+        """Note whether a program is on the CAN bus."""
         if so is not self._controlled:
             self._settle()
             self._controlled = so
@@ -84,10 +84,10 @@ class RigClock:
 
 
 class SpoiledLife:
-    """A rig's life with faults that come by command."""
+    """Advances a rig, with faults that come by command."""
 
     def __init__(self, rig: SimRig) -> None:
-        """Begin with nothing wrong."""
+        """Begin without faults."""
         self.script = FaultScript()
         self.scene = Scene(rig, _NotHere())
         self._rig = rig
@@ -98,14 +98,14 @@ class SpoiledLife:
         return self.script.due_s
 
     def advance(self, now: float) -> None:
-        """Let the rig live until ``now`` s, and let happen on the way what is to happen."""
+        """Advance the rig to ``now`` s, beginning and ending faults on the way."""
         script = self.script
         while script.due_s <= now:
             due_s = max(script.due_s, self._rig.now_s)
             self._live(due_s)
             try:
                 script.act(self.scene, due_s)
-            except (LookupError, TypeError, AttributeError) as error:  # what a fault is of, this rig does not have
+            except (LookupError, TypeError, AttributeError) as error:  # the rig lacks the part that the fault concerns
                 script.happened.append((due_s, f"a fault did not begin: this rig has no {error}"))
         self._live(now)
 
@@ -116,7 +116,7 @@ class SpoiledLife:
 
 
 class _NotHere:
-    """The controlling program of another process: nothing here can stop it or press its keys."""
+    """Stands in for the controlling program, which is another process: faults cannot stop it or press its keys."""
 
     def stall(self, seconds: float) -> None:
         """Do nothing."""
@@ -134,11 +134,11 @@ class _NotHere:
 class SimConsole:
     """Answers commands: ``command`` takes a line and the rig's time, and returns the lines of the answer.
 
-    ``ended`` is set by ``end``. What begins and ends by itself is told to ``say``.
+    ``ended`` is set by the command ``end``. ``happened`` returns the faults that began or ended by themselves.
     """
 
     def __init__(self, life: SpoiledLife, machine: SimulatedMachine, rig: SimRig, clock: RigClock) -> None:
-        """Speak for a rig."""
+        """Begin a console for a rig."""
         self._life = life
         self._machine = machine
         self._rig = rig
@@ -147,7 +147,7 @@ class SimConsole:
         self.ended = False
 
     def command(self, line: str, now: float) -> Sequence[str]:
-        """Do what a line says at ``now`` s of the rig. Whatever it says, the answer is text: nothing is raised."""
+        """Carry out a command at ``now`` s of the rig. An error is answered as text, never raised."""
         words = line.split()
         match words:
             case []:
@@ -159,11 +159,11 @@ class SimConsole:
             case ["clear"]:
                 count = len(self._life.script.active)
                 self._life.script.clear(self._life.scene, now)
-                return (f"{count} ended; nothing is to come",)
+                return (f"{count} ended; no fault is planned",)
             case ["catalogue", *word]:
                 known = sorted(self._known().catalogue)
-                found = tuple(phrase for phrase in known if all(one in phrase for one in word))
-                return found or ("none of that name",)
+                matching = tuple(phrase for phrase in known if all(part in phrase for part in word))
+                return matching or ("none of that name",)
             case ["speed", *factor]:
                 return self._speed(factor, idle=False)
             case ["idle", "speed", *factor]:
@@ -179,13 +179,13 @@ class SimConsole:
                 return (f"unknown command {line!r}; help lists them",)
 
     def happened(self) -> list[str]:
-        """Return what has begun and ended since the last call."""
-        said = [f"{t:.3f} s  {text}" for t, text in self._life.script.happened]
+        """Return the faults that began and ended since the last call."""
+        lines = [f"{t:.3f} s  {text}" for t, text in self._life.script.happened]
         self._life.script.happened.clear()
-        return said
+        return lines
 
     def status(self) -> str:
-        """Return the rig in one line."""
+        """Return the rig's state in one line."""
         script = self._life.script
         wrong = f"{len(script.active)} wrong" if script.active else "nothing wrong"
         return f"{self._rig.now_s:.1f} s  x{self._clock.speed:g}  {wrong}  {'  '.join(self._state())}"
@@ -203,7 +203,7 @@ class SimConsole:
             return str(error).splitlines()
         when = injection.when
         if when.at_s == inf:
-            return ("no fault: scans and steps are those of the program at the rig; expected 't=TIME: ...' or no time",)
+            return ("no fault: this console knows no scans or steps of the program; expected 't=TIME: ...' or no time",)
         if isinstance(injection.kind.effect(injection.value), Stall | Killed | ClockJump | Operator):
             return (f"no fault: {injection.kind.phrase!r} concerns the program at the rig, which is another process",)
         if timed and when.at_s < now:
@@ -215,13 +215,13 @@ class SimConsole:
 
     def _faults(self, now: float) -> Sequence[str]:
         script = self._life.script
-        ends = {id(one.effect): one.at_s for one in script.planned if not one.begins}
-        said = [
-            f"now: {one.text}" + (f" (ends at {ends[id(one.effect)]:.3f} s)" if id(one.effect) in ends else "")
-            for one in script.active
+        ends = {id(change.effect): change.at_s for change in script.planned if not change.begins}
+        lines = [
+            f"now: {change.text}" + (f" (ends at {ends[id(change.effect)]:.3f} s)" if id(change.effect) in ends else "")
+            for change in script.active
         ]
-        said += [f"in {one.at_s - now:.1f} s: {one.text}" for one in script.planned if one.begins]
-        return said or ("nothing is wrong",)
+        lines += [f"in {change.at_s - now:.1f} s: {change.text}" for change in script.planned if change.begins]
+        return lines or ("nothing is wrong",)
 
     def _speed(self, words: Sequence[str], *, idle: bool) -> Sequence[str]:
         try:
@@ -234,8 +234,8 @@ class SimConsole:
         except ValueError as error:
             return (str(error),)
         speed, idle_speed = self._clock.speed, self._clock.idle_speed
-        said = f"{speed:g} x: 100 ms of a device's time-out are over after {100.0 / speed:.3g} ms of a program's clock"
-        return (said, *([f"{idle_speed:g} x while no program is on the CAN bus"] if idle_speed is not None else []))
+        answer = f"{speed:g} x: a device's time-out of 100 ms takes {100.0 / speed:.3g} ms of a program's clock"
+        return (answer, *([f"{idle_speed:g} x while no program is on the CAN bus"] if idle_speed is not None else []))
 
     def _state(self) -> list[str]:
         row = self._machine.log_row(self._rig)

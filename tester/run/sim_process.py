@@ -1,4 +1,4 @@
-"""The simulated rig in a process of its own, in real time: what `tester sim` runs."""
+"""The simulated rig as a process, in real time: the work of `tester sim`."""
 
 from __future__ import annotations
 
@@ -64,15 +64,16 @@ def _text(address: tuple[str, int]) -> str:
 
 
 SHOWN_EVERY_S = 1.0
-"""How often the status line is written, s of this computer's clock."""
+"""Period of the status line, s of this computer's clock."""
 LOG_COLUMNS = ("time_s", "clock_s", "controlled")
-"""What a state log begins with, a row every step of 10 ms: seconds of the rig and of this machine's monotonic clock, 1
-while a program is on the CAN bus. The plant's true values follow, those that its kind names."""
+"""First columns of a state log, with a row every step of 10 ms: seconds of the rig and of this machine's monotonic
+clock, 1 while a program is on the CAN bus. The plant's true values follow; its kind names them.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class SimOptions:
-    """What the command line said."""
+    """Options of the command line."""
 
     rig: str = "sim"
     overrides: tuple[str, ...] = ()
@@ -83,19 +84,19 @@ class SimOptions:
     speed: float = 1.0
     idle_speed: float | None = None
     control: int | None = None
-    """Port of the commands, 0 = any free one; None = no such door."""
+    """Port for commands, 0 = any free port; None = no such door."""
     typed: bool = False
-    """Take commands from standard input."""
+    """Read commands from standard input."""
     write_rig: Path | None = None
     log: Path | None = None
     bus_log: Path | None = None
 
 
 class StateLog:
-    """Writes the rig's state as CSV; every row is handed to the operating system at once."""
+    """Writes the rig's state as CSV, unbuffered: every row goes to the operating system at once."""
 
     def __init__(self, path: Path, rig_clock: RigClock, machine: machines.SimulatedMachine) -> None:
-        """Create the file; ``machine``: the kind that the rig is."""
+        """Create the file; ``machine``: the rig's kind."""
         self._file = path.open("w", encoding="utf-8", newline="\n", buffering=1)
         self._clock = rig_clock
         self._machine = machine
@@ -113,13 +114,12 @@ class StateLog:
 
 
 def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str], None] | None = None) -> float:
-    """Run a simulated rig until this process is asked to end (TERM, INT, or a command); return how late it has been at
-    most, s of this computer's clock at the speed of then.
+    """Run a simulated rig until this process is asked to end (TERM, INT, or a command).
 
-    ``say`` is called with a line that says where everything is, once clients can connect and the rig file is written,
-    and with the answers to commands; ``show``, where given, every second with the rig in one line.
-    Raises InvalidSource for an invalid rig file, ValueError for a door that there is not or a fault that is none,
-    and OSError where a port, a device, an interface or a file cannot be had.
+    Returns the greatest lateness, s of this computer's clock at the last speed. ``say`` gets a line with all addresses,
+    once clients can connect and the rig file is written, and then the answers to commands; ``show``, if given, gets the
+    rig's state in one line every second. Raises InvalidSource for an invalid rig file, ValueError for an unknown door
+    or fault, and OSError if a port, a device, an interface or a file is not available.
     """
     config = _on_doors(load_rig(options.rig, options.overrides, options.accept_risk), options.doors)
     kind = run_parts(config)
@@ -165,7 +165,8 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
 
 
 class _Observers:
-    """Whoever looks at the rig every step: the log, the clock (is it idle?), and who reads what happens."""
+    """Everything that looks at the rig in every step: the log, the clock (is the rig idle?), and the reader of events.
+    """
 
     def __init__(
         self,
@@ -176,13 +177,13 @@ class _Observers:
         say: Callable[[str], None],
         show: Callable[[str], None] | None,
     ) -> None:
-        """Look from now on."""
+        """Observe from now on."""
         self._server, self._clock, self._console = server, rig_clock, console
         self._state_log, self._say, self._show = state_log, say, show
         self._shown_s = -SHOWN_EVERY_S
 
     def observe(self, rig: SimRig, controlled: bool) -> None:
-        """Take note."""
+        """Log the step, update the clock, and report events."""
         if self._state_log is not None:
             self._state_log.observe(rig, controlled)
         self._clock.controlled(controlled)
@@ -197,14 +198,14 @@ class _Observers:
 
 
 def _on_doors(config: Rig, doors: Doors) -> Rig:
-    """Return the rig as its doors can carry it: a pseudo-terminal has no parity bit, so its lines have none either."""
+    """Return the rig as its doors can carry it: a pseudo-terminal has no parity bit, so its lines have none."""
     if doors.lines != "rtu":
         return config
     return replace(config, lines={name: replace(line, parity="N") for name, line in config.lines.items()})
 
 
 def _reached(config: Rig, server: RigServer) -> Rig:
-    """Return the rig as it is reached through a server's doors."""
+    """Return the rig with the addresses of a server's doors."""
     can = server.can.place
     lines = {name: (place.at, place.speaks == GATEWAY) for name, place in server.line_places.items()}
     spoken = sorted({can.speaks, *(place.speaks for place in server.line_places.values())})
@@ -213,25 +214,25 @@ def _reached(config: Rig, server: RigServer) -> Rig:
 
 
 class EndAsked:
-    """Turns TERM and INT into an answer to the question whether to end."""
+    """Catches TERM and INT, and reports whether either has arrived."""
 
     def __init__(self) -> None:
-        """Nobody has asked."""
+        """Begin without a request."""
         self._asked = False
 
     def __call__(self) -> bool:
-        """Tell whether this process has been asked to end."""
+        """Return whether this process has been asked to end."""
         return self._asked
 
     def __enter__(self) -> EndAsked:
-        """Take the signals over."""
+        """Install the signal handlers."""
         self._restore = {number: signal.signal(number, self._on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        """Give the signals back."""
+        """Restore the earlier handlers."""
         for number, handler in self._restore.items():
             signal.signal(number, handler)
 
@@ -240,7 +241,7 @@ class EndAsked:
 
 
 def write_atomically(path: Path, text: str) -> None:
-    """Write a file that others see whole or not at all."""
+    """Write a file so that readers see all of it or nothing."""
     part = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         part.write_text(text, encoding="utf-8", newline="\n")

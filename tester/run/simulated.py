@@ -1,4 +1,4 @@
-"""The simulated rig of a run in this process: its wires, and the truth that it knows."""
+"""The simulated rig of a run in this process: its wires, and its true values."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def simulated_ports(
 ) -> tuple[Ports, SimRig, Any]:
     """Return the wires of a new simulated rig, the rig, and the hands at it (the same object).
 
-    Raises InvalidSource where a sensor is to show what the plant does not have.
-    ``can_wire``: the kind of bus, ``sim.faults.can.FaultyCanWire`` where it is to be spoiled. ``recipe``: beside which
-    file materials are looked for first; ``surface``: the name of the track that it says.
+    Raises InvalidSource if a sensor shows a quantity that the plant lacks. ``can_wire``: the class of the bus,
+    ``sim.faults.can.FaultyCanWire`` for faults. ``recipe``: materials are searched beside this file first; ``surface``:
+    the recipe's name of the track.
     """
     try:
         world = machines.find(run_parts(rig).plant).world(spec_of(rig), rig.plant, seed, can_wire)

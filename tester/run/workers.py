@@ -1,4 +1,4 @@
-"""Parts side by side, each in a worker process."""
+"""Runs parts side by side, each in a worker process."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tester.run.part_run import run_part
 from tester.run.pool import WorkerPool, say, stop_level
 
 POLL_S = 0.1
-"""How often the parent looks for reports, s of wall time."""
+"""Period at which the parent reads reports, s of wall time."""
 
 
 class Sight(NamedTuple):
-    """How far a part is: its rig time in s, what it does, and where it is among its own steps."""
+    """A part's progress: its rig time in s, its activity, and its position among its own steps."""
 
     now_s: float
     progress: Progress
@@ -35,10 +35,10 @@ class Sight(NamedTuple):
 def side_by_side(
     job: Job, work: Work, jobs: int, show: Callable[[Sight], None], pool_made: Callable[[WorkerPool], None]
 ) -> Iterator[PartEnd]:
-    """Carry out a run's parts in up to ``jobs`` processes; yield how they ended, as they end.
+    """Run the parts in up to ``jobs`` processes; yield their ends as they come.
 
-    A part that does not end well stops the others in a controlled way; parts that were not begun by then yield nothing.
-    ``pool_made`` gets the pool, through which a stop can be ordered.
+    A part that fails stops the others in a controlled way; parts not begun by then yield nothing. ``pool_made`` gets
+    the pool, for ordering a stop.
     """
     with WorkerPool(min(jobs, len(work.parts))) as pool:
         pool_made(pool)
@@ -58,7 +58,7 @@ def side_by_side(
 
 
 def longest_first(work: Work) -> list[int]:
-    """Return the numbers of a run's parts, what is expected to take longest first: it must not be left for the end."""
+    """Return the numbers of a run's parts, the longest expected first, so that it is not left for the end."""
     expected_s = {part.number: recipe_part(work.rig).estimate(part.plan, work.rig).rig_seconds for part in work.parts}
     return sorted(expected_s, key=lambda number: (-expected_s[number], number))
 
@@ -71,7 +71,7 @@ def _end_of(future: Future[PartEnd | None], part: int) -> PartEnd | None:
 
 
 def run_in_worker(job: Job, number: int) -> PartEnd | None:
-    """Carry out one part in this process, prompts answered with yes; None where a stop came first."""
+    """Run a part in this process, answering prompts with yes; return None if a stop came first."""
     if stop_level():
         return None
     work = _work_of(job)
@@ -86,7 +86,7 @@ def _work_of(job: Job) -> Work:
 
 
 class _Reporting:
-    """A watch that tells the parent how far the part is, and hears from it when to stop."""
+    """A watch that reports the part's progress to the parent, and stops the part when the parent asks."""
 
     def __init__(self, part: int, parts: int, track: TimeLeft) -> None:
         self.part, self.parts, self.track = part, parts, track
@@ -94,17 +94,17 @@ class _Reporting:
         self._heard = StopLevel.NONE
 
     def begun(self, run: Run) -> None:
-        """Obey a stop that was ordered meanwhile."""
+        """Obey a stop that arrived meanwhile."""
         self._obey(run)
 
     def say(self, text: str) -> None:
-        """Nothing: it stands in the record; only simulated rigs are there several times."""
+        """Do nothing: the record has the message, and only simulated rigs run several parts at a time."""
 
     def rested(self) -> None:
-        """Nothing: the parent hears STOP."""
+        """Do nothing: the parent takes STOP."""
 
     def poll(self, now_s: float, run: Run) -> None:
-        """Report and obey."""
+        """Report progress and obey a stop."""
         at = replace(self.track.standing(), part=self.part, parts=self.parts, beside=True)
         say(Sight(now_s, run.engine.ctx.progress, at))
         self._obey(run)

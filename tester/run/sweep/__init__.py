@@ -1,1 +1,1 @@
-"""Monte Carlo of a recipe: many seeds, and values of rig-file parameters, on simulated rigs."""
+"""Monte Carlo of a recipe on simulated rigs: many seeds, and values of rig-file parameters."""

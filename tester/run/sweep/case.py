@@ -1,4 +1,4 @@
-"""One run of a sweep: carried out in whatever process it is given to, and returned as plain data."""
+"""One run of a sweep: runs in any process, and returns plain data."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NOT_RUN = "not run"
 
 @dataclass(frozen=True, slots=True)
 class SweepTask:
-    """What a process needs for one run: texts, so that it may be on another machine.
+    """One run as texts, so that it may go to another machine.
 
     ``case`` counts from 1: point after point, seed after seed.
     """
@@ -39,12 +39,12 @@ class SweepTask:
     recipe_text: str
     rig_text: str
     materials: tuple[KeptFile, ...] = ()
-    """Files of the compounds and the surface that the recipe names."""
+    """Files of the recipe's compounds and surface."""
 
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """One row of the recipe's table: its nominal setpoints, and its cells of the table of conditions by their keys."""
+    """One row of the recipe's table: its nominal setpoints, and its cells of the table of conditions by key."""
 
     row: int
     setpoint: Setpoint
@@ -52,24 +52,26 @@ class RowResult:
 
     @property
     def ok(self) -> bool:
-        """Return whether it has a value to be trusted."""
+        """Whether it has a trustworthy value."""
         return self.cells["status"] == ConditionStatus.OK
 
     @property
     def with_care(self) -> bool:
-        """Return whether it has a value that carries a doubt."""
+        """Whether its value carries a doubt."""
         return self.cells["mark"] == WITH_CARE
 
     def number(self, key: str) -> float:
-        """Return a number of a row that has a value to be trusted; NaN for any other row."""
+        """Return a number of a row with a trustworthy value; NaN for any other row."""
         value = self.cells[key]
         return value if self.ok and isinstance(value, int | float) else NAN
 
 
 @dataclass(frozen=True, slots=True)
 class CaseResult:
-    """How one run ended: exit code as that of ``tester run``, rig time in s, how often something was
-    mounted to be measured, rows of its table."""
+    """How one run ended.
+
+    Exit code as of ``tester run``; rig time in s; how often a specimen was mounted; rows of its table.
+    """
 
     case: int
     point: tuple[str, ...]
@@ -83,7 +85,7 @@ class CaseResult:
 
     @property
     def missing(self) -> int:
-        """Rows without a value to be trusted."""
+        """Rows without a trustworthy value."""
         return sum(not row.ok for row in self.rows)
 
     @property
@@ -93,7 +95,7 @@ class CaseResult:
 
 
 def run_case(task: SweepTask) -> CaseResult:
-    """Run a recipe on a simulated rig as ``tester run --yes`` does, in a folder that does not outlast it."""
+    """Run a recipe on a simulated rig as ``tester run --yes`` does, in a temporary folder."""
     with TemporaryDirectory(prefix="sweep-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         recipe, rig = folder / "recipe.yaml", folder / "rig.yaml"
@@ -118,7 +120,7 @@ def run_case(task: SweepTask) -> CaseResult:
 
 
 def not_run(task: SweepTask, error: BaseException) -> CaseResult:
-    """Return the result of a case that raised instead of returning one."""
+    """Return the result of a case that raised an error."""
     reason = f"{type(error).__name__}: {in_words(error)}".strip(": ")
     return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
 
@@ -128,7 +130,7 @@ def _row(one: ConditionRow) -> RowResult:
 
 
 class Unseen:
-    """A screen that nobody looks at; a stop that is ordered of the pool reaches the session through it."""
+    """A screen without output; it forwards the pool's stop to the session."""
 
     answer_yes = True
     can_ask = False
@@ -141,19 +143,19 @@ class Unseen:
         """Show nothing."""
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Look whether somebody wants the sweep to stop."""
+        """Forward a stop of the sweep."""
         level = stop_level()
         if level and self.session is not None:
             self.session.stop(level)
 
     def attend(self, prompts: Prompts) -> None:
-        """Ask nobody."""
+        """Do nothing: prompts are answered automatically."""
 
     def end(self) -> None:
-        """Take nothing away."""
+        """Do nothing."""
 
     def message(self, text: str) -> None:
-        """Keep what is said, for a run that does not begin."""
+        """Keep the message, in case the run does not begin."""
         self.said.append(text)
 
     def emit(self, record: dict[str, object]) -> None:

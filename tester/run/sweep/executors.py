@@ -1,4 +1,4 @@
-"""Where the runs of a sweep are carried out: processes of this machine, or a Dask cluster."""
+"""Executors for the runs of a sweep: processes of this machine, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tester.run.sweep.case import CaseResult, SweepTask
 
 
 class NoClusterError(Exception):
-    """The cluster cannot be used; the message says why."""
+    """The cluster is not usable; the message gives the reason."""
 
 
 class Submit(Protocol):
-    """Has a task carried out somewhere."""
+    """Runs a task somewhere."""
 
     def __call__(self, work: Callable[[SweepTask], CaseResult], task: SweepTask, /) -> Future[CaseResult]:
         """Return the future of the task's result."""
@@ -27,13 +27,13 @@ class Submit(Protocol):
 
 
 class _Executor(Protocol):
-    """What we use of an executor as ``concurrent.futures`` describes it."""
+    """The part of a ``concurrent.futures`` executor used here."""
 
     def submit(self, work: Callable[[SweepTask], CaseResult], task: SweepTask, /) -> Future[CaseResult]: ...
 
 
 class _Client(Protocol):
-    """What we use of ``distributed.Client``."""
+    """The part of ``distributed.Client`` used here."""
 
     def get_executor(self, *, pure: bool, retries: int) -> _Executor: ...
 
@@ -41,14 +41,14 @@ class _Client(Protocol):
 
 
 class _Distributed(Protocol):
-    """What we use of the module ``distributed``: it carries no types, and need not be installed."""
+    """The part of the module ``distributed`` used here: it has no types, and may not be installed."""
 
     def Client(self, address: str, *, set_as_default: bool) -> _Client: ...  # noqa: N802 - its name there
 
 
 @contextmanager
 def local(jobs: int) -> Generator[Submit]:
-    """Use up to ``jobs`` processes of this machine; leaving ends the runs under way."""
+    """Use up to ``jobs`` processes of this machine; leaving the block ends the runs under way."""
     with WorkerPool(jobs) as pool:
 
         def submit(work: Callable[[SweepTask], CaseResult], task: SweepTask, /) -> Future[CaseResult]:
@@ -61,7 +61,7 @@ def local(jobs: int) -> Generator[Submit]:
 def dask(address: str) -> Generator[Submit]:
     """Use the cluster whose scheduler is at ``address``, e.g. ``tcp://host:8786``; its workers need this package.
 
-    Leaving early drops what waits; a run that a worker has begun goes on there to its end. Raises NoClusterError.
+    Leaving early drops waiting tasks; a task that a worker has begun runs there to its end. Raises NoClusterError.
     """
     try:
         distributed = cast("_Distributed", import_module("distributed"))
@@ -72,7 +72,7 @@ def dask(address: str) -> Generator[Submit]:
     except (OSError, ValueError) as error:
         raise NoClusterError(f"--dask {address}: no scheduler answers there: {in_words(error)}") from error
     try:
-        # Not pure: equal tasks are carried out all the same. No retries: a lost worker is a result, too.
+        # Not pure: equal tasks run again. No retries: a lost worker counts as a result.
         yield client.get_executor(pure=False, retries=0).submit
     finally:
         client.close()

@@ -1,4 +1,4 @@
-"""The folder of a sweep: results are in it as soon as they are there, and in order in the end."""
+"""The folder of a sweep: results are written as they arrive, and put in order at the end."""
 
 from __future__ import annotations
 
@@ -19,14 +19,16 @@ RUNS, CONDITIONS, SUMMARY, TOTALS = "runs.csv", "conditions.csv", "summary.csv",
 
 
 class SweepFiles:
-    """Writes results as they come; ``finish`` puts them in order and adds what they are together.
+    """Writes results as they arrive; ``finish`` puts them in order and adds the statistics.
 
     Raises OSError.
     """
 
     def __init__(self, folder: Path, axes: Sequence[SweepAxis], held: Axes, worn: str) -> None:
-        """Create ``runs.csv`` and ``conditions.csv`` in ``folder``; ``held``: the axes of the recipe's conditions;
-        ``worn``: what people call the part that wears, in the headers."""
+        """Create ``runs.csv`` and ``conditions.csv`` in ``folder``.
+
+        ``held``: the axes of the recipe's conditions; ``worn``: people's name for the part that wears, in the headers.
+        """
         self.folder = folder
         self.axes = axes
         self.held = held
@@ -36,13 +38,13 @@ class SweepFiles:
         self._conditions = _begin(folder / CONDITIONS, tables.condition_header(axes, held))
 
     def add(self, result: CaseResult) -> None:
-        """Write a run's result; it is in the files when this returns."""
+        """Write a run's result; it is in the files on return."""
         self.results.append(result)
         _append(self._runs, [tables.run_row(result)])
         _append(self._conditions, tables.condition_rows(result))
 
     def finish(self) -> None:
-        """Write every table in order: the same results give the same files, whoever was first."""
+        """Write every table in order: the same results give the same files, in any order of arrival."""
         results, axes = sorted(self.results, key=tables.case_of), self.axes
         self._runs.close()
         self._conditions.close()
@@ -60,11 +62,11 @@ class SweepFiles:
 def write_sources(
     folder: Path, recipe_text: str, rig_text: str, axes: Sequence[SweepAxis], first_seed: int, seeds: int
 ) -> None:
-    """Write what a sweep is made of: recipe, rig file before any value is set, seeds and values."""
+    """Write the sources of a sweep: recipe, rig file before any value is set, seeds and values."""
     (folder / "recipe.yaml").write_text(recipe_text, encoding="utf-8", newline="\n")
     (folder / "rig.yaml").write_text(rig_text, encoding="utf-8", newline="\n")
-    said = {"first_seed": first_seed, "seeds": seeds, "set": {axis.key: list(axis.values) for axis in axes}}
-    text = json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+    record = {"first_seed": first_seed, "seeds": seeds, "set": {axis.key: list(axis.values) for axis in axes}}
+    text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
     (folder / "sweep.json").write_text(text, encoding="utf-8", newline="\n")
 
 

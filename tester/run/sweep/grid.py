@@ -10,40 +10,40 @@ _OPENING, _CLOSING, _QUOTES = "[{(", "]})", "\"'"
 
 
 class GridError(Exception):
-    """A text is no axis of a sweep; the message says why."""
+    """A text does not describe an axis of a sweep; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepAxis:
-    """A key of the rig file and the texts of its values, in the order given."""
+    """A key of the rig file and the texts of its values, in the given order."""
 
     key: str
     values: tuple[str, ...]
 
 
 def axis_of(text: str) -> SweepAxis:
-    """Return the axis of ``key=v1,v2,...``; a comma inside brackets or quotes separates nothing. Raises GridError."""
+    """Return the axis of ``key=v1,v2,...``; a comma inside brackets or quotes does not separate. Raises GridError."""
     key, equals, values = text.partition("=")
     parts = [part.strip() for part in _separated(values)]
     if not equals or not key.strip() or not all(parts):
         raise GridError(f"--set {text}: expected key=value,value,...")
     if len(set(parts)) < len(parts):
-        raise GridError(f"--set {text}: a value is there twice")
+        raise GridError(f"--set {text}: a value appears twice")
     return SweepAxis(key.strip(), tuple(parts))
 
 
 def axes_of(texts: Sequence[str]) -> tuple[SweepAxis, ...]:
-    """Return the axes of several texts; raises GridError, also for a key that is there twice."""
+    """Return the axes of several texts; raises GridError, also for a repeated key."""
     axes = tuple(axis_of(text) for text in texts)
     keys = [axis.key for axis in axes]
     for key in keys:
         if keys.count(key) > 1:
-            raise GridError(f"--set {key}: given twice; its values go into one --set, with commas")
+            raise GridError(f"--set {key}: appears twice; put its values into one --set, separated by commas")
     return axes
 
 
 def points_of(axes: Sequence[SweepAxis]) -> list[tuple[str, ...]]:
-    """Return every combination, a value for each axis; the last axis changes fastest. Without axes: one point."""
+    """Return every combination of values, one for each axis; the last axis changes fastest. Without axes: one point."""
     return list(product(*(axis.values for axis in axes)))
 
 
@@ -53,7 +53,7 @@ def overrides_of(axes: Sequence[SweepAxis], point: Sequence[str]) -> tuple[str, 
 
 
 def _separated(text: str) -> list[str]:
-    """Return the parts of a text between commas that stand outside brackets and quotes."""
+    """Return the parts of a text between commas outside brackets and quotes."""
     parts, depth, quote = [""], 0, ""
     for c in text:
         if quote:

@@ -1,4 +1,4 @@
-"""A sweep from the outside: its points and seeds, its runs wherever they are carried out, its folder, its exit code."""
+"""Runs a sweep from start to finish: points and seeds, runs in any process, folder, exit code."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ from tester.run.sweep.grid import SweepAxis, overrides_of, points_of
 
 
 class Audience(Protocol):
-    """Who is told how a sweep goes."""
+    """Receives the progress of a sweep."""
 
     def begin(self, folder: Path, runs: int) -> None:
-        """Hear that a sweep of so many runs has begun."""
+        """Called when a sweep of ``runs`` runs has begun."""
         ...
 
     def ran(self, result: CaseResult, done: int) -> None:
-        """Hear of a run's result; ``done`` runs are over now."""
+        """Called with a run's result; ``done`` runs are over."""
         ...
 
 
 class NotSimulatedError(Exception):
-    """A sweep is for simulated rigs; the message says which rig is none."""
+    """A sweep needs simulated rigs; the message names the real one."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepOptions:
-    """What is asked for."""
+    """Options of a sweep."""
 
     recipe: str
     rig: str = "sim"
@@ -50,7 +50,7 @@ class SweepOptions:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """A sweep that is ready to be carried out: its tasks in order, and the texts they come from."""
+    """A sweep ready to run: its tasks in order, and the texts they come from."""
 
     options: SweepOptions
     name: str
@@ -59,7 +59,7 @@ class Sweep:
     held: Axes
     """Axes of the recipe's conditions."""
     worn: str
-    """What people call the part of the machine that wears."""
+    """People's name for the part of the machine that wears."""
     tasks: tuple[SweepTask, ...]
 
 
@@ -86,7 +86,7 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
             SweepTask(len(tasks) + i, point, seed, recipe_text, rig_text, materials)
             for i, seed in enumerate(seeds, start=1)
         ]
-    assert held is not None  # a sweep has a point at least, that of no axis
+    assert held is not None  # a sweep has at least one point, even without axes
     worn = served_kind(plain).machine.specimen
     return Sweep(options, name, recipe_text, plain.text, held, worn, tuple(tasks))
 
@@ -94,8 +94,8 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
 def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, int]:
     """Run every task; return the sweep's folder and its exit code.
 
-    0: every run was done and gave every value; 6: not so; 130: interrupted, with the results that were there by then.
-    Raises OSError where the folder cannot be written.
+    0: every run completed with every value; 6: any did not; 130: interrupted, with the results up to then. Raises
+    OSError if the folder cannot be written.
     """
     options = sweep.options
     folder = make_folder(options.out, sweep.name)
@@ -117,7 +117,7 @@ def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, i
 
 
 def _results(tasks: Sequence[SweepTask], submit: Submit) -> Iterator[CaseResult]:
-    """Yield results as they come; a run that raises is a result, too."""
+    """Yield results as they arrive; a run that raises also gives a result."""
     futures: dict[Future[CaseResult], SweepTask] = {submit(run_case, task): task for task in tasks}
     for future in as_completed(futures):
         error = future.exception()

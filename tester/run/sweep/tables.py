@@ -1,6 +1,6 @@
-"""The tables of a sweep: every run, every condition of it, and what they are together.
+"""The tables of a sweep: every run, every condition in it, and their statistics.
 
-The same results give the same bytes: no wall-clock time, path, host or version is in them.
+The same results give the same bytes: the tables contain no wall-clock time, path, host or version.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _STATISTICS = ("n", "mean", "sd", "min", "max")
 
 
 def head_of(axes: Sequence[SweepAxis]) -> Row:
-    """Return the columns that name a point: the keys of the rig file that were set."""
+    """Return the columns that name a point: its keys of the rig file."""
     return tuple(axis.key for axis in axes)
 
 
@@ -29,7 +29,7 @@ def head_of(axes: Sequence[SweepAxis]) -> Row:
 
 
 def run_header(axes: Sequence[SweepAxis], worn: str) -> Row:
-    """Return the columns of ``runs.csv``; ``worn``: what people call the part that wears."""
+    """Return the columns of ``runs.csv``; ``worn``: people's name for the part that wears."""
     counts = ("rig_seconds", f"{worn}s", "rows", "missing_rows")
     return (*head_of(axes), "seed", "outcome", "reason", "exit_code", *counts)
 
@@ -42,23 +42,23 @@ def run_row(result: CaseResult) -> Row:
 
 def condition_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
     """Return the columns of ``conditions.csv``; ``held``: the axes of the recipe's conditions."""
-    return (*head_of(axes), "seed", *_setpoint_header(held), *(one.key for one in sweep_columns()))
+    return (*head_of(axes), "seed", *_setpoint_header(held), *(column.key for column in sweep_columns()))
 
 
 def condition_rows(result: CaseResult) -> Iterator[Row]:
-    """Yield a run's rows of ``conditions.csv``: one for each row of the recipe's table, also one without a value."""
+    """Yield a run's rows of ``conditions.csv``: every row of the recipe's table, even without a value."""
     for row in result.rows:
         yield (*result.point, result.seed, *_setpoints(row), *row.cells.values())
 
 
-# -- what they are together ---------------------------------------------------------------------------------------
+# -- statistics ---------------------------------------------------------------------------------------------------
 
 
 def summary_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
     """Return the columns of ``summary.csv``.
 
-    ``mu_sd`` is the spread between seeds, ``u_standard`` the root mean square of the uncertainties that the runs state,
-    ``sd_over_u`` their ratio: 1 where runs scatter as they say. ``n`` counts the runs with a value,
+    ``mu_sd`` is the spread between seeds, ``u_standard`` the root mean square of the runs' stated uncertainties,
+    ``sd_over_u`` their ratio: 1 if the stated uncertainties match the spread. ``n`` counts the runs with a value,
     ``with_care`` those of them whose value carries a doubt (its flags are in ``conditions.csv``).
     """
     mu = tuple(f"mu_{name}" for name in _STATISTICS[1:])
@@ -82,16 +82,16 @@ def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
 
 
 def totals_header(axes: Sequence[SweepAxis], worn: str) -> Row:
-    """Return the columns of ``totals.csv``; ``worn``: what people call the part that wears."""
+    """Return the columns of ``totals.csv``; ``worn``: people's name for the part that wears."""
     seconds = tuple(f"rig_seconds_{name}" for name in _STATISTICS[1:])
     mounted = tuple(f"{worn}s_{name}" for name in _STATISTICS[1:])
     return (*head_of(axes), "runs", "done", "other_outcomes", "rows", "missing_rows", *seconds, *mounted)
 
 
 def totals_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
-    """Yield, for every point, how its runs ended, how long they took and how many parts that wear they used.
+    """Yield, for every point, its runs' outcomes, durations and numbers of worn parts.
 
-    Duration and what was mounted are those of runs that came to their end.
+    Durations and parts cover only completed runs.
     """
     for point, group in _by_point(results):
         done = [result for result in group if result.outcome == "done"]
@@ -99,12 +99,12 @@ def totals_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
         for result in group:
             if result.outcome != "done":
                 others[result.outcome] = others.get(result.outcome, 0) + 1
-        told = ", ".join(f"{count} {outcome}" for outcome, count in sorted(others.items()))
+        other_outcomes = ", ".join(f"{count} {outcome}" for outcome, count in sorted(others.items()))
         _, *seconds = _statistics([result.rig_seconds for result in done])
         _, *mounted = _statistics([float(result.mounted) for result in done])
         rows = sum(len(result.rows) for result in group)
         missing = sum(result.missing for result in group)
-        yield (*point, len(group), len(done), told, rows, missing, *seconds, *mounted)
+        yield (*point, len(group), len(done), other_outcomes, rows, missing, *seconds, *mounted)
 
 
 def _setpoint_header(held: Axes) -> Row:
@@ -117,14 +117,14 @@ def _setpoints(row: RowResult) -> Row:
 
 
 def row_record(row: RowResult) -> dict[str, Cell]:
-    """Return a row's cells by their columns, as numbers and texts."""
+    """Return a row's cells by column, as numbers and texts."""
     held = row.setpoint
     setpoints = {axis.column: axis.of(held) for axis in held.axes}
     return {"row": row.row, "compound": held.compound, **setpoints, **row.cells}
 
 
 def _by_point(results: Sequence[CaseResult]) -> Iterator[tuple[tuple[str, ...], list[CaseResult]]]:
-    """Yield the results of every point, in the order of cases whatever order they came in."""
+    """Yield the results of every point, in the order of cases whatever their order of arrival."""
     groups: dict[tuple[str, ...], list[CaseResult]] = {}
     for result in sorted(results, key=case_of):
         groups.setdefault(result.point, []).append(result)
@@ -132,13 +132,13 @@ def _by_point(results: Sequence[CaseResult]) -> Iterator[tuple[tuple[str, ...], 
 
 
 def case_of(result: CaseResult) -> int:
-    """Return what results are sorted by."""
+    """Return the sort key of results."""
     return result.case
 
 
 def _statistics(values: Sequence[float]) -> tuple[int, float | None, float | None, float | None, float | None]:
-    """Return count, mean, standard deviation, least and greatest of the finite values; None where there is none."""
-    found = [value for value in values if isfinite(value)]
-    if not found:
+    """Return count, mean, standard deviation, least and greatest of the finite values; None without any."""
+    finite = [value for value in values if isfinite(value)]
+    if not finite:
         return 0, None, None, None, None
-    return len(found), fmean(found), stdev(found) if len(found) > 1 else None, min(found), max(found)
+    return len(finite), fmean(finite), stdev(finite) if len(finite) > 1 else None, min(finite), max(finite)

@@ -112,7 +112,8 @@ def test_the_end_of_every_part_is_told(ended: str, request: pytest.FixtureReques
 def test_several_jobs_and_nobody_to_say_yes_is_a_usage_error(tmp_path: Path) -> None:
     ended = run(tmp_path, jobs=2, screen=Screen(answer_yes=False))
     assert ended.code == 2 and not ended.out.exists()
-    assert ended.screen.messages == ["--jobs 2: nobody can answer the prompts of several parts; use --yes, or one job"]
+    refusal = "--jobs 2: prompts of several parts at a time cannot be answered; use --yes, or one job"
+    assert ended.screen.messages == [refusal]
 
 
 def test_several_jobs_on_a_real_rig_are_a_usage_error(tmp_path: Path) -> None:
@@ -120,7 +121,7 @@ def test_several_jobs_on_a_real_rig_are_a_usage_error(tmp_path: Path) -> None:
     rig.write_text(hardware_text(), encoding="utf-8")
     options = SessionOptions("quickstart", str(rig), out=tmp_path / "runs", jobs=2)
     assert Session(options, screen).run() == 2 and not options.out.exists()
-    assert screen.messages == ["--jobs 2: only a simulated rig can be there several times, and this one is real"]
+    assert screen.messages == ["--jobs 2: only a simulated rig can run several parts at a time, and this rig is real"]
 
 
 # -- early ends ---------------------------------------------------------------------------------------------------

@@ -80,7 +80,7 @@ def test_what_is_committed_is_known(cut: Path) -> None:
 def test_a_run_goes_on_at_the_first_uncommitted_repeat(again: Path) -> None:
     code, screen = resume(again)
     assert code == 0 and screen.results == [str(again)]
-    assert "goes on at repeat 2 of condition 1" in screen.messages[0]
+    assert "resumes at repeat 2 of condition 1" in screen.messages[0]
     with RunReader(again) as reader:
         repeats = reader.repeats(attempts=True)
         (condition,) = reader.conditions()
@@ -197,7 +197,7 @@ def test_a_recipe_file_that_was_edited_after_the_start_is_found(again: Path, cut
     source = cut.parent.parent / "short.yaml"
     edit(source, "recipe: short", "recipe: shorter")
     try:
-        with pytest.raises(CannotStartError, match=r"what recipe\.yaml was copied from"):
+        with pytest.raises(CannotStartError, match=r"the original of recipe\.yaml"):
             resume(again)
     finally:
         edit(source, "recipe: shorter", "recipe: short")
@@ -205,7 +205,7 @@ def test_a_recipe_file_that_was_edited_after_the_start_is_found(again: Path, cut
 
 def test_another_test_is_refused_whatever_the_reason(again: Path) -> None:
     edit(again / "recipe.yaml", "load: 50 N", "load: 60 N")
-    with pytest.raises(CannotStartError, match="condition 1, of which something was measured"):
+    with pytest.raises(CannotStartError, match="condition 1, which has measurements"):
         resume(again, "no reason will do")
 
 

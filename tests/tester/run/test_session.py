@@ -244,7 +244,7 @@ def test_conditions_that_were_tried_are_told_and_the_others_are_no_line_each(tmp
 def test_nobody_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:
     ended = run(tmp_path, screen=Screen(answer_yes=False))
     assert ended.code == 2 and not ended.out.exists()
-    assert ended.screen.messages == ["the recipe asks a person, and nobody is at this terminal: use --yes"]
+    assert ended.screen.messages == ["the recipe has prompts, and this is no interactive terminal: use --yes"]
 
 
 def test_an_invalid_recipe_is_refused_without_a_trace(tmp_path: Path) -> None:

@@ -43,7 +43,7 @@ def test_an_exchanged_drive_is_named_with_both_serial_numbers(connected: Simulat
     before = good(connected)
     belt = dict(before.devices["belt"]) | {"0x1018:04": DeviceParameter("77", "serial number")}
     found = told(connected, GoodRun("yesterday", {**before.devices, "belt": belt}))
-    assert found == "not as in the last good run yesterday: belt 0x1018:04 (serial number): was 77, is 2"
+    assert found == "differs from the last good run yesterday: belt 0x1018:04 (serial number): was 77, is 2"
 
 
 def test_what_was_not_read_now_is_no_difference(connected: Simulation) -> None:
@@ -69,7 +69,7 @@ def test_a_start_warns_in_its_record_and_on_the_screen_and_goes_on() -> None:
     notes.poll(simulation.now)
     notes.poll(simulation.now)
     (text,) = said
-    assert text.startswith("warning: not as in the last good run yesterday: belt 0x6076:00")
+    assert text.startswith("warning: differs from the last good run yesterday: belt 0x6076:00")
     assert [event[2] for event in simulation.notes.events if event[1] == "arming" and event[3] == "warning"] == [
         text.removeprefix("warning: ")
     ]

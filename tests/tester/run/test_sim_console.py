@@ -87,7 +87,7 @@ def test_clear_ends_what_is_wrong_and_what_is_to_come(bench: Bench) -> None:
     bench.say("fault t=50 s: load cell frozen")
     bench.live(0.1)
     assert bench.rig.devices["load cell"].powered is not before
-    assert bench.say("clear") == ("1 ended; nothing is to come",)
+    assert bench.say("clear") == ("1 ended; no fault is planned",)
     assert bench.rig.devices["load cell"].powered is before
     assert bench.say("faults") == ("nothing is wrong",)
     assert bench.life.due_s == float("inf")
@@ -99,7 +99,7 @@ def test_clear_ends_what_is_wrong_and_what_is_to_come(bench: Bench) -> None:
         ("fault belt drive hartbeat lost", "nearest is"),
         ("fault operator stop", "another process"),
         ("fault process killed", "another process"),
-        ("fault step measure: load cell frozen", "those of the program"),
+        ("fault step measure: load cell frozen", "scans or steps of the program"),
         ("fault t=0 s: load cell frozen", "already"),
         ("fault load cell gain 3 kg", "unit"),
         ("speed 1000", "0.01 to 100"),
@@ -168,5 +168,5 @@ def test_an_idle_speed_counts_while_nobody_is_on_the_bus() -> None:
 
 
 def test_a_speed_says_what_it_does_to_time_outs(bench: Bench) -> None:
-    assert bench.say("speed 4") == ("4 x: 100 ms of a device's time-out are over after 25 ms of a program's clock",)
+    assert bench.say("speed 4") == ("4 x: a device's time-out of 100 ms takes 25 ms of a program's clock",)
     assert bench.say("idle speed 10")[1] == "10 x while no program is on the CAN bus"

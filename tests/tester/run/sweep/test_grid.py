@@ -29,7 +29,7 @@ def test_a_text_that_is_no_axis_is_named(text: str) -> None:
 
 
 def test_a_key_that_is_there_twice_is_refused() -> None:
-    with pytest.raises(GridError, match="given twice"):
+    with pytest.raises(GridError, match="appears twice"):
         axes_of(["sim.noise=0", "sim.noise=1"])
 
 
