@@ -1,4 +1,4 @@
-"""What leaves a run: the paper's table, conditions, repeats, samples, and the manifest of its folder."""
+"""Outputs of a run: the paper's table, conditions, repeats, samples, and the manifest of its folder."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def write_format(path: Path, kind: Format, record: Record) -> None:
 def write_all(run_dir: Path) -> list[TableRow]:
     """Write the tables that every run's folder keeps (``Format.kept``) and manifest.json into a run's folder.
 
-    The run's writer has to be closed. Returns the rows that are not in the appendix because they have no value to be
-    trusted (``describe`` says why). Raises StoreError, OSError.
+    Close the run's writer first. Returns the rows left out of the appendix for lack of a trustworthy value
+    (``describe`` gives the reason). Raises StoreError, OSError.
     """
     with RunReader(run_dir) as reader:
         record = Record(reader)
@@ -49,6 +49,6 @@ def write_all(run_dir: Path) -> list[TableRow]:
 
 
 def doubtful(run_dir: Path) -> list[TableRow]:
-    """Return the rows whose value is to be taken with care; raises StoreError."""
+    """Return the rows whose value needs care; raises StoreError."""
     with RunReader(run_dir) as reader:
         return results_of(reader).doubtful()

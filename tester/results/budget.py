@@ -1,4 +1,4 @@
-"""The budget of every condition as a table: what each uncertainty is made of."""
+"""The budget of every condition as a table: the parts of each uncertainty."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ class TermRow:
         return 100.0 * self.term.standard / mu if mu else NAN
 
     def share(self, budget: Budget) -> float:
-        """Return its share of a budget's variance, per cent; 0 for one that is none of it."""
+        """Return its share of a budget's variance, per cent; 0 for a term outside it."""
         return 100.0 * budget.share(self.term) if self.term in budget.contributions else 0.0
 
 
 def budget_table(results: RunResults) -> Table[TermRow]:
-    """Return a row for each term of each condition's budgets, and of the value that stands for replicates."""
+    """Return a row for each term of each condition's budgets, including those of the mean over replicates."""
     conditions = conditions_table(results)
     which = tuple(_of_condition(conditions[key]) for key in _WHICH)
-    axes = (axis_column(one, _info) for one in results.axes)
-    rows = (TermRow(one, term) for one in conditions.rows for term in terms_of(one.result))
+    axes = (axis_column(axis, _info) for axis in results.axes)
+    rows = (TermRow(row, term) for row in conditions.rows for term in terms_of(row.result))
     return Table((*which, *axes, *_columns(results.worn)), tuple(rows))
 
 
 def terms_table(one: ConditionRow, worn: str) -> Table[TermRow]:
-    """Return a row for each term of a condition's budgets, the largest first; ``worn``: what people call a piece."""
+    """Return a row for each term of a condition's budgets, the largest first; ``worn``: the kind's word for a piece."""
     return Table(_columns(worn), tuple(TermRow(one, term) for term in terms_of(one.result)))
 
 
@@ -56,17 +56,17 @@ def terms_of(r: ConditionResult) -> list[Contribution]:
 
 def budgeted_rows(conditions: Table[ConditionRow]) -> list[ConditionRow]:
     """Return the recipe's rows that have a budget."""
-    return [one for one in recipe_rows(conditions).rows if isfinite(one.result.standard)]
+    return [row for row in recipe_rows(conditions).rows if isfinite(row.result.standard)]
 
 
 def sums(conditions: Table[ConditionRow], one: ConditionRow) -> tuple[str, str, str]:
-    """Return what a budget is of, in words: the coefficient, then both expanded uncertainties."""
+    """Return the sums of a condition's budgets in words: the coefficient, then both expanded uncertainties."""
     first, this, compound = (_in_words([conditions[key] for key in keys], one) for keys in _SUMS)
     return first, this, compound
 
 
 def _in_words(columns: Sequence[Column[ConditionRow]], one: ConditionRow) -> str:
-    """Return headings with values; a heading that two neighbours share stands once."""
+    """Return headings with values; a heading that two neighbours share appears once."""
     before = ("", *(column.heading for column in columns))
     return ", ".join(
         f"{'' if column.heading == other else column.heading} {column.text(one)} {column.unit}".strip()
@@ -95,8 +95,8 @@ def _columns(worn: str) -> tuple[Column[TermRow], ...]:
     """Return the columns of a term.
 
     ``standard_uncertainty`` is the input's, in ``unit``, ``sensitivity`` the change of the coefficient per unit,
-    ``u_mu`` their product. Shares are of the variance of each measurand. Degrees of freedom are none where a limit is
-    taken as known.
+    ``u_mu`` their product. Shares are of the variance of each measurand. Degrees of freedom are empty for a limit taken
+    as known.
     """
     return (
         Column("term", "term", lambda row: row.term.name, views=_BOTH),

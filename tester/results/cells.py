@@ -1,7 +1,7 @@
-"""Cells of a CSV file: numbers stay numbers, text is never a formula, and both read back as they were meant.
+"""Cells of a CSV file: numbers stay numbers, text is never a formula, and both read back unchanged.
 
-RFC 4180 with LF line ends and UTF-8. A text cell that a spreadsheet could take for a formula gets an
-apostrophe in front (so does one that begins with an apostrophe, which makes it reversible: ``unescaped``).
+RFC 4180 with LF line ends and UTF-8. A text cell that a spreadsheet could take for a formula gets an apostrophe in
+front (so does one that begins with an apostrophe, which makes it reversible: ``unescaped``).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tester.base.words import harmless
 BOM = b"\xef\xbb\xbf"
 
 _FORMULA = frozenset("=+-@\t\r\n'＝＋－＠")
-"""First characters of what Excel, Calc or Sheets evaluate, the full-width forms included, and the apostrophe."""
+"""First characters of formulas in Excel, Calc or Sheets, the full-width forms included, and the apostrophe."""
 
 _QUOTED = frozenset('",\r\n')
 
@@ -22,24 +22,25 @@ Cell = str | int | float | None
 
 
 class Number(str):
-    """A number that has been formatted: written as it is, never escaped."""
+    """A formatted number: written unchanged, never escaped."""
 
     __slots__ = ()
 
 
 def text(value: str) -> str:
-    """Return a text cell, escaped where it could be taken for a formula; what could steer a terminal is a ``?``."""
+    """Return a text cell, escaped where it could be taken for a formula; characters that could steer a terminal become
+    ``?``."""
     value = harmless(value)
     return f"'{value}" if value[:1] in _FORMULA and value else value
 
 
 def unescaped(cell: str) -> str:
-    """Return what ``text`` was given, as far as it was harmless."""
+    """Return the original of an escaped ``text``, as far as it was harmless."""
     return cell[1:] if cell[:1] == "'" else cell
 
 
 def number(value: float | None) -> Number:
-    """Return a number with seven significant digits, an integer in full, empty for what does not exist."""
+    """Return a number with seven significant digits, an integer in full, empty for a missing value."""
     if value is None or not isfinite(value):
         return Number("")
     if isinstance(value, int):

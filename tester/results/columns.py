@@ -1,8 +1,8 @@
 """A table of results as data: columns with key, heading, unit and decimals, and the rows that they read.
 
-Files, terminal, report and screens pick columns and render them; what a column holds, what it is called and to how many
-digits people read it stands in the column alone. A table's columns stand in its own module, and a column there is in
-every output that its ``views`` name, in the CSV file and in JSON.
+Files, terminal, report and screens pick columns and render them. The column alone defines its content, its heading and
+the digits for people. Each table has a module of its own; a column added there appears in every output that its
+``views`` name, in the CSV file and in JSON.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from tester.results.cells import Cell, nominal
 from tester.store.records import ConditionInfo
 
 Value: TypeAlias = str | int | float | tuple[str, ...] | None
-"""What a column holds of a row: NaN and None are no value, a tuple is a list of words."""
+"""Value of a column for a row: NaN and None are no value, a tuple is a list of words."""
 R = TypeVar("R")
 
 
 class Output(StrEnum):
-    """An output that has room for some of a table's columns."""
+    """An output with room for some of a table's columns."""
 
     END = "end of a run"
     SHOW = "tester show"
@@ -39,9 +39,10 @@ class Output(StrEnum):
 
 @dataclass(frozen=True)  # a generic with slots cannot be made by its parameters (Column[Row](...)) in Python 3.11
 class Column(Generic[R]):
-    """One column. ``key`` is its name in CSV files and JSON, ``heading`` what people read, with ``unit``.
+    """One column. ``key`` is its name in CSV files and JSON, ``heading`` the text for people, with ``unit``.
 
-    ``value`` reads it off a row, in full. People read numbers with so many ``decimals``; None: as setpoints and counts.
+    ``value`` reads it off a row, in full. For people, numbers have ``decimals`` decimals; None: as setpoints and
+    counts.
     """
 
     key: str
@@ -50,15 +51,15 @@ class Column(Generic[R]):
     unit: str = ""
     decimals: int | None = None
     views: frozenset[Output] = frozenset()
-    """The outputs that show it."""
+    """Outputs that show it."""
     mark: Callable[[R], str] | None = None
-    """What stands behind the number for people (``tester.analysis.results``)."""
+    """Returns the mark behind the number for people (``tester.analysis.results``)."""
     digits: int | None = None
-    """Significant ones, of numbers that range over decades; in place of ``decimals``."""
+    """Significant digits of numbers that range over decades; in place of ``decimals``."""
     stored: bool = True
-    """Whether CSV and JSON have it; what says the same as other columns in a shorter way is for people only."""
+    """Whether CSV and JSON have it; a shorter form of other columns is for people only."""
     narrow: str = ""
-    """Heading with unit where there is little room; "" the same as elsewhere."""
+    """Heading with unit for narrow places; "" the same as elsewhere."""
 
     @property
     def head(self) -> str:
@@ -67,20 +68,20 @@ class Column(Generic[R]):
 
     @property
     def narrow_head(self) -> str:
-        """Return the heading for a place with little room."""
+        """Return the heading for a narrow place."""
         return self.narrow or self.head
 
     @property
     def numeric(self) -> bool:
-        """Return whether people read numbers in it."""
+        """Return whether it shows numbers to people."""
         return self.decimals is not None or self.digits is not None
 
     def mark_at(self, row: R) -> str:
-        """Return what stands behind the number."""
+        """Return the mark behind the number."""
         return self.mark(row) if self.mark is not None else ""
 
     def text(self, row: R) -> str:
-        """Return what people read; a dash where there is no value."""
+        """Return the text for people; a dash where there is no value."""
         value = self.value(row)
         if value is None or value == "" or value == () or (isinstance(value, float) and not isfinite(value)):
             return NONE
@@ -95,14 +96,14 @@ class Column(Generic[R]):
         return (decimal(value, self.decimals) if self.decimals is not None else nominal(value)) + self.mark_at(row)
 
     def cell(self, row: R) -> Cell:
-        """Return what a CSV file holds."""
+        """Return the cell of a CSV file."""
         value = self.value(row)
         if isinstance(value, tuple):
             return "; ".join(value)
         return int(value) if isinstance(value, bool) else value
 
     def as_json(self, row: R) -> Json:
-        """Return what JSON holds; null for no value."""
+        """Return the value in JSON; null for no value."""
         value = self.value(row)
         if isinstance(value, tuple):
             return [*value]
@@ -120,7 +121,7 @@ def axis_column(axis: Axis, info: Callable[[R], ConditionInfo]) -> Column[R]:
 def setting_columns(
     axes: Axes, info: Callable[[R], ConditionInfo], replicate: Callable[[R], Value]
 ) -> tuple[Column[R], ...]:
-    """Return the columns that say which condition a row is of."""
+    """Return the columns that identify a row's condition."""
     return (
         Column("specimen", "specimen", lambda row: info(row).specimen),
         Column("replicate", "replicate", replicate),
@@ -132,15 +133,15 @@ def setting_columns(
 
 
 def piece_key(worn: str) -> str:
-    """Return the key of the column that numbers what is mounted; ``worn``: what people call it.
+    """Return the key of the column that numbers mounted pieces; ``worn``: the kind's word for a piece.
 
-    A recipe has specimens, too: a kind that wears specimens would have two columns of one key.
+    Recipes have specimens as well: a kind that wears specimens would otherwise have two columns with the same key.
     """
     return "piece" if worn == "specimen" else worn
 
 
 def mean_column(channel: Channel, means: Callable[[R], Means], views: frozenset[Output] = frozenset()) -> Column[R]:
-    """Return the column of a channel's mean; ``means`` reads a row's off it."""
+    """Return the column of a channel's mean; ``means`` reads a row's means off it."""
     return Column(
         channel.measured_column, channel.label.lower(), lambda row: channel.scaled(means(row).get(channel.name)),
         channel.read_as, channel.decimals, views,
@@ -189,6 +190,6 @@ class Table(Generic[R]):
             yield {column.key: column.as_json(row) for column in stored}
 
     def texts(self) -> Iterator[tuple[str, ...]]:
-        """Yield what people read, row by row."""
+        """Yield the texts for people, row by row."""
         for row in self.rows:
             yield tuple(column.text(row) for column in self.columns)

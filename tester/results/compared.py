@@ -1,4 +1,4 @@
-"""The conditions of two runs side by side: which belong together, and by how much their compounds differ."""
+"""The conditions of two runs side by side: matching pairs, and the difference of their compounds."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tester.results.run_results import RunResults, TableRow
 from tester.store.records import ConditionInfo, StoredRun
 
 Held: TypeAlias = tuple[str, tuple[AxisValue, ...], int]
-"""What is compared: compound, values of the axes as people read them, which measurement of them it is (from 1)."""
+"""Key of a comparison: compound, values of the axes as shown to people, number of the measurement at these (from 1)."""
 
 
 class Pair(NamedTuple):
-    """A condition of one run and the same of another; None where one has it not. ``found``: second less first."""
+    """A condition of one run and its match in another; None where a run lacks it. ``found``: second less first."""
 
     first: TableRow | None
     second: TableRow | None
@@ -27,10 +27,10 @@ class Pair(NamedTuple):
 
     @property
     def either(self) -> TableRow:
-        """Return the row that there is."""
-        found = self.first or self.second
-        assert found is not None
-        return found
+        """Return a row that exists."""
+        row = self.first or self.second
+        assert row is not None
+        return row
 
     @property
     def z(self) -> float:
@@ -48,9 +48,9 @@ class Pair(NamedTuple):
 
 
 def same_rig(one: StoredRun, other: StoredRun) -> bool:
-    """Tell whether two runs have the errors of the measuring chain in common.
+    """Return whether two runs share the errors of the measuring chain.
 
-    One calibration of one rig; a simulated one has other imperfections for every seed.
+    They do with the same calibration of the same rig; a simulated rig has other imperfections for every seed.
     """
     first, second = one.info, other.info
     return (one.calibration_sha256, first.simulated, first.seed) == (
@@ -61,26 +61,27 @@ def same_rig(one: StoredRun, other: StoredRun) -> bool:
 
 
 def pairs(first: RunResults, second: RunResults, compounds: tuple[str, str] | None = None) -> Iterator[Pair]:
-    """Yield the conditions of two runs of one kind, each of the first with the same of the second, then the others.
+    """Yield the conditions of two runs of one kind, each of the first with its match in the second, then the others.
 
     ``compounds``: compare these two, the first of the first run and the second of the second, at the same setpoints.
-    Where a run measures a setting several times, the first measurement goes with the first, the second with the second.
+    Where a run measures a setting several times, the first measurement pairs with the first, the second with the
+    second.
     """
-    one, other = (
+    first_rows, second_rows = (
         _by_setting((r for r in results.rows if compounds is None or r.info.compound == compounds[i]), compounds)
         for i, results in enumerate((first, second))
     )
     shared = same_rig(first.run, second.run)
-    for key in dict.fromkeys([*one, *other]):
-        a, b = one.get(key), other.get(key)
-        found = difference(a.result, b.result, same_rig=shared) if a is not None and b is not None else Difference()
-        yield Pair(a, b, found)
+    for key in dict.fromkeys([*first_rows, *second_rows]):
+        a, b = first_rows.get(key), second_rows.get(key)
+        off = difference(a.result, b.result, same_rig=shared) if a is not None and b is not None else Difference()
+        yield Pair(a, b, off)
 
 
 def comparison(first: RunResults, second: RunResults, compounds: tuple[str, str] | None = None) -> Table[Pair]:
-    """Return the table of ``pairs``: coefficients, their difference, its standard uncertainty u, z and what chance
-    explains, k."""
-    axes = [axis_column(one, _info) for one in first.axes]
+    """Return the table of ``pairs``: coefficients, their difference, its standard uncertainty u, z and the coverage
+    factor k of chance."""
+    axes = [axis_column(axis, _info) for axis in first.axes]
     return Table((*_WHICH, *axes, *_FOUND), tuple(pairs(first, second, compounds)))
 
 
@@ -121,11 +122,11 @@ _FOUND: tuple[Column[Pair], ...] = (
 
 
 def _by_setting(rows: Iterable[TableRow], compounds: tuple[str, str] | None) -> dict[Held, TableRow]:
-    found: dict[Held, TableRow] = {}
+    rows_found: dict[Held, TableRow] = {}
     count: Counter[tuple[str, tuple[AxisValue, ...]]] = Counter()
     for row in rows:
-        held = row.info.setpoint
-        setting = "" if compounds else held.compound, tuple(axis.of(held) for axis in held.axes)
+        setpoint = row.info.setpoint
+        setting = "" if compounds else setpoint.compound, tuple(axis.of(setpoint) for axis in setpoint.axes)
         count[setting] += 1
-        found[(*setting, count[setting])] = row
-    return found
+        rows_found[(*setting, count[setting])] = row
+    return rows_found

@@ -1,4 +1,4 @@
-"""Which conditions of a run were measured dry and with a film on the same specimen, and what that says of each."""
+"""Pairs of a run's conditions dry and with a film on the same specimen, and their adhesion and hysteresis."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from tester.base.axes import AxisValue, Setpoint
 from tester.results.run_results import Measured, RunResults
 
 AXIS: Final = "interface"
-"""Of the conditions; a machine that has it not has nothing to be told apart."""
+"""Axis of the conditions; a machine without it has no components to separate."""
 DRY: Final = "dry"
 _TEMPERATURE: Final = "temperature"
 
 _Key: TypeAlias = tuple[int, int, str, tuple[AxisValue, ...]]
-"""Specimen, replicate, compound, and every axis but some."""
+"""Specimen, replicate, compound, and every axis except those left out."""
 
 
 class FilmPair(NamedTuple):
-    """A condition that was measured dry and with a film."""
+    """A condition measured dry and with a film."""
 
     dry: Measured
     film: Measured
@@ -28,7 +28,7 @@ class FilmPair(NamedTuple):
 
     @property
     def interface(self) -> str:
-        """Return what the film is of."""
+        """Return the substance of the film."""
         return str(self.film.info.setpoint.value(AXIS))
 
 
@@ -42,40 +42,45 @@ class SharesMean(NamedTuple):
 
 
 def has_interfaces(results: RunResults) -> bool:
-    """Tell whether the run's conditions say what is in the contact."""
+    """Return whether the run's conditions have an interface in the contact."""
     return any(axis.name == AXIS for axis in results.axes)
 
 
 def film_pairs(results: RunResults) -> Iterator[FilmPair]:
-    """Yield the pairs of conditions that differ in nothing but a film, in recipe order of the latter.
+    """Yield the pairs of conditions that differ only in a film, in recipe order of the latter.
 
-    Left out are conditions without a value, and references.
+    Conditions without a value and references are left out.
     """
-    valued = [one for row in results.rows for one in row.replicates if one.result.ok and one.result.mu_resultant > 0.0]
-    dry = {_key(one, AXIS): one for one in valued if one.info.setpoint.value(AXIS) == DRY}
+    valued = [
+        replicate
+        for row in results.rows
+        for replicate in row.replicates
+        if replicate.result.ok and replicate.result.mu_resultant > 0.0
+    ]
+    dry = {_key(candidate, AXIS): candidate for candidate in valued if candidate.info.setpoint.value(AXIS) == DRY}
     for film in valued:
-        if film.info.setpoint.value(AXIS) != DRY and (own := dry.get(_key(film, AXIS))) is not None:
-            yield FilmPair(own, film, by_film(own.result, film.result, _slope(film, valued)))
+        if film.info.setpoint.value(AXIS) != DRY and (unfilmed := dry.get(_key(film, AXIS))) is not None:
+            yield FilmPair(unfilmed, film, by_film(unfilmed.result, film.result, _slope(film, valued)))
 
 
 def means_of(pairs: Sequence[FilmPair]) -> Iterator[SharesMean]:
     """Yield the mean share of each compound with each film."""
-    found: dict[tuple[str, str], list[PartValue]] = {}
-    for one in pairs:
-        found.setdefault((one.dry.info.compound, one.interface), []).append(one.parts.share)
-    for (compound, interface), shares in found.items():
+    shares_of: dict[tuple[str, str], list[PartValue]] = {}
+    for pair in pairs:
+        shares_of.setdefault((pair.dry.info.compound, pair.interface), []).append(pair.parts.share)
+    for (compound, interface), shares in shares_of.items():
         yield SharesMean(compound, interface, len(shares), mean_of(shares))
 
 
 def _slope(one: Measured, valued: Sequence[Measured]) -> Slope:
-    """Return the sensitivity to temperature that conditions tell which differ from this one in temperature alone."""
+    """Return the sensitivity to temperature from conditions that differ from this one in temperature alone."""
     key = _key(one, _TEMPERATURE)
     points = [(o.result.measured.temperature, o.result.mu_resultant) for o in valued if _key(o, _TEMPERATURE) == key]
-    found = slope_of_pairs(one.result.measured.temperature, points)
-    return found if found is not None else UNKNOWN
+    slope = slope_of_pairs(one.result.measured.temperature, points)
+    return slope if slope is not None else UNKNOWN
 
 
 def _key(one: Measured, without: str) -> _Key:
-    held: Setpoint = one.info.setpoint
-    values = tuple(axis.of(held) for axis in held.axes if axis.name != without)
-    return one.info.specimen, one.info.replicate, held.compound, values
+    setpoint: Setpoint = one.info.setpoint
+    values = tuple(axis.of(setpoint) for axis in setpoint.axes if axis.name != without)
+    return one.info.specimen, one.info.replicate, setpoint.compound, values

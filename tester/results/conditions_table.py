@@ -1,8 +1,8 @@
 """The table of conditions: every column of it, once.
 
-``mu`` is the coefficient at the temperature that was asked for (``tester.analysis.repeats``), as are U and what else
-the table has of it but for ``mu_as_measured`` and the scatter between repeats, ``s``. Counts are those of
-``tester.analysis.counts``. A new column is one entry here; its ``views`` say which outputs show it to people.
+``mu`` is the coefficient at the nominal temperature (``tester.analysis.repeats``), as are U and all other figures of it
+except ``mu_as_measured`` and the scatter between repeats, ``s``. Counts are those of ``tester.analysis.counts``. A new
+column is an entry here; its ``views`` name the outputs that show it to people.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ COMBINED: Final = "combined"
 
 @dataclass(frozen=True, slots=True)
 class ConditionRow:
-    """A condition, or (``measured`` None) what stands for its replicates."""
+    """A condition, or (``measured`` None) the mean over its replicates."""
 
     row: TableRow
     result: ConditionResult
@@ -44,12 +44,12 @@ class ConditionRow:
 
     @property
     def counts(self) -> Counts:
-        """Return how many repeats, pairs or replicates were asked for, made and valid."""
+        """Return how many repeats, pairs or replicates were requested, made and valid."""
         return self.result.counts
 
     @property
     def whole(self) -> bool:
-        """Return whether this is a row of the recipe's table: what stands for replicates, or the only one."""
+        """Return whether this is a row of the recipe's table: the mean over replicates, or the only one."""
         return self.measured is None or len(self.row.replicates) == 1
 
     @property
@@ -64,8 +64,7 @@ class ConditionRow:
 
 
 def conditions_table(results: RunResults) -> Table[ConditionRow]:
-    """Return the table of all conditions, replicates one after the other and then what stands for them, references
-    last."""
+    """Return the table of all conditions, replicates one after the other and then their mean, references last."""
     return Table(columns_of(results), tuple(_rows(results)))
 
 
@@ -75,7 +74,7 @@ def recipe_rows(table: Table[ConditionRow]) -> Table[ConditionRow]:
 
 
 def axis_keys(axes: Iterable[Axis]) -> tuple[str, ...]:
-    """Return the keys of the columns that say which condition a row is of: compound and some axes."""
+    """Return the keys of the columns that identify a row's condition: compound and some axes."""
     return ("compound", *(axis.column for axis in axes))
 
 
@@ -100,7 +99,7 @@ def sweep_columns() -> tuple[Column[ConditionRow], ...]:
 
 
 def _fixed(worn: str) -> tuple[Column[ConditionRow], ...]:
-    """Return the columns that no kind of rig adds to; ``worn``: what people call a piece."""
+    """Return the columns that every kind of rig has; ``worn``: the kind's word for a piece."""
     return (*_FOUND, *_uncertainties(worn), *_MORE, *_WEAR)
 
 
@@ -145,7 +144,7 @@ def _held(row: ConditionRow, name: str) -> Value:
 
 
 def _soaked(row: ConditionRow, name: str) -> Value:
-    """Return what the thermometer showed after the soak; None of replicates, and where it was not looked at."""
+    """Return a figure of the thermometer's check after the soak; None for replicates, and without a check."""
     soak = row.measured.soak if row.measured is not None else None
     return getattr(soak, name) if soak is not None else None
 
@@ -153,7 +152,7 @@ def _soaked(row: ConditionRow, name: str) -> Value:
 _PEOPLE = frozenset({Output.END, Output.SHOW, Output.COVER, Output.REPORT, Output.SCREEN})
 _FULL = frozenset({Output.SHOW, Output.REPORT})
 _FURTHER = frozenset({Output.SHOW, Output.REPORT, Output.SCREEN})
-"""The means of further sensors."""
+"""Outputs that show the means of further sensors."""
 
 _WHICH: tuple[Column[ConditionRow], ...] = (
     Column("level", "level", lambda row: COMBINED if row.measured is None else CONDITION),
@@ -175,7 +174,7 @@ _FOUND: tuple[Column[ConditionRow], ...] = (
 
 
 def _uncertainties(worn: str) -> tuple[Column[ConditionRow], ...]:
-    """Return U and what goes with it, of what was mounted and of the compound."""
+    """Return U and its companions, of the mounted piece and of the compound."""
     return (
         Column("u_standard", f"u this {worn}", lambda row: row.result.standard, "", 3, frozenset({Output.SWEEP})),
         Column("u_expanded", f"U this {worn}", lambda row: row.result.expanded, "", 3, _PEOPLE),

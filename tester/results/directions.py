@@ -1,4 +1,4 @@
-"""Both directions of sliding as a table: what each shows, and by what angle the load cell's axes seem to be off."""
+"""Both directions of sliding as a table: the result of each, and the apparent misalignment of the load cell's axes."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from tester.results.run_results import RunResults
 
 @dataclass(frozen=True, slots=True)
 class DirectionRow:
-    """A condition in both directions; or the whole run, whose pairs tell the angle together."""
+    """A condition in both directions; or the whole run, whose pairs give the angle together."""
 
     setting: tuple[Value, ...]
-    """Cells of the columns that say which condition it is, in order."""
+    """Cells of the columns that identify the condition, in order."""
     pairs: int
     ways: BothWays | None
     angle: Misalignment
 
 
 def directions_table(results: RunResults) -> Table[DirectionRow]:
-    """Return a row for each condition that was measured in both directions, and last one for the whole run.
+    """Return a row for each condition measured in both directions, and a last one for the whole run.
 
-    ``mu_difference_percent``: by how much the direction that was asked for shows more. The angle is that of the cell's
-    axes with crosstalk of load and friction in it (``tester.analysis.misalignment``); the row ``run`` has it pooled
-    over all conditions.
+    ``mu_difference_percent``: excess of the requested direction over the reverse. The angle is that of the cell's axes
+    including crosstalk of load and friction (``tester.analysis.misalignment``); the row ``run`` has it pooled over all
+    conditions.
     """
     conditions = conditions_table(results)
     keys = ("level", "condition", *_SETTING, *(axis.column for axis in results.axes))
     rows: list[DirectionRow] = []
-    for one in conditions.rows:
-        if one.measured is not None and one.result.both_ways is not None:
-            ways, angle = one.result.both_ways, misalignment([one.result])
-            rows.append(DirectionRow(tuple(conditions[key].value(one) for key in keys), ways.pairs, ways, angle))
-    found = results.misalignment()
-    rows.append(DirectionRow(("run", *(None for _ in keys[1:])), found.pairs, None, found))
+    for row in conditions.rows:
+        if row.measured is not None and row.result.both_ways is not None:
+            ways, angle = row.result.both_ways, misalignment([row.result])
+            rows.append(DirectionRow(tuple(conditions[key].value(row) for key in keys), ways.pairs, ways, angle))
+    pooled = results.misalignment()
+    rows.append(DirectionRow(("run", *(None for _ in keys[1:])), pooled.pairs, None, pooled))
     setting = (_cell_of(key, place) for place, key in enumerate(keys))
     sides = (_of_way(side, name, read) for side in _SIDES for name, read in _WAY.items())
     return Table[DirectionRow]((*setting, _PAIRS, *sides, *_ANGLE), tuple(rows))

@@ -1,4 +1,4 @@
-"""Leave a repeat out of a run's means, or take it in again: the word goes on record, then the tables are made anew."""
+"""Leaves a repeat out of a run's means, or includes it again: the decision is stored, then the tables are made anew."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from tester.store.records import StoredExclusion, StoredRepeat
 MADE_ANEW = frozenset({DATABASE, *(one.file for one in FORMATS.values() if one.kept is not None)})
 """Files of a run's folder that an exclusion changes, beside the manifest."""
 LONGEST = 2000
-"""Characters of a reason."""
+"""Most characters of a reason."""
 
 
 class CannotExcludeError(Exception):
-    """It is not done; the message says why, for people."""
+    """The exclusion is refused; the message gives the reason, for people."""
 
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """What a person says of a repeat: out of the mean, or in again; why; who."""
+    """A person's decision on a repeat: out of the mean, or included again; why; who."""
 
     condition: int
     repeat: int
@@ -41,17 +41,17 @@ class Word:
 
 def parse_target(text: str) -> tuple[int, int]:
     """Return condition and repeat of a text such as ``3/2``; raises CannotExcludeError."""
-    found = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text, re.ASCII)
-    if found is None:
+    match = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text, re.ASCII)
+    if match is None:
         raise CannotExcludeError(f'expected CONDITION/REPEAT such as 3/2 (as in repeats.csv), got "{text}"')
-    return int(found[1]), int(found[2])
+    return int(match[1]), int(match[2])
 
 
 def record_word(folder: Path, word: Word) -> None:
-    """Put a person's word on record and make the folder's tables and manifest anew.
+    """Store a person's decision and make the folder's tables and manifest anew.
 
     Refused while a process works on the run, for a repeat that is not committed, without a reason, and where the folder
-    is not as its manifest says: a new manifest would hide that. Raises CannotExcludeError, StoreError, OSError.
+    differs from its manifest: a new manifest would hide that. Raises CannotExcludeError, StoreError, OSError.
     """
     if not word.reason.strip() or len(word.reason) > LONGEST:
         raise CannotExcludeError(f"a reason is needed, of at most {LONGEST} characters: it goes on record")
@@ -68,35 +68,37 @@ def record_word(folder: Path, word: Word) -> None:
         manifest = folder / MANIFEST
         before = manifest.read_text("utf-8") if manifest.is_file() else ""
         with RunReader(folder) as reader:
-            said = reader.exclusions()
+            stored = reader.exclusions()
             repeat = _wanted(reader.repeats(), word)
-        unfinished = is_unfinished(said, before)
+        unfinished = is_unfinished(stored, before)
         if before:
             _check_manifest(folder, unfinished=unfinished)
-        finishes = unfinished and (said[-1].target, said[-1].excluded) == (repeat.target, int(word.excluded))
-        if not finishes:  # else the word is on record already, and only the tables are missing
-            _refuse_contradiction(said, repeat, word)
+        finishes = unfinished and (stored[-1].target, stored[-1].excluded) == (repeat.target, int(word.excluded))
+        if not finishes:  # otherwise the decision is stored already, and only the tables are missing
+            _refuse_contradiction(stored, repeat, word)
             now = clock.utc_now()
             add_exclusion(
                 folder,
                 StoredExclusion(0, *repeat.target, int(word.excluded), word.reason.strip(), word.operator.strip(), now,
                                 __version__, before),
             )  # fmt: skip
-        if before:  # a run without a manifest has no tables yet: they come at its end
+        if before:  # a run without a manifest has no tables yet: they are made at its end
             write_all(folder)
 
 
 def is_unfinished(said: list[StoredExclusion], manifest: str) -> bool:
-    """Return whether a power cut or a kill came between the newest word and the tables that follow from it."""
+    """Return whether a power cut or a kill came between the latest decision and its tables."""
     return bool(said) and bool(manifest) and said[-1].manifest_before == manifest
 
 
 def _wanted(repeats: list[StoredRepeat], word: Word) -> StoredRepeat:
-    found = next((one for one in repeats if (one.condition, one.repeat) == (word.condition, word.repeat)), None)
-    if found is not None:
-        return found
-    known = sorted(one.repeat for one in repeats if one.condition == word.condition)
-    there = f"repeats {', '.join(map(str, known))}" if known else "no committed repeat"
+    wanted = next(
+        (repeat for repeat in repeats if (repeat.condition, repeat.repeat) == (word.condition, word.repeat)), None
+    )
+    if wanted is not None:
+        return wanted
+    committed = sorted(repeat.repeat for repeat in repeats if repeat.condition == word.condition)
+    there = f"repeats {', '.join(map(str, committed))}" if committed else "no committed repeat"
     raise CannotExcludeError(
         f"{word.condition}/{word.repeat} is not a committed repeat: condition {word.condition} has {there}"
     )

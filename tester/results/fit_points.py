@@ -1,4 +1,4 @@
-"""From measured conditions to what a fit takes: which can be relied on, what repeating leaves, and each as a point."""
+"""From measured conditions to points of a fit: the reliable ones, and their uncertainties."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ LeftOut = tuple[tuple[str, str], ...]
 
 
 def sorted_out(name: str, results: RunResults, refused: Callable[[Measured], str]) -> tuple[Labelled, LeftOut]:
-    """Return the conditions of a run of this name that can be relied on, and the others with the reason.
+    """Return the reliable conditions of a run of this name, and the others with the reason.
 
-    ``refused``: why a kind takes none of a condition that has a value without doubt, "" where it does.
+    ``refused``: returns why a kind rejects a condition that has a value without doubt, "" where it accepts it.
     """
     kept: Labelled = []
     left_out: list[tuple[str, str]] = []
-    for one in results.conditions():
-        label = f"{name}/{one.info.condition}"
-        reason = _doubt(one) or refused(one)
+    for condition in results.conditions():
+        label = f"{name}/{condition.info.condition}"
+        reason = _doubt(condition) or refused(condition)
         if reason:
-            left_out.append((f"{label} ({condition_words(one.info.setpoint)})", reason))
+            left_out.append((f"{label} ({condition_words(condition.info.setpoint)})", reason))
         else:
-            kept.append((label, one))
+            kept.append((label, condition))
     return kept, tuple(left_out)
 
 
@@ -61,8 +61,8 @@ def _doubt(one: Measured) -> str:
 
 
 def standard_of(terms: Iterable[Term], acts: Acts) -> float:
-    """Return the standard uncertainty of all terms that act in a way, in their unit."""
-    return sqrt(sum(one.standard**2 for one in terms if one.acts is acts))
+    """Return the standard uncertainty of all terms that act in one way, in their unit."""
+    return sqrt(sum(term.standard**2 for term in terms if term.acts is acts))
 
 
 def source_of(
@@ -70,9 +70,9 @@ def source_of(
 ) -> Source:
     """Return a run as a source of conditions, with the errors that they share.
 
-    These are a factor of all, which is the budget without what repeats and the temperature contribute (the median over
-    the conditions); the difference from one piece to the next, called ``worn``; and the thermometer's bias, which moves
-    the variable ``temperature``. ``scatter``: what is declared of a compound's scatter between conditions.
+    These are a factor of all, which is the budget without the contributions of repeats and temperature (the median over
+    the conditions); the difference from piece to piece, called ``worn``; and the thermometer's bias, which moves the
+    variable ``temperature``. ``scatter``: returns a compound's declared scatter between conditions.
     """
     terms = with_settings(info.terms, info.metadata)
     factors = [_rest(one, _apart(terms), own=False) for _, one in kept]
@@ -85,7 +85,7 @@ def source_of(
     )
     repeats = next((_repeatability(one, info.metadata).source for _, one in kept), "")
     compounds = dict.fromkeys(one.info.compound for _, one in kept)
-    declared = dict.fromkeys(scatter(one).source for one in compounds)
+    declared = dict.fromkeys(scatter(compound).source for compound in compounds)
     return Source(name, common, repeats, "; ".join(one for one in declared if one))
 
 
@@ -93,7 +93,8 @@ def point_of(
     label: str, one: Measured, source: Source, nominal: tuple[float, ...], measured: tuple[float, ...], between: float,
     info: RunInfo,
 ) -> FitPoint:  # fmt: skip
-    """Return a condition with what repeats of it scatter; ``between``: what conditions scatter, as a share."""
+    """Return a condition as a point, with the scatter of its repeats; ``between``: scatter of conditions, as a share.
+    """
     result = one.result
     known = _repeatability(one, info.metadata)
     return FitPoint(
@@ -112,8 +113,8 @@ def point_of(
 
 
 def declared_scatter(compound: str, metadata: Mapping[str, str], declared: Mapping[str, Scatter]) -> Scatter:
-    """Return the standard deviation by which conditions of a compound miss any smooth law: the recipe's, or what the
-    kind of rig declares of the compound, else of any ("").
+    """Return the standard deviation by which conditions of a compound miss any smooth law: the recipe's, or the kind's
+    declared one for the compound, else for any ("").
     """
     text = metadata.get(PREFIX + BETWEEN)
     if text is not None:
@@ -122,8 +123,8 @@ def declared_scatter(compound: str, metadata: Mapping[str, str], declared: Mappi
 
 
 def _repeatability(one: Measured, metadata: Mapping[str, str]) -> Scatter:
-    """Return the standard uncertainty of a condition's mean from repeats, as a share: pooled over the run, else what
-    the recipe or the rig declares.
+    """Return the standard uncertainty of a condition's mean from repeats, as a share: pooled over the run, else as
+    declared by the recipe or the rig.
     """
     result = one.result
     pooled = next((part for part in result.budget.contributions if part.name == REPEATABILITY), None)
@@ -136,8 +137,8 @@ def _repeatability(one: Measured, metadata: Mapping[str, str]) -> Scatter:
 
 
 def _rest(one: Measured, apart: Set[str], *, own: bool) -> float:
-    """Return what the budget has beside the names of ``apart``, as a share of the coefficient: ``own``: what is each
-    condition's own, else what conditions share.
+    """Return the budget without the names in ``apart``, as a share of the coefficient; ``own``: the condition's
+    independent part, else the part that conditions share.
     """
     result = one.result
     parts = [part for part in result.budget.contributions if part.name not in apart and own is not bool(part.common)]
@@ -146,10 +147,10 @@ def _rest(one: Measured, apart: Set[str], *, own: bool) -> float:
 
 
 def _apart(terms: Iterable[Term]) -> Set[str]:
-    """Return the names of what a fit has unknowns or a denominator of its own for."""
-    return {REPEATABILITY, TEMPERATURE_SENSITIVITY, *(one.name for one in terms if one.acts is Acts.TEMPERATURE)}
+    """Return the names of terms for which a fit has unknowns or a denominator of its own."""
+    return {REPEATABILITY, TEMPERATURE_SENSITIVITY, *(term.name for term in terms if term.acts is Acts.TEMPERATURE)}
 
 
 def _piece(one: Measured) -> int:
-    """Return the piece on which a condition was measured, of several the last one."""
+    """Return the piece on which a condition was measured, of several the last."""
     return max((repeat.piece for repeat in one.repeats if repeat.result.valid), default=0)

@@ -1,8 +1,8 @@
-"""The formats in which a run leaves: one table, in which each format stands once.
+"""The output formats of a run: one table, with an entry for each.
 
-Commands, screens, a run's folder and `tester verify` read it. To add a format is to write its function in a module of
-this package and its line below. A laboratory's own is a ``Format`` that its package declares as an entry point of the
-group ``friction_tester.formats``.
+Commands, screens, a run's folder and `tester verify` read it. To add a format, write its function in a module of this
+package and its entry below. A laboratory's own is a ``Format`` that its package declares as an entry point of the group
+``friction_tester.formats``.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from tester.store.reader import RunReader
 
 @dataclass(frozen=True)
 class Record:
-    """A run's record, as a format gets it."""
+    """A run's record, as a format receives it."""
 
     reader: RunReader
     decimals: int = 2
-    """Of a coefficient in the paper's table."""
+    """Decimals of a coefficient in the paper's table."""
 
     @cached_property
     def results(self) -> RunResults:
-        """The conditions, reduced from their repeats when they are first asked for; raises StoreError."""
+        """Return the conditions, reduced from their repeats on first use; raises StoreError."""
         return results_of(self.reader)
 
 
@@ -46,28 +46,29 @@ def _no_remarks(record: Record) -> Iterable[str]:
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A way in which a run leaves."""
+    """An output format of a run."""
 
     name: str
-    """By which it is asked for."""
+    """Name in commands."""
     file: str
     """Name of its file."""
     title: str
-    """What it holds, in a few words."""
+    """Content, in a few words."""
     write: Callable[[Record, BinaryIO], None]
     """Writes the record to a file that is open for bytes; may raise StoreError, OSError, MissingExtraError."""
     kept: Callable[[RunResults], bool] | None = None
-    """Whether a run's folder gets the file when the run ends; None: no run's folder does."""
+    """Whether a run's folder gets the file at the run's end; None: never."""
     is_text: bool = field(default=True, kw_only=True)
-    """May be written to a terminal."""
+    """Whether it may be written to a terminal."""
     remarks: Callable[[Record], Iterable[str]] = field(default=_no_remarks, kw_only=True)
-    """Yields what the reader of the file is to be told, a line each."""
+    """Yields remarks for the reader of the file, a line each."""
 
 
 def _csv(
     rows: Callable[[Record], Iterator[tuple[Cell, ...]]], *, bom: bool = False, risk: bool = True
 ) -> Callable[[Record, BinaryIO], None]:
-    """Return the writer of a table: UTF-8, with ``bom`` behind a byte order mark; ``risk``: a last column names it."""
+    """Return the writer of a table: UTF-8, with ``bom`` behind a byte order mark; ``risk``: with a last column for it.
+    """
 
     def write(record: Record, file: BinaryIO) -> None:
         made = rows(record)
@@ -77,7 +78,7 @@ def _csv(
 
 
 def _of_paper(record: Record) -> Iterator[str]:
-    """Yield what the paper's table leaves out, and what in it is to be taken with care."""
+    """Yield the rows that the paper's table leaves out, and those that need care."""
     for row in record.results.missing():
         yield f"not in the appendix: {row.describe()}"
     for row in record.results.doubtful():
@@ -89,7 +90,7 @@ def _always(results: RunResults) -> bool:
 
 
 _WHEEL = "wheel"
-"""The worn part whose table of pieces has a name of its own, which people's scripts read."""
+"""The worn part whose table of pieces keeps the name that existing scripts read."""
 
 FORMATS: dict[str, Format] = {
     one.name: one
@@ -120,11 +121,11 @@ FORMATS: dict[str, Format] = {
                lambda record, file: write_parquet(record.reader, file), is_text=False),
     )
 }  # fmt: skip
-"""The formats that the program ships, in the order in which they are listed and kept."""
+"""The shipped formats, in the order of lists and files."""
 
 
 def format_names() -> tuple[str, ...]:
-    """Return the names of the formats: those that are shipped, and those that installed packages declare."""
+    """Return the names of the formats: the shipped ones, and those of installed packages."""
     return (*FORMATS, *(name for name in plugins().names("formats") if name not in FORMATS))
 
 
@@ -132,8 +133,8 @@ def format_of(name: str) -> Format:
     """Return the format of a name, from this table or a package's; raises PluginError."""
     if name in FORMATS:
         return FORMATS[name]
-    found = plugins().load("formats", name)
-    if not isinstance(found, Format):
+    extension = plugins().load("formats", name)
+    if not isinstance(extension, Format):
         expected = "a tester.results.formats.Format"
-        raise PluginError(f'extension "{name}" is no format (expected {expected}, not {found!r:.80})')
-    return found
+        raise PluginError(f'extension "{name}" is no format (expected {expected}, not {extension!r:.80})')
+    return extension

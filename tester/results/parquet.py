@@ -22,7 +22,7 @@ _Columns = dict[str, list[float | None]]
 
 
 class _ParquetModules(Protocol):
-    """What is used of pyarrow, which has no type information."""
+    """The used part of pyarrow, which has no type information."""
 
     def schema(self, fields: list[tuple[str, object]]) -> object: ...
     def table(self, data: dict[str, list[float | None] | list[str]], schema: object) -> object: ...
@@ -44,16 +44,17 @@ class _Parquet(Protocol):
 def write_parquet(reader: RunReader, file: BinaryIO) -> None:
     """Write every recorded sample to ``file``: float64 columns named as in samples.csv, ids as int64.
 
-    Condition, repeat and attempt are null for samples of no repeat. A run for which a risk was accepted has one column
-    more, which names it, as its other tables have. Raises StoreError, OSError, and MissingExtraError
-    without pyarrow.
+    Condition, repeat and attempt are null for samples outside repeats. A run with an accepted risk has a further column
+    that names it, as in its other tables. Raises StoreError, OSError, and MissingExtraError without pyarrow.
     """
     pa = cast(_ParquetModules, arrow_module("pyarrow", _WHAT))
     pq = cast(_Parquet, arrow_module("pyarrow.parquet", _WHAT))
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     whole, real = pa.int64(), pa.float64()
     channels = reader.quantities().recorded
-    fields = [(one.name, whole if one.whole else real) for one in channels] + [(name, whole) for name in OWNER]
+    fields = [(channel.name, whole if channel.whole else real) for channel in channels] + [
+        (name, whole) for name in OWNER
+    ]
     risk = reader.run().info.risk
     if risk:
         fields.append((RISK_COLUMN, pa.string()))
@@ -72,7 +73,7 @@ def _groups(blocks: Iterator[SampleBlock]) -> Iterator[list[SampleBlock]]:
 
 
 def _columns(group: list[SampleBlock], owners: dict[int, StoredRepeat], channels: tuple[Channel, ...]) -> _Columns:
-    columns: _Columns = {name: [] for name in (*(one.name for one in channels), *OWNER)}
+    columns: _Columns = {name: [] for name in (*(channel.name for channel in channels), *OWNER)}
     for block in group:
         for one in channels:
             values = block.columns[one.name]

@@ -1,4 +1,4 @@
-"""The tables of what was mounted: each piece with its wear rate over all its checks, and every check of a diameter."""
+"""The tables of mounted pieces: each with its wear rate over all its checks, and every check of a diameter."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from tester.store.records import PieceInfo
 
 @dataclass(frozen=True, slots=True)
 class PieceRow:
-    """What was mounted under a number, and its wear."""
+    """A mounted piece by number, and its wear."""
 
     piece: PieceInfo
     wear: WearRate
 
 
 def pieces_table(results: RunResults) -> Table[PieceRow]:
-    """Return a row for each piece that was mounted: what it was and is, and its wear rate (95 % interval)."""
+    """Return a row for each mounted piece: its identity, diameters and wear rate (95 % interval)."""
     number = Column[PieceRow](piece_key(results.worn), results.worn, lambda row: row.piece.piece, "", 0, _SHOWN)
-    rows = (PieceRow(one, results.wear_of(one.piece)) for one in results.pieces)
+    rows = (PieceRow(piece, results.wear_of(piece.piece)) for piece in results.pieces)
     return Table((number, *_PIECE), tuple(rows))
 
 
 def checks_table(results: RunResults) -> Table[WearCheck]:
-    """Return a row for each check of a diameter; ``before`` and ``after`` are conditions, none where there is none."""
+    """Return a row for each check of a diameter; ``before`` and ``after`` are conditions, empty where there is none."""
     number = Column[WearCheck](piece_key(results.worn), results.worn, lambda row: row.piece)
     return Table((number, *map(_of_check, _CHECK)), results.checks)
 

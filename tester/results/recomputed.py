@@ -1,4 +1,4 @@
-"""Does the record bear out what is said of it? Every coefficient from its samples, every table from the record."""
+"""Whether a run's figures follow from its record: every coefficient from its samples, every table from the record."""
 
 from __future__ import annotations
 
@@ -20,24 +20,25 @@ from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredRepeat
 
 TOLERANCE = 1e-9
-"""Relative. Stored are doubles, bit by bit; a mean over a revolution is summed in another order, and merged parts have
+"""Relative. Doubles are stored bit by bit; a mean over a revolution is summed in another order, and merged parts have
 their times put back on a grid of a microsecond."""
 
 LOOSER = 1e-3
-"""Relative, of what is told from the samples' times: those of merged parts, on their grid, move it so little."""
+"""Relative, of figures that depend on the samples' times: those of merged parts, on their grid, move them this little.
+"""
 _LOOKED_AT = ("change_percent", "swing_percent", "swing_hz", "swing_skewness")
 _FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral")
 
 
 def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
-    """Recompute every repeat that has a coefficient; return how many, and what the samples do not bear out.
+    """Recompute every repeat that has a coefficient; return how many, and the contradictions.
 
     A run recorded without samples has none to recompute. Raises StoreError.
     """
     if not reader.count("sample_block", "repeat_id > 0"):
         return 0, []
     infos = {stored.info.condition: stored.info for stored in reader.conditions()}
-    measured = [one for one in reader.repeats(attempts=True) if isfinite(one.result.mu_resultant)]
+    measured = [repeat for repeat in reader.repeats(attempts=True) if isfinite(repeat.result.mu_resultant)]
     problems: list[str] = []
     for one in measured:
         problems += _differing(one, _recomputed(reader, one, infos[one.condition]))
@@ -58,15 +59,17 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
     if not isfinite(again.mu_resultant):
         yield f"{place}: its samples give no coefficient, on record is {one.result.mu_resultant:.6g}"
         return
-    said, by_samples = _figures(one.result), _figures(again)
-    for name, stored in said.items():
-        found = by_samples[name]
-        if not isclose(stored, found, rel_tol=TOLERANCE, abs_tol=TOLERANCE) and (isfinite(stored) or isfinite(found)):
-            yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
+    on_record, by_samples = _figures(one.result), _figures(again)
+    for name, stored in on_record.items():
+        computed = by_samples[name]
+        if not isclose(stored, computed, rel_tol=TOLERANCE, abs_tol=TOLERANCE) and (
+            isfinite(stored) or isfinite(computed)
+        ):
+            yield f"{place}: {name} is {computed:.6g} by its samples, on record is {stored:.6g}"
     for name in _LOOKED_AT:
-        stored, found = getattr(one.result, name), getattr(again, name)
-        if not isclose(stored, found, rel_tol=LOOSER, abs_tol=LOOSER) and not (isnan(stored) and isnan(found)):
-            yield f"{place}: {name} is {found:.6g} by its samples, on record is {stored:.6g}"
+        stored, computed = getattr(one.result, name), getattr(again, name)
+        if not isclose(stored, computed, rel_tol=LOOSER, abs_tol=LOOSER) and not (isnan(stored) and isnan(computed)):
+            yield f"{place}: {name} is {computed:.6g} by its samples, on record is {stored:.6g}"
     if one.result.revolutions != again.revolutions:
         yield f"{place}: {again.revolutions} revolutions by its samples, on record are {one.result.revolutions}"
     if one.result.status is RepeatStatus.VALID and again.status is not RepeatStatus.VALID:
@@ -78,18 +81,18 @@ def _figures(result: RepeatResult) -> dict[str, float]:
 
 
 def table_problems(folder: Path, record: Record) -> Iterator[tuple[str, str]]:
-    """Yield the tables of a folder that do not say what the record does, each with a line that says so."""
+    """Yield the tables of a folder that differ from the record, each with a line that describes it."""
     for kind in FORMATS.values():
         path = folder / kind.file
         if kind.kept is not None and path.is_file():
             made = BytesIO()
             kind.write(record, made)
             try:
-                found = _first_difference(path.read_text("utf-8-sig"), made.getvalue().decode("utf-8-sig"))
+                difference = _first_difference(path.read_text("utf-8-sig"), made.getvalue().decode("utf-8-sig"))
             except (UnicodeDecodeError, csv.Error):
-                found = "it cannot be read"
-            if found:
-                yield kind.file, f"{kind.file}: not what the record says: {found}"
+                difference = "it cannot be read"
+            if difference:
+                yield kind.file, f"{kind.file}: not what the record says: {difference}"
 
 
 def _first_difference(there: str, by_record: str) -> str:

@@ -1,4 +1,4 @@
-"""The table of reference conditions: the points of their control charts, and what they say of the counterface."""
+"""The table of reference conditions: the points of their control charts, and the change of the counterface."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ class ReferenceRow:
 
     @property
     def verdict(self) -> str:
-        """Return the same in words."""
+        """Return ``within`` in words."""
         return "no value" if self.within is None else "in control" if self.within else "out of control"
 
     def change(self, part: int) -> Value:
-        """Return the counterface's change over its travel, per cent, and the ends of its interval (95 %)."""
+        """Return the counterface's change over its travel, per cent (part 0), or an end of its interval (95 %)."""
         return self.drift.changed_percent(self.drift.over_m)[part] if self.drift is not None else None
 
 
 def references_table(results: RunResults) -> Table[ReferenceRow]:
     """Return a row for each reference condition, in the order of measurement.
 
-    ``mu`` is at the temperature asked for, ``repeatability_expanded`` its expanded repeatability (95 %). What is found
-    of the counterface is the same in every row.
+    ``mu`` is at the nominal temperature, ``repeatability_expanded`` its expanded repeatability (95 %). The result for
+    the counterface is the same in every row.
     """
     piece = Column[ReferenceRow](piece_key(results.worn), results.worn, lambda row: row.reference.piece or None)
-    axes = (axis_column(one, _info) for one in results.axes)
+    axes = (axis_column(axis, _info) for axis in results.axes)
     return Table[ReferenceRow]((*_WHICH, piece, _COMPOUND, *axes, *_FOUND), tuple(_rows(results)))
 
 
@@ -55,8 +55,10 @@ def _rows(results: RunResults) -> Iterator[ReferenceRow]:
         return
     points = {point.condition: (chart, point) for chart in watch.charts for point in chart.points}
     rows = {row.info.condition: row for row in results.references}
-    for one in watch.references:
-        yield ReferenceRow(rows[one.condition], one, *points.get(one.condition, (None, None)), watch.drift)
+    for reference in watch.references:
+        yield ReferenceRow(
+            rows[reference.condition], reference, *points.get(reference.condition, (None, None)), watch.drift
+        )
 
 
 def _info(row: ReferenceRow) -> ConditionInfo:
@@ -76,8 +78,14 @@ _FOUND: tuple[Column[ReferenceRow], ...] = (
     Column("counterface_travel_m", "travel of the counterface", lambda row: row.reference.counterface_m, "m", 0),
     Column("piece_sliding_m", "slid", lambda row: row.reference.piece_m, "m", 0),
     Column("mu", "mu", lambda row: row.reference.mu, "", 3, _SHOWN),
-    Column("repeatability_expanded", "repeatability", lambda row: None if row.point is None else row.point.expanded,
-           "", 3, _SHOWN),
+    Column(
+        "repeatability_expanded",
+        "repeatability",
+        lambda row: None if row.point is None else row.point.expanded,
+        "",
+        3,
+        _SHOWN,
+    ),
     Column("centre", "centre", lambda row: None if row.chart is None else row.chart.centre, "", 3),
     Column("limit_low", "lower limit", lambda row: None if row.chart is None else row.chart.low, "", 3, _SHOWN),
     Column("limit_high", "upper limit", lambda row: None if row.chart is None else row.chart.high, "", 3, _SHOWN),

@@ -1,4 +1,4 @@
-"""The table of repeats: each with its own coefficient, as measured, and why it is in no mean where it is in none."""
+"""The table of repeats: each with its own coefficient, as measured, and the reason where it is in no mean."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ REVERSED: Final = "reversed"
 
 @dataclass(frozen=True, slots=True)
 class CommittedRepeat:
-    """A committed repeat, its last attempt, and the condition that it is of."""
+    """A committed repeat, its last attempt, and its condition."""
 
     measured: Measured
     repeat: StoredRepeat
 
     @property
     def result(self) -> RepeatResult:
-        """Return what it shows."""
+        """Return its result."""
         return self.repeat.result
 
     @property
@@ -37,7 +37,7 @@ class CommittedRepeat:
 
     @property
     def direction(self) -> str:
-        """Return which way it slid."""
+        """Return its direction of sliding."""
         turned = self.measured.info.both_directions and is_reversed(self.repeat.repeat)
         return REVERSED if turned else AS_ASKED
 
@@ -46,9 +46,9 @@ def repeats_table(results: RunResults) -> Table[CommittedRepeat]:
     """Return the table of all committed repeats, condition by condition."""
     which = (*_WHICH, Column[CommittedRepeat](piece_key(results.worn), results.worn, lambda row: row.repeat.piece))
     settings = setting_columns(results.axes, _info, lambda row: row.measured.info.replicate)
-    means = (mean_column(one, _means) for one in results.quantities.averaged)
+    means = (mean_column(quantity, _means) for quantity in results.quantities.averaged)
     ways = (_DIRECTION,) if results.both_directions else ()
-    rows = (CommittedRepeat(one, repeat) for one in results.conditions() for repeat in one.repeats)
+    rows = (CommittedRepeat(condition, repeat) for condition in results.conditions() for repeat in condition.repeats)
     return Table[CommittedRepeat]((*which, *settings, *_FOUND, *means, *ways), tuple(rows))
 
 

@@ -1,4 +1,4 @@
-"""What a kind brings whose machine reaches a device on a turning part through a ring with brushes."""
+"""A kind's contribution for a machine that reaches a device on a turning part through a slip ring."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from tester.store.reader import RunReader
 
 @dataclass(frozen=True, slots=True)
 class RingPart:
-    """``title``: what people call it; ``counted``: which requests are; ``turns``: what it turns with; all in words."""
+    """Description of the ring, in words: ``title`` its name, ``counted`` the counted requests, ``turns`` the part that
+    turns it."""
 
     title: str
     counted: str
     turns: str
     of: Callable[[RunReader, str], RingRun]
-    """Read a run of some name; raises StoreError."""
+    """Reads a run of some name; raises StoreError."""

@@ -37,15 +37,15 @@ from tester.store.records import ConditionInfo, PieceInfo, StoredCondition, Stor
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """One condition of the plan with its repeats and what they give."""
+    """One condition of the plan with its repeats and their result."""
 
     condition: StoredCondition
     repeats: tuple[StoredRepeat, ...]
     result: ConditionResult
     by_hand: Mapping[int, StoredExclusion]
-    """What a person has left out, by its position in ``repeats``."""
+    """Exclusions by a person, by position in ``repeats``."""
     soak: SoakCheck | None = None
-    """The surface's thermometer after the soak; None where nothing is on record of it."""
+    """The surface's thermometer after the soak; None without a record of it."""
 
     @property
     def info(self) -> ConditionInfo:
@@ -59,18 +59,18 @@ class Measured:
 
     @property
     def make_ups(self) -> list[StoredRepeat]:
-        """Return the repeats that were made in place of refused ones; of pairs, both repeats of each."""
+        """Return the repeats made in place of refused ones; of pairs, both repeats of each."""
         each = self.result.repeats_each
-        return [one for i, one in enumerate(self.repeats) if i // each in self.result.counts.make_ups]
+        return [repeat for i, repeat in enumerate(self.repeats) if i // each in self.result.counts.make_ups]
 
     def left_out_by(self, repeat: StoredRepeat) -> StoredExclusion | None:
-        """Return who has left a repeat out, None where nobody has."""
+        """Return a person's exclusion of a repeat, None without one."""
         return self.by_hand.get(self.repeats.index(repeat))
 
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """A row of the recipe's table: its replicates, and the value that stands for them."""
+    """A row of the recipe's table: its replicates, and their value."""
 
     replicates: tuple[Measured, ...]
     result: ConditionResult
@@ -86,7 +86,7 @@ class TableRow:
         return self.result.status is not ConditionStatus.PENDING or any(m.repeats for m in self.replicates)
 
     def describe(self) -> str:
-        """Return the row's setpoints and why it has no value, in a line for people."""
+        """Return the row's setpoints and why it has no value, as a line for people."""
         parts = [self.result.status.value, self.result.reason]
         for measured in self.replicates:
             c = measured.condition
@@ -95,32 +95,32 @@ class TableRow:
         return ": ".join([condition_words(self.info.setpoint), *[part for part in parts if part]])
 
     def advise(self) -> str:
-        """Return what is wrong with the row, or to be taken with care, and what to do about it, for people."""
-        told = self.describe()
+        """Return the row's problem or doubts, and the remedy, for people."""
+        sentence = self.describe()
         if self.result.ok:
-            told = f"{told}: {', '.join(self.result.doubts)}"
+            sentence = f"{sentence}: {', '.join(self.result.doubts)}"
         advice = remedy(self.result)
-        return f"{told}: {advice}" if advice else told
+        return f"{sentence}: {advice}" if advice else sentence
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceWatch:
-    """What a run's reference conditions say: themselves, the counterface's drift, a control chart for each compound."""
+    """Result of a run's reference conditions: themselves, the counterface's drift, a control chart for each compound."""
 
     references: tuple[Reference, ...]
     drift: CounterfaceDrift | None
     charts: tuple[ControlChart, ...]
 
     def lines(self, worn: str) -> Iterator[str]:
-        """Yield what was found, for people; ``worn``: what they call a piece."""
+        """Yield the result, for people; ``worn``: the kind's word for a piece."""
         if self.drift is not None:
             yield self.drift.sentence(worn)
         else:
             yield "counterface: fewer than two references have a value, nothing is known of it"
         for chart in self.charts:
-            outside = [f"{one.number}" for one in chart.points if isfinite(one.mu) and not one.within]
-            told = f"references of {chart.compound}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
-            yield f"{told}; outside: {', '.join(outside)}" if outside else f"{told}; all inside"
+            outside = [f"{point.number}" for point in chart.points if isfinite(point.mu) and not point.within]
+            limits = f"references of {chart.compound}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
+            yield f"{limits}; outside: {', '.join(outside)}" if outside else f"{limits}; all inside"
 
 
 _WHAT_TO_DO: Mapping[ConditionStatus, str] = {
@@ -132,7 +132,7 @@ _WHAT_TO_DO: Mapping[ConditionStatus, str] = {
 
 
 def remedy(result: ConditionResult) -> str:
-    """Return what to do about a condition without a value, or with one to be taken with care; "" where nothing is."""
+    """Return the remedy for a condition without a value, or with one that needs care; "" where none is needed."""
     if not result.ok:
         return _WHAT_TO_DO.get(result.status, "")
     return remedy_of(result.doubts)
@@ -145,19 +145,19 @@ class RunResults:
     run: StoredRun
     rows: tuple[TableRow, ...]
     status: RunStatus
-    """How the run stood when this was read."""
+    """The run's status at the time of reading."""
     quantities: Quantities
     """The record's own channels."""
     pieces: tuple[PieceInfo, ...] = ()
-    """What was mounted to be measured."""
+    """The mounted pieces."""
     checks: tuple[WearCheck, ...] = ()
-    """Of their diameters, in the order in which they were made."""
+    """Checks of their diameters, in order of time."""
     references: tuple[TableRow, ...] = ()
-    """Reference conditions, in the order in which they were planned: none of the recipe's own conditions."""
+    """Reference conditions, in the order of the plan; they are not among the recipe's own conditions."""
     watch: ReferenceWatch | None = None
-    """What they say; None without any."""
+    """Their result; None without any."""
     settings: tuple[RepeatedSetting, ...] = ()
-    """What was measured several times, references among it."""
+    """Settings measured several times, references included."""
     record_head: str = ""
     """The last head of the record's chain, hexadecimal."""
 
@@ -168,7 +168,7 @@ class RunResults:
 
     @property
     def worn(self) -> str:
-        """Return what people call what is mounted: the part of the machine that wears."""
+        """Return the kind's word for a piece: the part of the machine that wears."""
         return self.run.info.worn
 
     @property
@@ -177,43 +177,45 @@ class RunResults:
         return any(measured.info.both_directions for measured in self.conditions())
 
     def misalignment(self) -> Misalignment:
-        """Return by what angle the cell's axes seem to be off, over all conditions measured in both directions."""
+        """Return the apparent misalignment of the cell's axes, over all conditions measured in both directions."""
         return misalignment(measured.result for measured in self.conditions())
 
     def angle_lines(self) -> Iterator[str]:
-        """Yield by what angle the cell's axes seem to be off, in a line for people, where both directions tell it."""
-        found = self.misalignment()
-        if found.pairs:
-            known = f" ± {found.expanded_deg:.2f}" if isfinite(found.expanded_deg) else ""
-            told = f"the cell's axes seem to be off by {found.deg:+.2f}{known} deg (95 %, {found.pairs} pairs)"
-            yield f"both directions: {told}, crosstalk in it; the coefficients are free of it"
+        """Yield the apparent misalignment of the cell's axes as a line for people, where both directions reveal it."""
+        angle = self.misalignment()
+        if angle.pairs:
+            known = f" ± {angle.expanded_deg:.2f}" if isfinite(angle.expanded_deg) else ""
+            sentence = f"the cell's axes seem to be off by {angle.deg:+.2f}{known} deg (95 %, {angle.pairs} pairs)"
+            yield f"both directions: {sentence}, crosstalk in it; the coefficients are free of it"
 
     def watch_lines(self) -> Iterator[str]:
-        """Yield what references and settings that were measured several times say, in lines for people."""
+        """Yield the results of references and of settings measured several times, in lines for people."""
         if self.watch is not None:
             yield from self.watch.lines(self.worn)
-        for one in self.settings:
-            yield from one.lines(self.worn)
+        for setting in self.settings:
+            yield from setting.lines(self.worn)
 
     def wear_of(self, piece: int) -> WearRate:
-        """Return the wear rate over the life of what was mounted under a number."""
-        return wear_rate([one for one in self.checks if one.piece == piece])
+        """Return the wear rate over the life of a mounted piece, by number."""
+        return wear_rate([check for check in self.checks if check.piece == piece])
 
     def condition_wear(self, condition: int) -> ConditionWear | None:
-        """Return what a condition took off; None where no check says."""
+        """Return the wear by a condition; None without checks around it."""
         return condition_wear(self.checks, condition) if self.checks else None
 
     def wear_lines(self) -> Iterator[str]:
-        """Yield, for everything mounted that was checked, its diameter and its wear rate in a line for people."""
-        for one in self.pieces:
-            checks = [check for check in self.checks if check.piece == one.piece]
+        """Yield, for each mounted piece with checks, its diameter and its wear rate as a line for people."""
+        for piece in self.pieces:
+            checks = [check for check in self.checks if check.piece == piece.piece]
             if not checks:
                 continue
-            found = wear_rate(checks)
-            text = f"{self.worn} {one.piece} ({one.compound}): {one.diameter_mm:.3f} mm after {len(checks)} checks"
-            if isfinite(found.rate):
-                text += f", wear {found.rate:.3g} ± {found.expanded:.2g} mm3/(N m)"
-                text += "" if found.resolved else ", not resolved from 0"
+            rate = wear_rate(checks)
+            text = (
+                f"{self.worn} {piece.piece} ({piece.compound}): {piece.diameter_mm:.3f} mm after {len(checks)} checks"
+            )
+            if isfinite(rate.rate):
+                text += f", wear {rate.rate:.3g} ± {rate.expanded:.2g} mm3/(N m)"
+                text += "" if rate.resolved else ", not resolved from 0"
             yield text
 
     def all_rows(self) -> Iterator[TableRow]:
@@ -227,20 +229,20 @@ class RunResults:
             yield from row.replicates
 
     def valued(self) -> int:
-        """Return how many of the recipe's own rows have a value that can be trusted."""
+        """Return how many of the recipe's own rows have a trustworthy value."""
         return sum(row.result.ok for row in self.rows)
 
     def doubtful(self) -> list[TableRow]:
-        """Return the rows whose value is to be taken with care."""
+        """Return the rows whose value needs care."""
         return [row for row in self.rows if row.result.ok and row.result.doubts]
 
     def missing(self) -> list[TableRow]:
-        """Return the rows without a value that can be trusted, references among them."""
+        """Return the rows without a trustworthy value, references included."""
         return [row for row in self.all_rows() if not row.result.ok]
 
 
 def results_of(reader: RunReader) -> RunResults:
-    """Reduce a run's committed repeats; raises StoreError where the record cannot be read."""
+    """Return the results of a run's committed repeats; raises StoreError where the record cannot be read."""
     run = reader.run()
     combining = combining_of(run.info.metadata)
     left_out = standing(reader.exclusions())
@@ -248,35 +250,34 @@ def results_of(reader: RunReader) -> RunResults:
     for repeat in reader.repeats():
         repeats.setdefault(repeat.condition, []).append(repeat)
     stored = reader.conditions()
-    found = [_measured(one, repeats.get(one.info.condition, []), left_out, combining) for one in stored]
+    conditions = [_measured(one, repeats.get(one.info.condition, []), left_out, combining) for one in stored]
     soaks = reader.soaks()
-    found = [replace(one, soak=soaks.get(one.info.condition)) for one in found]
-    found = [one if one.soak is None or one.soak.agrees else _flagged(one, THERMOMETER) for one in found]
+    conditions = [replace(one, soak=soaks.get(one.info.condition)) for one in conditions]
+    conditions = [one if one.soak is None or one.soak.agrees else _flagged(one, THERMOMETER) for one in conditions]
     pieces, checks = tuple(reader.pieces()), tuple(reader.wear_checks())
-    surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([one.result for one in found]))
-    watching = [is_reference(one.info.grid, run.info.metadata) for one in found]
-    for one, watches in zip(found, watching, strict=True):
+    surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([one.result for one in conditions]))
+    watching = [is_reference(one.info.grid, run.info.metadata) for one in conditions]
+    for one, watches in zip(conditions, watching, strict=True):
         if not watches:
             surroundings.add(one.info.setpoint, one.result)
     watch = None
     if any(watching):
-        references = [one for one, watches in zip(found, watching, strict=True) if watches]
+        references = [one for one, watches in zip(conditions, watching, strict=True) if watches]
         watch = watch_of(references, surroundings, run)
         surroundings.watched(watch.drift)
-        own = [one.info.condition for one, watches in zip(found, watching, strict=True) if not watches]
-        doubts = doubted(watch.charts, own)
-        found = [
-            _flagged(one, REFERENCE if watches else OUT_OF_LIMITS)
-            if watches or one.info.condition in doubts else one
-            for one, watches in zip(found, watching, strict=True)
+        ordinary = [one.info.condition for one, watches in zip(conditions, watching, strict=True) if not watches]
+        doubts = doubted(watch.charts, ordinary)
+        conditions = [
+            _flagged(one, REFERENCE if watches else OUT_OF_LIMITS) if watches or one.info.condition in doubts else one
+            for one, watches in zip(conditions, watching, strict=True)
         ]
-    found, settings = _budgeted(found, surroundings)
-    rows = _rows(found, surroundings)
+    conditions, settings = _budgeted(conditions, surroundings)
+    rows = _rows(conditions, surroundings)
     missing = any(not row.result.ok for row in rows)
     ours = [row for row in rows if not is_reference(row.info.grid, run.info.metadata)]
     references = [row for row in rows if is_reference(row.info.grid, run.info.metadata)]
-    held = under_way(reader.path.parent) is not None
-    status = run_status(run.status, held=held, missing=missing)
+    in_use = under_way(reader.path.parent) is not None
+    status = run_status(run.status, held=in_use, missing=missing)
     return RunResults(
         run,
         tuple(ours),
@@ -294,7 +295,7 @@ def results_of(reader: RunReader) -> RunResults:
 def _budgeted(
     found: Sequence[Measured], surroundings: SurroundingsOf
 ) -> tuple[list[Measured], tuple[RepeatedSetting, ...]]:
-    """Return the conditions with their budgets, those of a setting that disagrees flagged, and such settings."""
+    """Return the conditions with their budgets, those of a setting that disagrees flagged, and the repeated settings."""
     listed: list[Measured] = []
     settings = SettingsOf()
     for one in found:
@@ -309,31 +310,31 @@ def _budgeted(
 
 
 def _rows(found: Sequence[Measured], surroundings: SurroundingsOf) -> list[TableRow]:
-    """Return the rows of conditions with their budgets; of replicates the value that stands for them, with its own."""
+    """Return the rows of conditions with their budgets; for replicates their mean, with its own."""
     rows: list[TableRow] = []
     for _, group in groupby(found, key=lambda one: one.info.row):
         replicates = tuple(group)
         if len(replicates) == 1:
             rows.append(TableRow(replicates, replicates[0].result))
             continue
-        results = [one.result for one in replicates]
+        results = [replicate.result for replicate in replicates]
         combined = combine_replicates(results)
-        measured = [repeat for one in replicates for repeat in one.repeats]
+        measured = [repeat for replicate in replicates for repeat in replicate.repeats]
         by = surroundings.of(replicates[0].info, measured, combined)
         rows.append(TableRow(replicates, with_budget_of_replicates(combined, results, by)))
     return rows
 
 
 def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: StoredRun) -> ReferenceWatch:
-    """Return what the reference conditions of a run say; each with its coefficient at the temperature asked for."""
+    """Return the result of a run's reference conditions, each with its coefficient at the nominal temperature."""
     in_order = sorted(references, key=lambda one: one.info.condition)
-    found: list[Reference] = []
+    listed: list[Reference] = []
     for number, one in enumerate(in_order, start=1):
         result = with_budget(one.result, surroundings.of(one.info, one.repeats, one.result))
         at = Reduced(one.condition.started_s, result)
-        found.append(surroundings.reference(number, one.info, one.repeats, at))
+        listed.append(surroundings.reference(number, one.info, one.repeats, at))
     known = surroundings.known(RESERVED in run.info.metadata)
-    return ReferenceWatch(tuple(found), counterface_drift(found, known), control_charts(found, known))
+    return ReferenceWatch(tuple(listed), counterface_drift(listed, known), control_charts(listed, known))
 
 
 def _flagged(one: Measured, flag: str) -> Measured:
@@ -349,7 +350,7 @@ def _measured(
     combining: Combining,
 ) -> Measured:
     info = stored.info
-    by_hand = {i: left_out[one.target] for i, one in enumerate(repeats) if one.target in left_out}
+    by_hand = {i: left_out[repeat.target] for i, repeat in enumerate(repeats) if repeat.target in left_out}
     result = info.scheme.combine(
         [repeat.result for repeat in repeats],
         planned=info.repeats,

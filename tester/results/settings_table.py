@@ -16,7 +16,7 @@ from tester.store.records import ConditionInfo
 
 @dataclass(frozen=True, slots=True)
 class SettingRow:
-    """A measurement of a setting, and by how much it differs from the setting's first."""
+    """A measurement of a setting, and its difference from the setting's first."""
 
     info: ConditionInfo
     setting: RepeatedSetting
@@ -30,30 +30,30 @@ class SettingRow:
 
     @property
     def stands_out(self) -> bool | None:
-        """Return whether it is what stands out most; None where the setting agrees, or was not judged."""
-        found = self.setting.found
-        if found is None or found.kept or found.outstanding is None:
+        """Return whether it is the most deviant; None where the setting agrees, or was not judged."""
+        agreed = self.setting.found
+        if agreed is None or agreed.kept or agreed.outstanding is None:
             return None
-        return found.measurements[found.outstanding] is self.measurement
+        return agreed.measurements[agreed.outstanding] is self.measurement
 
 
 def settings_table(results: RunResults) -> Table[SettingRow]:
-    """Return a row for each measurement of a setting that was measured several times.
+    """Return a row for each measurement of a setting measured several times.
 
     ``difference`` is that from the setting's first measurement, with its expanded uncertainty (95 %) ``u_difference``;
     chi2 and its limit are the setting's, the same in its rows.
     """
     piece = Column[SettingRow](piece_key(results.worn), results.worn, lambda row: row.measurement.piece or None)
-    axes = (axis_column(one, _info) for one in results.axes)
+    axes = (axis_column(axis, _info) for axis in results.axes)
     return Table[SettingRow]((*_WHICH, *axes, piece, *_FOUND), tuple(_rows(results)))
 
 
 def _rows(results: RunResults) -> Iterator[SettingRow]:
-    infos = {one.info.condition: one.info for one in results.conditions()}
+    infos = {condition.info.condition: condition.info for condition in results.conditions()}
     for setting in results.settings:
-        for one in setting.measurements:
-            off = Difference() if one is setting.first else difference_of(setting.first, one)
-            yield SettingRow(infos[one.condition], setting, one, off)
+        for measurement in setting.measurements:
+            off = Difference() if measurement is setting.first else difference_of(setting.first, measurement)
+            yield SettingRow(infos[measurement.condition], setting, measurement, off)
 
 
 def _info(row: SettingRow) -> ConditionInfo:

@@ -1,4 +1,4 @@
-"""What the uncertainty of a run's conditions comes from beside their repeats, read off the run's record."""
+"""Sources of the uncertainty of a run's conditions beside their repeats, read from the run's record."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredR
 from tester.store.schema import StoreError
 
 _Held = tuple[str, tuple[AxisValue, ...]]
-"""What conditions of a pair have in common: the compound, and every axis but temperature."""
+"""Common to conditions of a pair: the compound, and every axis but temperature."""
 _SAME_K = 0.5
-"""What is known of a compound holds this near to its temperature."""
+"""Range of a compound's known sensitivity about its temperature, K."""
 
 
 class Reduced(NamedTuple):
-    """A condition's result, and the rig time at which it began."""
+    """A condition's result, and the rig time of its beginning."""
 
     started_s: float
     result: ConditionResult
 
 
 class SurroundingsOf:
-    """Finds what a condition's uncertainty comes from; ``add`` every condition first: pairs of them say how the
-    coefficient depends on temperature."""
+    """Collects the sources of a condition's uncertainty. ``add`` every condition first: pairs of them give the
+    sensitivity to temperature."""
 
     def __init__(
         self,
@@ -45,7 +45,7 @@ class SurroundingsOf:
         checks: Sequence[WearCheck],
         pool: Pool,
     ) -> None:
-        """Read what all conditions share; raises StoreError for a setting of the budget that is no number."""
+        """Read the data common to all conditions; raises StoreError for a setting of the budget that is no number."""
         try:
             self.terms = with_settings(run.info.terms, run.info.metadata)
         except ValueError as error:
@@ -64,27 +64,27 @@ class SurroundingsOf:
         self._points: dict[_Held, list[tuple[float, float]]] = {}
 
     def add(self, held: Setpoint, result: ConditionResult) -> None:
-        """Take a condition's temperature and coefficient in."""
+        """Add a condition's temperature and coefficient."""
         if result.ok and result.mu_resultant > 0.0 and isfinite(result.measured.temperature):
             self._points.setdefault(self._held(held), []).append((result.measured.temperature, result.mu_resultant))
 
     def of(self, info: ConditionInfo, repeats: Sequence[StoredRepeat], result: ConditionResult) -> Surroundings:
-        """Return what the uncertainty of a condition, or of replicates of one, comes from."""
+        """Return the sources of uncertainty of a condition, or of replicates of one."""
         warmth = self._warmth(info.setpoint, repeats, result.measured.temperature)
         travel_m = self._travel(repeats).counterface_m
         return Surroundings(self.terms, self._pool, warmth, self._size(repeats), self._drift, travel_m)
 
     def reference(self, number: int, info: ConditionInfo, repeats: Sequence[StoredRepeat], at: Reduced) -> Reference:
-        """Return a reference condition as the analysis wants it; ``at``: when it began, and its result."""
+        """Return a reference condition for the analysis; ``at``: its beginning and its result."""
         result, travel = at.result, self._travel(repeats)
         n = max(result.n_valid, 1)
-        kept = [one.piece for one in repeats if one.result.valid]
+        valid_pieces = [repeat.piece for repeat in repeats if repeat.result.valid]
         return Reference(
             number,
             info.condition,
             at.started_s,
             info.compound,
-            kept[-1] if kept else 0,
+            valid_pieces[-1] if valid_pieces else 0,
             result.mu if result.ok else NAN,
             self._share() / sqrt(n),
             travel.counterface_m,
@@ -92,12 +92,12 @@ class SurroundingsOf:
         )
 
     def known(self, reserved: bool) -> KnownScatter:
-        """Return what is known of scatter beside references."""
-        between = sum(one.standard for one in self.terms if one.acts is Acts.PIECE)
+        """Return the known scatter beside references."""
+        between = sum(term.standard for term in self.terms if term.acts is Acts.PIECE)
         return KnownScatter(float(self._pool.df) if self._pool.df else inf, between, reserved)
 
     def watched(self, drift: CounterfaceDrift | None) -> None:
-        """Take in what reference conditions say of the counterface."""
+        """Set the counterface's drift from reference conditions."""
         self._drift = drift
 
     def _share(self) -> float:
@@ -105,11 +105,15 @@ class SurroundingsOf:
 
     def _travel(self, repeats: Sequence[StoredRepeat]) -> Travel:
         """Return how far counterface and piece had come at the mean of the repeats that count."""
-        found = [self._travels[one.key] for one in repeats if one.result.valid and one.key in self._travels]
-        if not found:
+        travels = [
+            self._travels[repeat.key] for repeat in repeats if repeat.result.valid and repeat.key in self._travels
+        ]
+        if not travels:
             return Travel(NAN, NAN)
-        n = len(found)
-        return Travel(sum(one.counterface_m for one in found) / n, sum(one.piece_m for one in found) / n)
+        n = len(travels)
+        return Travel(
+            sum(travel.counterface_m for travel in travels) / n, sum(travel.piece_m for travel in travels) / n
+        )
 
     def _held(self, held: Setpoint) -> _Held:
         return held.compound, tuple(axis.of(held) for axis in held.axes if axis.name != self._axis)
@@ -119,43 +123,43 @@ class SurroundingsOf:
 
     def _warmth(self, held: Setpoint, repeats: Sequence[StoredRepeat], shown_c: float) -> SurfaceWarmth:
         nominal_c = self._nominal_c(held)
-        rates = [self._warming.get(one.key, NAN) for one in repeats if one.result.valid]
+        rates = [self._warming.get(repeat.key, NAN) for repeat in repeats if repeat.result.valid]
         rates = [rate for rate in rates if isfinite(rate)]
         rate = sum(rates) / len(rates) if rates else 0.0
         return SurfaceWarmth(nominal_c, shown_c, rate, self._slope(held, nominal_c, shown_c))
 
     def _slope(self, held: Setpoint, nominal_c: float, shown_c: float) -> Slope:
         points = self._points.get(self._held(held), [])
-        found = slope_of_pairs(shown_c, points) if isfinite(shown_c) else None
-        if found is not None:
-            return found
-        for one in self._known:
-            if one.compound == held.compound and abs(one.temperature_c - nominal_c) <= _SAME_K:
-                return one.slope
+        slope = slope_of_pairs(shown_c, points) if isfinite(shown_c) else None
+        if slope is not None:
+            return slope
+        for known_slope in self._known:
+            if known_slope.compound == held.compound and abs(known_slope.temperature_c - nominal_c) <= _SAME_K:
+                return known_slope.slope
         return UNKNOWN
 
     def _size(self, repeats: Sequence[StoredRepeat]) -> Size:
-        """Return the diameter of the pieces that were measured on, the worst known of them."""
-        pieces = dict.fromkeys(one.piece for one in repeats)
-        sizes = [self._worn[one].size(self._slid(one, repeats)) for one in pieces if one in self._worn]
+        """Return the diameter of the measured pieces, of several the least certain."""
+        pieces = dict.fromkeys(repeat.piece for repeat in repeats)
+        sizes = [self._worn[piece].size(self._slid(piece, repeats)) for piece in pieces if piece in self._worn]
         return max(sizes, key=lambda one: (not one.checked, one.checked_u_mm, one.loss_mm), default=NO_SIZE)
 
     def _slid(self, piece: int, repeats: Sequence[StoredRepeat]) -> float:
-        """Return how far a piece had slid in the middle of the repeats on it that count, m; NaN where nothing says."""
-        marks = sorted([*self._marks.get(piece, ()), *(one.sliding_m for one in self._worn[piece].checks)])
-        begun = [self._travels[one.key].piece_m for one in repeats
-                 if one.piece == piece and one.result.valid and one.key in self._travels]  # fmt: skip
+        """Return the middle of a piece's sliding in its repeats that count, m; NaN without a record."""
+        marks = sorted([*self._marks.get(piece, ()), *(check.sliding_m for check in self._worn[piece].checks)])
+        begun = [self._travels[repeat.key].piece_m for repeat in repeats
+                 if repeat.piece == piece and repeat.result.valid and repeat.key in self._travels]  # fmt: skip
         middles = [0.5 * (at + next((mark for mark in marks if mark > at), at)) for at in begun if isfinite(at)]
         return sum(middles) / len(middles) if middles else NAN
 
 
 def _worn(pieces: Sequence[PieceInfo], checks: Sequence[WearCheck]) -> dict[int, Worn]:
     return {
-        one.piece: Worn(
-            one.installed_diameter_mm,
-            one.diameter_mm if isfinite(one.diameter_mm) else one.installed_diameter_mm,
-            one.sliding_m,
-            tuple(check for check in checks if check.used and check.piece == one.piece),
+        piece.piece: Worn(
+            piece.installed_diameter_mm,
+            piece.diameter_mm if isfinite(piece.diameter_mm) else piece.installed_diameter_mm,
+            piece.sliding_m,
+            tuple(check for check in checks if check.used and check.piece == piece.piece),
         )
-        for one in pieces
+        for piece in pieces
     }

@@ -1,7 +1,6 @@
-"""Tables as rows of cells that are more, or less, than their columns: the paper's appendix, conditions, samples.
+"""Tables whose cells differ from their columns in number: the paper's appendix, conditions, samples.
 
-Appendix and conditions hold no wall-clock time, path, host or version: the same data gives the
-same bytes.
+Appendix and conditions hold no wall-clock time, path, host or version: the same data gives the same bytes.
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from tester.store.records import RunInfo
 
 HEAD_COLUMN = "record_head"
 RISK_COLUMN = "accepted_risk"
-"""Last column of every table of a run for which a risk was accepted; ``conditions.csv`` has it among the metadata."""
+"""Last column of every table of a run with an accepted risk; ``conditions.csv`` has it among the metadata."""
 
 OWNER = ("condition", "repeat", "attempt")
-"""Last columns of the samples: whose they are."""
+"""Last columns of the samples: the repeat that they belong to."""
 
 
 def marked(rows: Iterator[tuple[Cell, ...]], run: RunInfo) -> Iterator[tuple[Cell, ...]]:
-    """Yield a table's rows, with a last column that names the risk, where one was accepted for the run."""
+    """Yield a table's rows, with a last column that names the risk accepted for the run, if any."""
     if not run.risk:
         yield from rows
         return
@@ -34,12 +33,13 @@ def marked(rows: Iterator[tuple[Cell, ...]], run: RunInfo) -> Iterator[tuple[Cel
 
 
 def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell, ...]]:
-    """Yield the paper's table: nominal setpoints, one row for each condition that has a value to be trusted.
+    """Yield the paper's table: nominal setpoints, one row for each condition with a trustworthy value.
 
-    Reference conditions are not in it: one setpoint many times over is no further condition of a compound, and who
-    plots or fits the table would count it as often.
+    Reference conditions are left out: one setpoint many times over is no further condition of a compound, and a plot or
+    fit of the table would overweight it.
 
-    The paper's six columns, and one more for every axis that is off its default in any condition of the recipe.
+    It has the paper's six columns, and a further one for every axis that is off its default in any condition of the
+    recipe.
     """
     axes = results.axes.columns(row.info.setpoint for row in results.rows)
     yield ("Formula", *(axis.header for axis in axes), "Friction Coefficient")
@@ -55,28 +55,29 @@ def appendix_rows(results: RunResults, decimals: int = 2) -> Iterator[tuple[Cell
 def condition_rows(results: RunResults) -> Iterator[tuple[Cell, ...]]:
     """Yield the table of conditions.
 
-    Behind its columns stand what the recipe says of the test, a column each, and last the head of the record's chain:
-    empty for a simulated run, which its seed proves, byte for byte.
+    Behind its columns come the recipe's metadata, a column each, and last the head of the record's chain: empty for a
+    simulated run, which its seed reproduces byte for byte.
     """
     metadata = dict(sorted(results.run.info.metadata.items()))
     last = (*metadata.values(), "" if results.run.info.simulated else results.record_head)
     rows = conditions_table(results).csv()
-    own = next(rows)
-    yield (*own, *(key if key not in (*own, HEAD_COLUMN) else f"recipe_{key}" for key in metadata), HEAD_COLUMN)
+    keys = next(rows)
+    yield (*keys, *(key if key not in (*keys, HEAD_COLUMN) else f"recipe_{key}" for key in metadata), HEAD_COLUMN)
     for row in rows:
         yield (*row, *last)
 
 
 def sample_rows(reader: RunReader) -> Iterator[tuple[Cell, ...]]:
-    """Yield every recorded sample with the condition, repeat and attempt it belongs to (empty: none)."""
+    """Yield every recorded sample with its condition, repeat and attempt (empty: none)."""
     channels = reader.quantities().recorded
-    yield (*(one.name for one in channels), *OWNER)
+    yield (*(channel.name for channel in channels), *OWNER)
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     for block in reader.sample_blocks():
         owner = owners.get(block.repeat_key)
         ids = (owner.condition, owner.repeat, owner.attempt) if owner is not None else (None, None, None)
         columns = [
-            [_whole(value) if one.whole else exact(value) for value in block.columns[one.name]] for one in channels
+            [_whole(value) if channel.whole else exact(value) for value in block.columns[channel.name]]
+            for channel in channels
         ]
         for cells in zip(*columns, strict=True):
             yield (*cells, *ids)

@@ -1,4 +1,4 @@
-"""How many of a run's conditions have a value, and which flags they carry, in the words that every output prints."""
+"""Counts a run's conditions with a value, and their flags, in the words that every output prints."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class Tally:
     doubted: int
     noted: int
     doubts: tuple[str, ...]
-    """The words of the doubts that were raised."""
+    """Words of the doubts raised."""
     notes: tuple[str, ...]
-    """The words of the other flags."""
+    """Words of the other flags."""
 
     @property
     def missing(self) -> int:
-        """Return how many conditions have no value to be trusted."""
+        """Return how many conditions have no trustworthy value."""
         return self.conditions - self.valued
 
     @property
@@ -53,7 +53,7 @@ def tally_of(results: RunResults) -> Tally:
 
 
 def flag_lines(results: RunResults) -> Iterator[str]:
-    """Yield what each flag means that a condition, or a reference, carries, and what to do about it."""
+    """Yield meaning and remedy of each flag that a condition, or a reference, carries."""
     carried = {word for row in results.all_rows() for word in flags_in(row.result.flags)}
     for flag in FLAGS.values():
         if flag.word in carried:

@@ -1,4 +1,5 @@
-"""Is a run as it was left? The chain over its record, coefficients from their samples, the manifest, the texts."""
+"""Verifies that a run is unchanged: the chain over its record, coefficients from their samples, the manifest, the
+texts."""
 
 from __future__ import annotations
 
@@ -25,29 +26,29 @@ from tester.store.schema import StoreError
 from tester.store.statements import calibration_sha256, text_sha256
 
 LISTED = 5
-"""The newest rows since a kept head that are named."""
+"""Most of the rows newer than a kept head that are named."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What was found: ``problems`` where something is not as it was left, a line each."""
+    """Result of a verification: ``problems`` lists changes, a line each."""
 
     run: StoredRun | None
     status: RunStatus
     problems: tuple[str, ...]
     blocks: int = 0
     samples: int = 0
-    """What was read of the record: sample blocks, and samples in them."""
+    """Amount read from the record: sample blocks, and samples in them."""
     excluded: int = 0
-    """Repeats that people have left out of the means; the manifest is of the tables without them."""
+    """Repeats that people have left out of the means; the manifest covers the tables without them."""
     coefficients: int = 0
-    """Recomputed from their samples."""
+    """Number recomputed from their samples."""
     head: str = ""
     """The last head of the record's chain, hexadecimal; "" where the record cannot be read."""
 
 
 def verify(folder: Path, kept: str = "") -> Verification:
-    """Check a run's folder; never raises for what it finds wrong in it.
+    """Check a run's folder and return the result; never raises for faults of the folder.
 
     ``kept``: the head of the record's chain as a person has kept it, hexadecimal, 64 digits; "" for none.
     """
@@ -67,21 +68,23 @@ def verify(folder: Path, kept: str = "") -> Verification:
             problems += differing
             problems += [f"run.db: {problem}" for problem in reader.integrity_problems()]
             problems += _texts(folder, run)
-            said = reader.exclusions()
-            problems += [f"run.db: {problem}" for problem in exclusion_problems(said, reader.repeats(attempts=True))]
-            problems += _cut_off(folder, said)
+            exclusions = reader.exclusions()
+            problems += [
+                f"run.db: {problem}" for problem in exclusion_problems(exclusions, reader.repeats(attempts=True))
+            ]
+            problems += _cut_off(folder, exclusions)
             blocks = samples = 0
             for block in reader.sample_blocks():
                 blocks += 1
                 samples += block.rows
     except StoreError as error:
         return Verification(None, RunStatus.UNREADABLE, (*problems, str(error)))
-    out = len(standing(said))
+    out = len(standing(exclusions))
     return Verification(run, results.status, tuple(problems), blocks, samples, out, coefficients, chain.head)
 
 
 def _chain(chain: ChainFound, kept: str) -> list[str]:
-    """Return what the chain does not bear out, and whether it ends in the head that a person has kept."""
+    """Return the contradictions to the chain, and whether it ends in the head that a person has kept."""
     problems = [f"run.db: {problem}" for problem in chain.problems]
     if not kept or kept.lower() == chain.head:
         return problems
@@ -93,7 +96,7 @@ def _chain(chain: ChainFound, kept: str) -> list[str]:
 
 
 def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]:
-    """Return what a run lacks that has ended: its manifest, with the chain's head."""
+    """Return what an ended run lacks: its manifest, with the chain's head."""
     if results.status in (RunStatus.RUNNING, RunStatus.INTERRUPTED) or under_way(folder) is not None:
         return []
     if not (folder / MANIFEST).is_file():
@@ -102,18 +105,18 @@ def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]
         if manifest_head(folder) != chain.head:
             return [f"{MANIFEST}: of a record with another head"]
     except (OSError, ValueError, AttributeError, KeyError, TypeError):
-        pass  # that it cannot be read is told already
+        pass  # unreadable: ``_manifest`` has reported it already
     return []
 
 
 def _made_by(reader: RunReader) -> str:
-    """Return the version that wrote the folder's tables last."""
-    said, sessions = reader.exclusions(), reader.sessions()
-    return said[-1].software_version if said else sessions[-1].software_version if sessions else ""
+    """Return the version that last wrote the folder's tables."""
+    exclusions, sessions = reader.exclusions(), reader.sessions()
+    return exclusions[-1].software_version if exclusions else sessions[-1].software_version if sessions else ""
 
 
 def _cut_off(folder: Path, said: list[StoredExclusion]) -> list[str]:
-    """Return what to do where a kill came between a person's word on a repeat and the tables without it."""
+    """Return the remedy where a kill came between a person's decision on a repeat and the tables that follow it."""
     path = folder / MANIFEST
     if not path.is_file() or not is_unfinished(said, path.read_text("utf-8", errors="replace")):
         return []
@@ -124,7 +127,7 @@ def _cut_off(folder: Path, said: list[StoredExclusion]) -> list[str]:
 
 def _manifest(folder: Path) -> list[str]:
     if not (folder / MANIFEST).is_file():
-        return []  # written at a run's end; what is left of one that was cut off has none
+        return []  # written at a run's end; a run that was cut off has none
     try:
         return manifest_problems(folder)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
@@ -132,7 +135,7 @@ def _manifest(folder: Path) -> list[str]:
 
 
 def _texts(folder: Path, run: StoredRun) -> list[str]:
-    """Hold the stored texts against their stored hashes, and the folder's copies against both."""
+    """Return differences of the stored texts from their stored hashes, and of the folder's copies from both."""
     info = run.info
     stored = (
         ("recipe", info.recipe_text, run.recipe_sha256),
@@ -151,15 +154,15 @@ def _texts(folder: Path, run: StoredRun) -> list[str]:
 
 
 def _materials(folder: Path, run: StoredRun) -> Iterator[str]:
-    """Yield what differs of the files of compounds and surfaces: their texts on record, and the folder's copies."""
-    for one in run.info.materials:
-        if one.text is not None and text_sha256(one.text) != one.sha256:
-            yield f"run.db: the text of {one.file} has another hash"
-        path = folder / one.file
+    """Yield differences of the files of compounds and surfaces: their texts on record, and the folder's copies."""
+    for material in run.info.materials:
+        if material.text is not None and text_sha256(material.text) != material.sha256:
+            yield f"run.db: the text of {material.file} has another hash"
+        path = folder / material.file
         if not path.is_file():
-            yield f"{one.file}: missing"
-        elif _file_sha256(path) != one.sha256:
-            yield f"{one.file}: not what the run was made with"
+            yield f"{material.file}: missing"
+        elif _file_sha256(path) != material.sha256:
+            yield f"{material.file}: not what the run was made with"
 
 
 def _file_sha256(path: Path) -> str:

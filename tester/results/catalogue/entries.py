@@ -1,4 +1,4 @@
-"""What a catalogue holds of a run, how it is read from the run's folder, and what a catalogue can do."""
+"""Entries of a catalogue, their reader from a run's folder, and the interface of a catalogue."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 
 _MADE_BY = "1"
-"""Raised when the same record gives other entries than before: then all are made anew."""
+"""Increase it when the same record yields other entries than before: then all are made anew."""
 
 
 class CatalogueError(Exception):
-    """A catalogue cannot be used; the message says why."""
+    """A catalogue cannot be used; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunEntry:
-    """One run. ``origin`` is the computer and the folder of the runs it lies in; with the name it is the key."""
+    """One run. ``origin`` is the computer and the folder of runs; with the name it is the key."""
 
     origin: str
     name: str
     fingerprint: str
-    """Changes when the run's files change, or a process begins or ends to work on it."""
+    """Changes when the run's files change, or a process starts or stops working on it."""
     status: str
-    """A word of RunStatus: how the run stood when its own computer looked last."""
+    """A word of RunStatus: the run's status when its own computer last looked."""
     recipe: str
     recipe_sha256: str
     compounds: str
@@ -49,15 +49,15 @@ class RunEntry:
     repeats: int
     repeats_planned: int
     trusted: int
-    """Conditions that have a coefficient to be trusted."""
+    """Number of conditions with a trustworthy coefficient."""
     problem: str = ""
     kind: str = ""
-    """Of the rig."""
+    """Kind of the rig."""
     axes: str = ""
-    """Of the run's conditions, as JSON (``Axes.as_data``); "" of a run that cannot be read."""
+    """Axes of the run's conditions, as JSON (``Axes.as_data``); "" for an unreadable run."""
 
     def table(self) -> Axes:
-        """Return the axes of the run's conditions; raises ValueError for a run that cannot be read."""
+        """Return the axes of the run's conditions; raises ValueError for an unreadable run."""
         return axes_from(json.loads(self.axes))
 
 
@@ -69,7 +69,7 @@ class ConditionEntry:
     replicate: int
     compound: str
     held: str
-    """What was held, as JSON: a value for each axis, by its column in the project's tables."""
+    """Setpoints as JSON: a value for each axis, by its column in the project's tables."""
     status: str
     mu: float | None
     s: float | None
@@ -78,21 +78,22 @@ class ConditionEntry:
     n_valid: int
     n: int
     flags: str = ""
-    """With ``status`` says how far the coefficient can be trusted (tester.analysis.results)."""
+    """With ``status`` determines the trust in the coefficient (tester.analysis.results)."""
 
     def setpoint(self, axes: Axes) -> Setpoint:
-        """Return what was held, on the axes of the condition's run."""
+        """Return the setpoints, on the axes of the condition's run."""
         held: dict[str, AxisValue] = json.loads(self.held)
-        found = {axis.name: held[axis.column] for axis in axes}
+        by_name = {axis.name: held[axis.column] for axis in axes}
         scaled = {
-            axis.name: value if isinstance(value := found[axis.name], str) else value / axis.scale for axis in axes
+            axis.name: value if isinstance(value := by_name[axis.name], str) else value / axis.scale for axis in axes
         }
         return axes.setpoint(self.compound, **scaled)
 
 
 @dataclass(frozen=True, slots=True)
 class WantedRuns:
-    """Which runs: every field that is not empty narrows. ``since`` and ``until`` are the beginnings of ISO dates."""
+    """Filter of runs: every field that is not empty narrows it. ``since`` and ``until`` are the beginnings of ISO
+    dates."""
 
     compound: str = ""
     since: str = ""
@@ -108,15 +109,15 @@ class Catalogue(Protocol):
         ...
 
     def put(self, run: RunEntry, conditions: Iterable[ConditionEntry]) -> None:
-        """Store a run, in place of what was stored of it."""
+        """Store a run, in place of any earlier entry."""
         ...
 
     def remove(self, origin: str, name: str) -> None:
-        """Forget a run."""
+        """Remove a run."""
         ...
 
     def runs(self, wanted: WantedRuns) -> list[RunEntry]:
-        """Return the runs that are wanted, by start."""
+        """Return the runs that pass the filter, by start."""
         ...
 
     def conditions(self, run: RunEntry) -> list[ConditionEntry]:
@@ -124,7 +125,7 @@ class Catalogue(Protocol):
         ...
 
     def close(self) -> None:
-        """Let go of it."""
+        """Close it."""
         ...
 
 
@@ -134,7 +135,7 @@ def origin_of(under: Path) -> str:
 
 
 def refresh(catalogue: Catalogue, under: Path) -> None:
-    """Bring a catalogue up to date with the runs under a folder; what has not changed is not read again."""
+    """Bring a catalogue up to date with the runs under a folder; unchanged runs are not read again."""
     origin = origin_of(under)
     known = catalogue.fingerprints(origin)
     for folder in run_folders(under):
@@ -146,7 +147,8 @@ def refresh(catalogue: Catalogue, under: Path) -> None:
 
 
 def fingerprint(folder: Path) -> str:
-    """Return what changes when a run's entries change: size and time of the database and its log, held or not."""
+    """Return a text that changes with a run's entries: size and time of the database and its log, and whether it is in
+    use."""
     parts = [_MADE_BY] if under_way(folder) is None else [_MADE_BY, "held"]
     for name in (DATABASE, f"{DATABASE}-wal"):
         path = folder / name
@@ -157,7 +159,7 @@ def fingerprint(folder: Path) -> str:
 
 
 def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list[ConditionEntry]]:
-    """Return a run's entries; of one that cannot be read an entry that says so."""
+    """Return a run's entries; an unreadable run gets an entry with the problem."""
     try:
         with RunReader(folder) as reader:
             results = results_of(reader)
@@ -191,7 +193,7 @@ def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list
 
 
 def held_text(setpoint: Setpoint) -> str:
-    """Return what was held as ``ConditionEntry.held`` has it."""
+    """Return setpoints in the form of ``ConditionEntry.held``."""
     return json.dumps({axis.column: axis.of(setpoint) for axis in setpoint.axes})
 
 

@@ -1,4 +1,4 @@
-"""The index next to the runs: one SQLite file that can be deleted at any time, it is made again from the runs."""
+"""The index next to the runs: one SQLite file that is rebuilt from the runs whenever it is missing."""
 
 from __future__ import annotations
 
@@ -30,39 +30,38 @@ class LocalIndex:
     """A catalogue in ``.catalogue.db`` under the folder of the runs; in memory where that cannot be written."""
 
     def __init__(self, under: Path) -> None:
-        """Open the index, or make it: also where there is a damaged one or one of another version."""
+        """Open the index, or make it, which also replaces a damaged one or one of another version."""
         path = under / INDEX
         try:
             self._connection = _opened(path)
         except sqlite3.OperationalError:
-            self._connection = _opened(None)  # a folder that is read-only, or not there
+            self._connection = _opened(None)  # the folder is read-only, or missing
         except sqlite3.DatabaseError:
             with suppress(OSError):
                 path.unlink()
             self._connection = _opened(path)
 
     def fingerprints(self, origin: str) -> dict[str, str]:
-        """Return the fingerprint of every run of an origin, by name."""
         return dict(self._connection.execute("SELECT name, fingerprint FROM run WHERE origin = ?", (origin,)))
 
     def put(self, run: RunEntry, conditions: Iterable[ConditionEntry]) -> None:
-        """Store a run, in place of what was stored of it; raises CatalogueError."""
+        """Store a run, in place of any earlier entry; raises CatalogueError."""
         try:
             with self._connection:
                 self._delete(run.origin, run.name)
                 self._insert("run", [getattr(run, name) for name in _RUN])
-                for one in conditions:
-                    self._insert("condition", [run.origin, run.name, *(getattr(one, name) for name in _CONDITION)])
+                for condition in conditions:
+                    self._insert(
+                        "condition", [run.origin, run.name, *(getattr(condition, name) for name in _CONDITION)]
+                    )
         except sqlite3.Error as error:
             raise CatalogueError(f"the index of the runs cannot be written: {error}") from error
 
     def remove(self, origin: str, name: str) -> None:
-        """Forget a run."""
         with self._connection:
             self._delete(origin, name)
 
     def runs(self, wanted: WantedRuns) -> list[RunEntry]:
-        """Return the runs that are wanted, by start."""
         where: list[str] = ["1"]
         values: list[str] = []
         for value, condition in (
@@ -78,13 +77,11 @@ class LocalIndex:
         return [RunEntry(**dict(zip(_RUN, row, strict=True))) for row in self._connection.execute(sql, values)]
 
     def conditions(self, run: RunEntry) -> list[ConditionEntry]:
-        """Return a run's conditions in order."""
         sql = f"SELECT {', '.join(_CONDITION)} FROM condition WHERE origin = ? AND name = ? ORDER BY condition"
         rows = self._connection.execute(sql, (run.origin, run.name))
         return [ConditionEntry(**dict(zip(_CONDITION, row, strict=True))) for row in rows]
 
     def close(self) -> None:
-        """Let go of the file."""
         self._connection.close()
 
     def _delete(self, origin: str, name: str) -> None:

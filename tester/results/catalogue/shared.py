@@ -1,7 +1,7 @@
-"""The catalogue that a laboratory shares: any database that SQLAlchemy reaches, tried with PostgreSQL.
+"""The catalogue that a laboratory shares: any database that SQLAlchemy reaches, tested with PostgreSQL.
 
-Needs the extra ``catalogue``. Whoever lists runs brings the shared catalogue up to date with the runs of that folder;
-those of others stay as they are.
+Needs the extra ``catalogue``. A command that lists runs brings the shared catalogue up to date with the runs of its
+folder; runs of other folders stay as they are.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class SharedCatalogue:
     """A catalogue behind a database URL."""
 
     def __init__(self, url: str) -> None:
-        """Connect, and make the tables where they are not there yet; raises CatalogueError."""
+        """Connect, and make missing tables; raises CatalogueError."""
         try:
             self._engine = sa.create_engine(_with_driver(url))
             with self._engine.begin() as connection:
@@ -63,15 +63,14 @@ class SharedCatalogue:
             raise CatalogueError(f"the shared catalogue cannot be used: {error}") from error
 
     def fingerprints(self, origin: str) -> dict[str, str]:
-        """Return the fingerprint of every run of an origin, by name."""
         wanted = sa.select(RUN.c.name, RUN.c.fingerprint).where(RUN.c.origin == origin)
         with self._engine.connect() as connection:
             return {str(name): str(fingerprint) for name, fingerprint in connection.execute(wanted)}
 
     def put(self, run: RunEntry, conditions: Iterable[ConditionEntry]) -> None:
-        """Store a run, in place of what was stored of it; raises CatalogueError."""
+        """Store a run, in place of any earlier entry; raises CatalogueError."""
         key = {"origin": run.origin, "name": run.name}
-        rows = [key | asdict(one) for one in conditions]
+        rows = [key | asdict(condition) for condition in conditions]
         try:
             with self._engine.begin() as connection:
                 self._delete(connection, run.origin, run.name)
@@ -82,12 +81,10 @@ class SharedCatalogue:
             raise CatalogueError(f"the shared catalogue cannot be written: {error}") from error
 
     def remove(self, origin: str, name: str) -> None:
-        """Forget a run."""
         with self._engine.begin() as connection:
             self._delete(connection, origin, name)
 
     def runs(self, wanted: WantedRuns) -> list[RunEntry]:
-        """Return the runs that are wanted, by start."""
         query = sa.select(RUN).order_by(RUN.c.started_utc, RUN.c.name)
         if wanted.compound:
             framed = sa.literal("\n") + RUN.c.compounds + sa.literal("\n")
@@ -102,7 +99,6 @@ class SharedCatalogue:
             return [RunEntry(**row) for row in connection.execute(query).mappings()]
 
     def conditions(self, run: RunEntry) -> list[ConditionEntry]:
-        """Return a run's conditions in order."""
         names = [field.name for field in fields(ConditionEntry)]
         query = (
             sa.select(*(CONDITION.c[name] for name in names))
@@ -113,7 +109,6 @@ class SharedCatalogue:
             return [ConditionEntry(**row) for row in connection.execute(query).mappings()]
 
     def close(self) -> None:
-        """Let go of the connections."""
         self._engine.dispose()
 
     @staticmethod
@@ -123,7 +118,7 @@ class SharedCatalogue:
 
 
 def _make_tables(connection: sa.Connection) -> None:
-    """Make the tables that are not there yet; raises CatalogueError for tables of another version."""
+    """Make missing tables; raises CatalogueError for tables of another version."""
     _METADATA.create_all(connection)
     present = sa.inspect(connection)
     for table in (RUN, CONDITION):
@@ -137,6 +132,6 @@ def _make_tables(connection: sa.Connection) -> None:
 
 
 def _with_driver(url: str) -> str:
-    """Return a PostgreSQL URL with the driver that the extra installs, any other as it is."""
+    """Return a PostgreSQL URL with the driver that the extra installs, any other unchanged."""
     scheme, rest = url.split("://", 1) if "://" in url else ("", url)
     return f"postgresql+psycopg://{rest}" if scheme in ("postgresql", "postgres") else url
