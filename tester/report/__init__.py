@@ -1,4 +1,4 @@
 """Figures of runs: charts as data, and their drawing, which alone needs matplotlib (extra ``report``).
 
-Knows no machine: axes tell what a condition is held at, published points and laws are handed in.
+Knows no machine: the axes describe the setpoints, and callers pass published points and laws.
 """

@@ -1,4 +1,4 @@
-"""Which engineering assumptions entered a run: terms of its budget, and numbers of its rig file, marked [A]."""
+"""Engineering assumptions that entered a run: terms of its budget, and numbers of its rig file, marked [A]."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MARK = "[A]"
 
 @dataclass(frozen=True, slots=True)
 class AssumedKey:
-    """A key of a rig file whose packaged value is an assumption, and what the file says of it."""
+    """A key of a rig file whose packaged value is an assumption, and its remark in the file."""
 
     key: str
     value: str
@@ -23,18 +23,18 @@ class AssumedKey:
 
 def assumed_terms(results: RunResults) -> Iterator[tuple[str, str, str]]:
     """Yield name, bound and source of the terms of the budget that rest on an assumption."""
-    for one in results.run.info.terms:
-        if MARK in one.source:
-            unit = "" if one.unit in ("", "1") else f"\u00a0{one.unit}"
-            yield one.name, f"{one.bound:g}{unit}, {one.distribution}", one.source
+    for term in results.run.info.terms:
+        if MARK in term.source:
+            unit = "" if term.unit in ("", "1") else f"\u00a0{term.unit}"
+            yield term.name, f"{term.bound:g}{unit}, {term.distribution}", term.source
 
 
 def assumed_keys(commented: str, packaged: str, stored: str) -> list[AssumedKey]:
-    """Return the keys that a packaged rig file marks and that a run's rig has as they are packaged.
+    """Return the keys that a packaged rig file marks and that keep their packaged value in a run's rig.
 
-    ``commented`` is the packaged file with its remarks, ``packaged`` the same as a run stores it, ``stored`` the text
-    that the run was made with. A key with another value is the laboratory's own number, and is left out. None where
-    one of them cannot be read.
+    ``commented`` is the packaged file with its remarks, ``packaged`` the same as a run stores it, ``stored`` the run's
+    own text. A key with another value is the laboratory's own number, and is left out. Empty where one of the texts is
+    unreadable.
     """
     try:
         before, now = (_flat(load_tree(text, "rig.yaml").data) for text in (packaged, stored))
@@ -50,10 +50,10 @@ def assumed_keys(commented: str, packaged: str, stored: str) -> list[AssumedKey]
 def _flat(tree: object, place: str = "") -> dict[str, str]:
     """Return the values of a tree by their keys, as ``limits.load``."""
     if isinstance(tree, Mapping):
-        found: dict[str, str] = {}
+        leaves: dict[str, str] = {}
         for key, value in cast("Mapping[object, object]", tree).items():
-            found |= _flat(value, f"{place}.{key}" if place else str(key))
-        return found
+            leaves |= _flat(value, f"{place}.{key}" if place else str(key))
+        return leaves
     return {place: str(tree)}
 
 

@@ -1,6 +1,6 @@
-"""The budget of every condition: what its uncertainty is made of, in full and yet on few pages.
+"""The budget of every condition: the parts of its uncertainty, in full and yet on few pages.
 
-A term's source and distribution are the same in most conditions, so they stand once, in a table of numbered terms; the
+A term's source and distribution are the same in most conditions, so a table of numbered terms lists them once; the
 budgets refer to them by number.
 """
 
@@ -16,8 +16,8 @@ from tester.results.budget import TermRow, budgeted_rows, sums, terms_of, terms_
 from tester.results.columns import Column, Output, Table
 from tester.results.conditions_table import ConditionRow, conditions_table
 
-_Told = tuple[str, str, str, str]
-"""What is told of a term once: name, source, distribution, what else has the same error."""
+_Details = tuple[str, str, str, str]
+"""Details of a term listed once: name, source, distribution, scope of a common error."""
 _COMMON = {"rig": "all conditions of the rig", "piece": "all on what is mounted", "": "each by itself"}
 
 
@@ -30,8 +30,8 @@ def budget_section(record: RunRecord, key: str) -> ReportSection:
         return ReportSection(key, "Uncertainty budgets", [Paragraph("No condition has a budget.", "care")])
     numbers = _numbered(budgeted)
     legend = [
-        ReportRow((str(number), *told[:3], _COMMON.get(told[3], told[3])), key=f"{key}-{number}")
-        for told, number in numbers.items()
+        ReportRow((str(number), *details[:3], _COMMON.get(details[3], details[3])), key=f"{key}-{number}")
+        for details, number in numbers.items()
     ]
     titles = heads("no.", "term", "source", "distribution", "the same in", text=(0, 1, 2, 3, 4))
     parts: list[Part] = [
@@ -43,25 +43,27 @@ def budget_section(record: RunRecord, key: str) -> ReportSection:
         ),
         ReportTable("Terms", titles, legend),
     ]
-    parts.append(Columns([_budget(one, conditions, numbers, results.worn) for one in budgeted]))
+    parts.append(Columns([_budget(row, conditions, numbers, results.worn) for row in budgeted]))
     return ReportSection(key, "Uncertainty budgets", parts)
 
 
-def _numbered(budgeted: Sequence[ConditionRow]) -> dict[_Told, int]:
-    found: dict[_Told, int] = {}
+def _numbered(budgeted: Sequence[ConditionRow]) -> dict[_Details, int]:
+    found: dict[_Details, int] = {}
     for row in budgeted:
         for one in terms_of(row.result):
-            found.setdefault(_told(one), len(found) + 1)
+            found.setdefault(_details(one), len(found) + 1)
     return found
 
 
-def _told(one: Contribution) -> _Told:
-    return one.name, one.source, one.distribution, one.common
+def _details(contribution: Contribution) -> _Details:
+    return contribution.name, contribution.source, contribution.distribution, contribution.common
 
 
-def _budget(one: ConditionRow, conditions: Table[ConditionRow], numbers: dict[_Told, int], worn: str) -> ReportTable:
-    number = Column[TermRow]("number", "no.", lambda row: str(numbers[_told(row.term)]))
-    terms = terms_table(one, worn).view(Output.REPORT)
-    first, *others = sums(conditions, one)
-    caption = f"{condition_words(one.info.setpoint)}: {first}"
+def _budget(
+    condition_row: ConditionRow, conditions: Table[ConditionRow], numbers: dict[_Details, int], worn: str
+) -> ReportTable:
+    number = Column[TermRow]("number", "no.", lambda row: str(numbers[_details(row.term)]))
+    terms = terms_table(condition_row, worn).view(Output.REPORT)
+    first, *others = sums(conditions, condition_row)
+    caption = f"{condition_words(condition_row.info.setpoint)}: {first}"
     return rendered(Table((number, *terms.columns), terms.rows), caption, "; ".join(others))

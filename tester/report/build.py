@@ -1,4 +1,4 @@
-"""Makes a report of what is on record of one run or several: the first page, then a chapter a run."""
+"""Builds a report from the record of one run or several: the first page, then a chapter for each run."""
 
 from __future__ import annotations
 
@@ -29,27 +29,27 @@ from tester.report.sections import (
 from tester.results.run_results import Measured
 
 Showing = Callable[[RunRecord], Material]
-"""What the figures of a run may show: its values, and published ones and a law beside them."""
+"""Returns the content of a run's figures: its values, and published ones and a law beside them."""
 REPEATS_AT_MOST = 6
-"""Conditions whose repeats are drawn: those with a doubt or a repeat left out, as they come."""
+"""Most conditions with a figure of their repeats: the first with a doubt or a repeat left out."""
 
 
 def report_of(records: Sequence[RunRecord], showing: Showing) -> Report:
     """Return the report of at least one run; raises MissingExtraError."""
     first = records[0]
-    names = list(dict.fromkeys(one.results.run.info.recipe_name for one in records))
+    names = list(dict.fromkeys(record.results.run.info.recipe_name for record in records))
     measurand = first.machine.measurand or "the friction coefficient"
     chapters = [runs_chapter(records)] if len(records) > 1 else []
-    chapters += [_chapter(one, f"r{i}", showing) for i, one in enumerate(records, start=1)]
+    chapters += [_chapter(record, f"r{i}", showing) for i, record in enumerate(records, start=1)]
     cover: list[Part] = []
-    for one in records:
-        cover += _cover(one, several=len(records) > 1)
+    for record in records:
+        cover += _cover(record, several=len(records) > 1)
     return Report(
         title=", ".join(names),
         lead=f"Measured was {measurand}.",
         cover=cover,
         chapters=chapters,
-        made=f"Made by friction-tester {__version__} from the records of {', '.join(one.name for one in records)}.",
+        made=f"Made by friction-tester {__version__} from the records of {', '.join(r.name for r in records)}.",
     )
 
 
@@ -76,19 +76,19 @@ def _cover(record: RunRecord, *, several: bool) -> list[Part]:
         ("status", f"{results.status.value}{f': {run.reason}' if run.reason else ''}"),
         ("record", f"head {record.verification.head[:16]}…" if record.verification.head else "without a chain"),
     ]
-    found = record.verification.problems
+    problems = record.verification.problems
     checked = (
-        Paragraph(f"The record is not as it was left: {counted(len(found), 'finding')}, see below.", "bad")
-        if found
+        Paragraph(f"The record is not as it was left: {counted(len(problems), 'finding')}, see below.", "bad")
+        if problems
         else Paragraph("The record was verified: it is as it was left.", "good")
     )
     risk: list[Part] = [Paragraph(f"Risk accepted: {info.risk}", "bad")] if info.risk else []
-    told = (
+    meaning = (
         f"± U is the expanded uncertainty: 95 of 100 such intervals hold the value. That of “this {results.worn}” is "
         f"for the {results.worn} that was mounted; that of the compound is for any {results.worn} of it."
     )
     table = short_table(results)
-    return [FactSheet(facts), simulated, *risk, *verdict(results), checked, table, Paragraph(told, "small")]
+    return [FactSheet(facts), simulated, *risk, *verdict(results), checked, table, Paragraph(meaning, "small")]
 
 
 def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
@@ -113,26 +113,26 @@ def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
 def _figures(record: RunRecord, key: str, showing: Showing) -> ReportSection:
     figures = [*charts_of(showing(record))]
     parts: list[Part] = [
-        Picture(inline_svg(one, f"{key}-{i}"), wide=len(one.panels) > 1)
-        for i, one in enumerate(figures, start=1)
+        Picture(inline_svg(figure, f"{key}-{i}"), wide=len(figure.panels) > 1)
+        for i, figure in enumerate(figures, start=1)
     ]
     drawn = overview_chart([(record.name, record.results)])
     if drawn is not None:
         parts.append(Picture(inline_svg(drawn, f"{key}-overview"), wide=True))
-    doubted = [one for one in record.results.conditions() if _worth_drawing(one)]
-    for one in doubted[:REPEATS_AT_MOST]:
-        chart = repeats_chart(one)
+    doubted = [condition for condition in record.results.conditions() if _worth_drawing(condition)]
+    for condition in doubted[:REPEATS_AT_MOST]:
+        chart = repeats_chart(condition)
         parts.append(Picture(inline_svg(chart, f"{key}-{chart.name}")))
     if len(doubted) > REPEATS_AT_MOST:
         left = counted(len(doubted) - REPEATS_AT_MOST, "more condition")
-        told = f"{left} with a doubt or a repeat left out: tester figure {record.name} draws each."
-        parts.append(Paragraph(told, "small"))
+        remainder = f"{left} with a doubt or a repeat left out: tester figure {record.name} draws each."
+        parts.append(Paragraph(remainder, "small"))
     if not parts:
         parts.append(Paragraph("No condition has a value, and there is nothing to draw.", "care"))
     return ReportSection(key, "Figures", parts)
 
 
-def _worth_drawing(one: Measured) -> bool:
-    left_out = any(one.exclusion(repeat) for repeat in one.repeats)
-    drawable = any(isfinite(repeat.result.mu_resultant) for repeat in one.repeats)
-    return drawable and bool(one.result.doubts or left_out)
+def _worth_drawing(measured: Measured) -> bool:
+    left_out = any(measured.exclusion(repeat) for repeat in measured.repeats)
+    drawable = any(isfinite(repeat.result.mu_resultant) for repeat in measured.repeats)
+    return drawable and bool(measured.result.doubts or left_out)

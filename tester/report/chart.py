@@ -1,4 +1,4 @@
-"""A figure as data, before anything is drawn: panels with series of points, bars and curves."""
+"""A figure as data: panels with series of points, bars and curves."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 Look = Literal["measured", "published", "law", "left out", "limit"]
-"""How a series is drawn: filled marks with bars; hollow marks; a line alone; crosses; a grey line alone."""
+"""Style of a series: filled marks with bars; hollow marks; a line alone; crosses; a grey line alone."""
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Points of one look: ``style`` is the place of colour, mark and dash, the same for what belongs together."""
+    """Points of one look: ``style`` selects colour, mark and dash, the same for points that belong together."""
 
     label: str
     x: tuple[float, ...]
@@ -21,9 +21,9 @@ class Series:
     bars: tuple[float, ...] = ()
     """Half the length of the bar at each point, NaN for none."""
     widths: tuple[float, ...] = ()
-    """Half the extent of each point along x, such as of the time that it took."""
+    """Half the extent of each point along x, such as its duration."""
     names: tuple[str, ...] = ()
-    """Of each point, in words, where a drawing can name what a pointer is on; none: by its place on the axes."""
+    """Label of each point, in words, for drawings with tooltips; without it, its place on the axes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,16 +33,16 @@ class ChartPanel:
     title: str
     series: tuple[Series, ...]
     y_label: str = ""
-    """Of its upright axis, where it is not the chart's."""
+    """Label of its vertical axis, if other than the chart's."""
     x_label: str = ""
-    """Of its axis along, where it is not the chart's."""
+    """Label of its horizontal axis, if other than the chart's."""
     joined: bool = True
-    """Whether measured points that no law goes through are joined by a line."""
+    """Whether a line joins measured points that no law goes through."""
 
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """A figure of panels that share their axes. ``name`` is that of its file, ``note`` stands below it."""
+    """A figure of panels that share their axes. ``name`` is that of its file, ``note`` is printed below it."""
 
     name: str
     title: str
@@ -51,18 +51,19 @@ class Chart:
     panels: tuple[ChartPanel, ...]
     note: str = ""
     from_zero: bool = True
-    """Whether the upright axis begins at 0."""
+    """Whether the vertical axis begins at 0."""
     own_x: bool = False
-    """Whether each panel has an axis along of its own."""
+    """Whether each panel has a horizontal axis of its own."""
     log_x: bool = False
-    """Whether the axis along is logarithmic."""
+    """Whether the horizontal axis is logarithmic."""
     stacked: bool = False
-    """Whether panels stand one above the other, with the axis along in common and each with its own upright."""
+    """Whether panels are stacked, with a common horizontal axis and a vertical axis each."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChartSurface:
-    """A coefficient over two axes, a panel a table: ``values[j][i]`` belongs to ``x[i]`` and ``y[j]``, NaN for none."""
+    """A coefficient over two axes, a panel for each table: ``values[j][i]`` belongs to ``x[i]`` and ``y[j]``, NaN for
+    none."""
 
     name: str
     title: str

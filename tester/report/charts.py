@@ -1,4 +1,4 @@
-"""Charts of runs: the coefficient over each axis that was varied, over two of them, and the control chart."""
+"""Charts of runs: the coefficient over each varied axis, over pairs of them, and the control chart."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ from tester.results.run_results import Measured, RunResults
 NAN = float("nan")
 Y_LABEL = "friction coefficient"
 AS_MEASURED = "friction coefficient as measured"
-"""Of single repeats, each at the temperature that was measured in it."""
+"""Label for single repeats, each at its own measured temperature."""
 BARS = "bars: expanded uncertainty U (95 %)"
 HOLLOW = "hollow: as published"
 CURVE_POINTS = 61
 OVERLAID = 6
-"""Panels of a chart of several runs."""
+"""Most panels of a chart of several runs."""
 LOGARITHMIC = 100.0
-"""From this ratio of the greatest to the least value on an axis is logarithmic [A]: two decades."""
+"""Ratio of the greatest to the least value above which an axis is logarithmic [A]: two decades."""
 
 Law = Callable[[Setpoint], float]
 
 
 @dataclass(frozen=True, slots=True)
 class ChartValue:
-    """A coefficient with what it was held at; ``u`` expanded, NaN where it is not known."""
+    """A coefficient with its setpoints; ``u`` expanded, NaN where it is unknown."""
 
     held: Setpoint
     mu: float
     u: float = NAN
     run: str = ""
-    """Of which run it is, where several are shown together."""
+    """Name of its run, where several are shown together."""
 
     @property
     def named(self) -> str:
-        """Return the value with what it was held at, and its run, in words."""
+        """Return the value with its setpoints, and its run, in words."""
         spread = f"\u00a0±\u00a0{coefficient(self.u)}" if isfinite(self.u) else ""
         of = f"{self.run}: " if self.run else ""
         return f"{of}{condition_words(self.held)}: {coefficient(self.mu)}{spread}"
@@ -51,18 +51,18 @@ class ChartValue:
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """What a figure may show: values of runs, published ones, and a law by its name."""
+    """Content of a figure: values of runs, published ones, and a law by its name."""
 
     measured: Sequence[ChartValue]
     published: Sequence[ChartValue] = ()
     law: Law | None = None
     law_name: str = ""
     law_caveats: Callable[[Setpoint], Sequence[str]] | None = None
-    """Why the law's coefficient at a setpoint is to be taken with care."""
+    """Returns caveats on the law's coefficient at a setpoint."""
 
 
 def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
-    """Return the rows of a run that have a value; ``run``: what it is called among others."""
+    """Return the rows of a run that have a value; ``run``: its name among others."""
     return [
         ChartValue(row.info.setpoint, row.result.mu, row.result.expanded, run)
         for row in results.rows
@@ -73,14 +73,14 @@ def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
 def charts_of(material: Material) -> Iterator[Figure]:
     """Yield a chart for each pair of axes that were varied together, or for an axis alone, then surfaces."""
     varied = _varied(material.measured)
-    told: set[str] = set()
+    drawn: set[str] = set()
     for along, across in permutations(varied, 2):
         chart = _chart(material, along, across)
         if chart is not None:
-            told.add(along.name)
+            drawn.add(along.name)
             yield chart
     for along in varied:
-        chart = _chart(material, along, None) if along.name not in told else None
+        chart = _chart(material, along, None) if along.name not in drawn else None
         if chart is not None:
             yield chart
     if len(varied) > 1:
@@ -88,20 +88,20 @@ def charts_of(material: Material) -> Iterator[Figure]:
 
 
 def overlay_charts(values: Sequence[ChartValue]) -> Iterator[Chart]:
-    """Yield a chart for each axis that was varied, a series for each run, where two runs or more have it.
+    """Yield a chart for each varied axis, a series for each run, if two runs or more have it.
 
-    A panel for each compound and setting of the other axes, those with the most values first.
+    It has a panel for each compound and setting of the other axes, those with the most values first.
     """
-    runs = list(dict.fromkeys(one.run for one in values))
+    runs = list(dict.fromkeys(value.run for value in values))
     for along in _varied(values):
         alike: dict[tuple[object, ...], list[ChartValue]] = {}
-        for one in values:
-            rest = (axis.of(one.held) for axis in one.held.axes if axis.name != along.name)
-            alike.setdefault((one.held.compound, *rest), []).append(one)
+        for point in values:
+            rest = (axis.of(point.held) for axis in point.held.axes if axis.name != along.name)
+            alike.setdefault((point.held.compound, *rest), []).append(point)
         panels = [
             panel
-            for own in sorted(alike.values(), key=len, reverse=True)[:OVERLAID]
-            if (panel := _overlaid(own, along, runs))
+            for alike_values in sorted(alike.values(), key=len, reverse=True)[:OVERLAID]
+            if (panel := _overlaid(alike_values, along, runs))
         ]
         if panels:
             title = f"{Y_LABEL} over {name_of(along)}, of each run"
@@ -110,21 +110,21 @@ def overlay_charts(values: Sequence[ChartValue]) -> Iterator[Chart]:
 
 
 def _overlaid(own: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> ChartPanel | None:
-    """Return the panel of values that differ in nothing but ``along`` and the run."""
+    """Return the panel of values that differ only in ``along`` and the run."""
     series: list[Series] = []
     for style, run in enumerate(runs):
-        points = [one for one in own if one.run == run]
-        if len({along.number(one.held) for one in points}) > 1:
+        points = [point for point in own if point.run == run]
+        if len({along.number(point.held) for point in points}) > 1:
             series.append(_points(run, points, along, "measured", style))
-    said = [axis for axis in own[0].held.axes if axis.name != along.name and not axis.at_default(own[0].held)]
-    return ChartPanel(condition_words(own[0].held, said), tuple(series)) if len(series) > 1 else None
+    named = [axis for axis in own[0].held.axes if axis.name != along.name and not axis.at_default(own[0].held)]
+    return ChartPanel(condition_words(own[0].held, named), tuple(series)) if len(series) > 1 else None
 
 
 def _varied(values: Sequence[ChartValue]) -> list[Axis]:
-    """Return the axes of numbers that differ between values, by their turn to be plotted against."""
+    """Return the numeric axes that differ between values, by their order on the abscissa."""
     if not values:
         return []
-    axes = values[0].held.axes.differing(one.held for one in values)
+    axes = values[0].held.axes.differing(value.held for value in values)
     return sorted((axis for axis in axes if axis.plotted and not axis.choices), key=lambda axis: axis.plotted)
 
 
@@ -145,16 +145,16 @@ def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None
 
 
 def _caveats(material: Material) -> list[str]:
-    """Return where the law does not hold among the measured values, each once, with how many values it is said of."""
+    """Return the law's caveats at the measured values, each once, with the number of values that it affects."""
     if material.law_caveats is None:
         return []
-    found = Counter(caveat for one in material.measured for caveat in material.law_caveats(one.held))
-    return [f"caution ({count} values): {caveat}" for caveat, count in found.items()]
+    caveats = Counter(caveat for one in material.measured for caveat in material.law_caveats(one.held))
+    return [f"caution ({count} values): {caveat}" for caveat, count in caveats.items()]
 
 
 def _logarithmic(values: Iterable[ChartValue], along: Axis) -> bool:
-    """Tell whether an axis goes over decades, as speeds of a master curve do."""
-    numbers = [along.number(one.held) for one in values]
+    """Return whether an axis spans decades, as speeds of a master curve do."""
+    numbers = [along.number(value.held) for value in values]
     return min(numbers) > 0.0 and max(numbers) >= LOGARITHMIC * min(numbers)
 
 
@@ -163,29 +163,29 @@ def _styles(panel: ChartPanel) -> int:
 
 
 def _panelled(values: Iterable[ChartValue]) -> list[list[ChartValue]]:
-    """Return the values of each panel: of one compound, and of one choice where an axis is of choices (dry, wet)."""
-    found: dict[tuple[str, ...], list[ChartValue]] = {}
-    for one in values:
-        choices = (axis.choices.index(str(axis.of(one.held))) for axis in one.held.axes if axis.choices)
-        found.setdefault((one.held.compound, *map(str, choices)), []).append(one)
-    return [found[key] for key in sorted(found)]
+    """Return the values of each panel: of one compound, and of one choice where an axis has choices (dry, wet)."""
+    panels: dict[tuple[str, ...], list[ChartValue]] = {}
+    for value in values:
+        choices = (axis.choices.index(str(axis.of(value.held))) for axis in value.held.axes if axis.choices)
+        panels.setdefault((value.held.compound, *map(str, choices)), []).append(value)
+    return [panels[key] for key in sorted(panels)]
 
 
 def _panel(
     material: Material, own: Sequence[ChartValue], along: Axis, across: Axis | None
 ) -> ChartPanel | None:
-    """Return the panel of values of a kind (``_panelled``)."""
+    """Return the panel of values of one group (``_panelled``)."""
     compound = own[0].held.compound
     free = {along.name, *([across.name] if across is not None else [])}
     fixed = _usual(own, free)
     own = _fixed(own, fixed)
     published = _fixed([one for one in material.published if one.held.compound == compound], fixed)
     series: list[Series] = []
-    # A style stands for one value of ``across`` in all panels.
+    # A style means the same value of ``across`` in all panels.
     levels = sorted({across.number(one.held) for one in material.measured}) if across is not None else [0.0]
     for style, level in enumerate(levels):
-        here = [one for one in own if across is None or across.number(one.held) == level]
-        if len({along.number(one.held) for one in here}) < 2:
+        here = [point for point in own if across is None or across.number(point.held) == level]
+        if len({along.number(point.held) for point in here}) < 2:
             continue
         label = f"{plain(level)} {unit_of(across)}" if across is not None else "measured"
         series.append(_points(label, here, along, "measured", style))
@@ -196,21 +196,21 @@ def _panel(
             series.append(_curve(material.law, here, along, style))
     if not series:
         return None
-    said = [axis for axis in own[0].held.axes if axis.name not in free and not axis.at_default(own[0].held)]
-    return ChartPanel(condition_words(own[0].held, said), tuple(series))
+    named = [axis for axis in own[0].held.axes if axis.name not in free and not axis.at_default(own[0].held)]
+    return ChartPanel(condition_words(own[0].held, named), tuple(series))
 
 
 def _usual(values: Sequence[ChartValue], free: set[str]) -> dict[str, AxisValue]:
-    """Return what most values are held at on the axes that are not free."""
+    """Return the most frequent setpoints on the axes that are not free."""
     axes = values[0].held.axes
     (most, _), *_ = Counter(
-        tuple((axis.name, axis.of(one.held)) for axis in axes if axis.name not in free) for one in values
+        tuple((axis.name, axis.of(value.held)) for axis in axes if axis.name not in free) for value in values
     ).most_common(1)
     return dict(most)
 
 
 def _fixed(values: Sequence[ChartValue], fixed: Mapping[str, AxisValue]) -> list[ChartValue]:
-    return [one for one in values if all(one.held.axes[name].of(one.held) == at for name, at in fixed.items())]
+    return [value for value in values if all(value.held.axes[name].of(value.held) == at for name, at in fixed.items())]
 
 
 def _points(label: str, values: Sequence[ChartValue], along: Axis, look: str, style: int) -> Series:
@@ -222,8 +222,8 @@ def _points(label: str, values: Sequence[ChartValue], along: Axis, look: str, st
 
 
 def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> Series:
-    found = [along.number(one.held) for one in values]
-    low, high = min(found), max(found)
+    numbers = [along.number(value.held) for value in values]
+    low, high = min(numbers), max(numbers)
     shares = [i / (CURVE_POINTS - 1) for i in range(CURVE_POINTS)]
     if _logarithmic(values, along):
         x = [low * (high / low) ** share for share in shares]
@@ -234,7 +234,7 @@ def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> S
 
 
 def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterator[ChartSurface]:
-    """Yield the coefficient over two axes, for each compound at what most of its conditions share."""
+    """Yield the coefficient over two axes, for each compound at the setpoints that most of its conditions share."""
     panels: list[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]] = []
     for kind in _panelled(values):
         own = _fixed(kind, _usual(kind, {along.name, upward.name}))
@@ -242,9 +242,9 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
         if len(x) < 2 or len(y) < 2:
             continue
         at = {(along.number(one.held), upward.number(one.held)): one.mu for one in own}
-        said = [axis for axis in own[0].held.axes if axis not in (along, upward) and not axis.at_default(own[0].held)]
+        named = [axis for axis in own[0].held.axes if axis not in (along, upward) and not axis.at_default(own[0].held)]
         grid = tuple(tuple(at.get((one, other), NAN) for one in x) for other in y)
-        panels.append((condition_words(own[0].held, said), x, y, grid))
+        panels.append((condition_words(own[0].held, named), x, y, grid))
     if panels:
         title = f"{Y_LABEL} over {name_of(along)} and {name_of(upward)}"
         note = "empty: not measured"
@@ -252,7 +252,7 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
 
 
 def repeats_chart(measured: Measured) -> Chart:
-    """Return the repeats of a condition: each at its time, as long as it took, with the scatter of its batch means."""
+    """Return the repeats of a condition: each at its time, over its duration, with the scatter of its batch means."""
     counted: list[int] = []
     left_out: list[int] = []
     for i, repeat in enumerate(measured.repeats):
@@ -278,15 +278,15 @@ def repeats_chart(measured: Measured) -> Chart:
 def _windows(label: str, results: Sequence[object], look: str, style: int) -> Series:
     from tester.analysis.results import RepeatResult
 
-    own = [one for one in results if isinstance(one, RepeatResult)]
-    begin, end = [one.started_s / 60.0 for one in own], [one.ended_s / 60.0 for one in own]
+    own = [result for result in results if isinstance(result, RepeatResult)]
+    begin, end = [result.started_s / 60.0 for result in own], [result.ended_s / 60.0 for result in own]
     return Series(
         label,
         tuple(0.5 * (a + b) for a, b in zip(begin, end, strict=True)),
-        tuple(one.mu_resultant for one in own),
+        tuple(result.mu_resultant for result in own),
         "measured" if look == "measured" else "left out",
         style,
-        tuple(0.01 * one.fluctuation_percent * one.mu_resultant for one in own),
+        tuple(0.01 * result.fluctuation_percent * result.mu_resultant for result in own),
         tuple(0.5 * (b - a) for a, b in zip(begin, end, strict=True)),
     )
 

@@ -1,4 +1,4 @@
-"""Sections of what was measured: the table of conditions, drift and repeats, and what is left out with the reason."""
+"""Sections on the measurements: the table of conditions, drift and repeats, and exclusions with the reason."""
 
 from __future__ import annotations
 
@@ -25,36 +25,36 @@ from tester.results.run_results import RunResults, remedy
 from tester.results.tally import flag_lines, tally_of
 
 SHORT_ROWS = 20
-"""A table of more conditions than these is told by its compounds on the first page."""
+"""Longest table of conditions on the first page; longer ones are summarised by compound."""
 _TONES: dict[str, Tone] = {NOT_TRUSTED: "bad", WITH_CARE: "care"}
 
 
-def tone_of(one: ConditionRow) -> Tone:
-    """Return how a condition's row is set: without a value, to be taken with care, or plainly."""
-    return _TONES.get(mark_of(one.result.status, one.result.flags), "")
+def tone_of(condition_row: ConditionRow) -> Tone:
+    """Return the tone of a condition's row: without a value, with a doubt, or plain."""
+    return _TONES.get(mark_of(condition_row.result.status, condition_row.result.flags), "")
 
 
 def conditions_section(record: RunRecord, key: str) -> ReportSection:
-    """Return the table of conditions with both uncertainties, and below it the wear of what was checked."""
+    """Return the table of conditions with both uncertainties, and below it the wear of checked pieces."""
     results = record.results
     conditions = recipe_rows(conditions_table(results))
-    axes = results.axes.columns(one.info.setpoint for one in conditions.rows)
+    axes = results.axes.columns(row.info.setpoint for row in conditions.rows)
     shown = conditions.view(Output.REPORT, axis_keys(axes))
     parts: list[Part] = [
         Paragraph(
             f"Each coefficient mu comes with two expanded uncertainties U (95 %): that of this {results.worn} in this "
             f"condition, and that of the compound, which any other {results.worn} of it comes with. mu is at the "
             "temperature that was asked for, as both uncertainties are; beside it is the coefficient as measured, at "
-            f"the mean temperature that was measured. {WITH_CARE} stands behind a value to be taken with care, "
-            f"{NOT_TRUSTED} where there is none to be trusted."
+            f"the mean temperature that was measured. {WITH_CARE} marks a value to be taken with care, "
+            f"{NOT_TRUSTED} a number that is not to be trusted."
         ),
         rendered(shown, f"Conditions of {record.name}", COUNTS_NOTE, tone=tone_of),
     ]
     advised, flags = [*_advice(results)], [*flag_lines(results)]
     parts += [Listing(advised, "care")] if advised else []
     parts += [Paragraph("Flags:"), Listing(flags)] if flags else []
-    again = [line for one in results.settings for line in one.lines(results.worn)]
-    tone = "care" if any(one.disagrees for one in results.settings) else ""
+    again = [line for setting in results.settings for line in setting.lines(results.worn)]
+    tone = "care" if any(setting.disagrees for setting in results.settings) else ""
     parts += [Paragraph("Settings that were measured several times:"), Listing(again, tone)] if again else []
     worn = [*results.wear_lines()]
     parts += [Paragraph("Diameters that were checked, with the wear rate:"), Listing(worn)] if worn else []
@@ -71,10 +71,11 @@ def _advice(results: RunResults) -> Iterator[str]:
 
 
 def short_table(results: RunResults) -> ReportTable:
-    """Return the main table in short, for a first page: every condition, or where they are many every compound."""
+    """Return the main table in short, for a first page: every condition, or every compound where conditions are many.
+    """
     conditions = recipe_rows(conditions_table(results))
     if len(conditions.rows) <= SHORT_ROWS:
-        axes = results.axes.differing(one.info.setpoint for one in conditions.rows)
+        axes = results.axes.differing(row.info.setpoint for row in conditions.rows)
         return rendered(conditions.view(Output.COVER, axis_keys(axes)), "What was found", tone=tone_of)
     return _by_compound(conditions)
 
@@ -82,21 +83,21 @@ def short_table(results: RunResults) -> ReportTable:
 def _by_compound(conditions: Table[ConditionRow]) -> ReportTable:
     mu, this, whole = (conditions[key] for key in ("mu", "u_expanded_percent", "u_expanded_compound_percent"))
     rows: list[ReportRow] = []
-    for compound in dict.fromkeys(one.info.compound for one in conditions.rows):
-        own = [one for one in conditions.rows if one.info.compound == compound]
-        valued = sorted((one for one in own if one.result.ok), key=lambda one: one.result.mu)
-        cells = [compound, f"{len(valued)} of {len(own)}"]
-        for one in (valued[0], valued[-1]) if valued else ():
-            cells.append(f"{mu.text(one)} at {condition_words(one.info.setpoint, compound=False)}")
+    for compound in dict.fromkeys(row.info.compound for row in conditions.rows):
+        of_compound = [row for row in conditions.rows if row.info.compound == compound]
+        valued = sorted((row for row in of_compound if row.result.ok), key=lambda row_: row_.result.mu)
+        cells = [compound, f"{len(valued)} of {len(of_compound)}"]
+        for row_ in (valued[0], valued[-1]) if valued else ():
+            cells.append(f"{mu.text(row_)} at {condition_words(row_.info.setpoint, compound=False)}")
         cells += [_median(column, valued) for column in (this, whole) if valued]
         cells += [NONE] * (6 - len(cells))
-        cells.append(str(sum(bool(one.result.doubts) for one in valued)))
+        cells.append(str(sum(bool(row.result.doubts) for row in valued)))
         rows.append(ReportRow(cells))
     titles = heads(
         "compound", "conditions with a value", "lowest mu", "highest mu", f"typical {this.head}",
         f"typical {whole.head}", "with a doubt", text=(0, 2, 3),
     )  # fmt: skip
-    note = "typical: the median over the conditions; every condition stands in the table of conditions"
+    note = "typical: the median over the conditions; the table of conditions lists every condition"
     return ReportTable("What was found, by compound", titles, rows, note, cards=True)
 
 
@@ -107,7 +108,7 @@ def _median(column: Column[ConditionRow], valued: Sequence[ConditionRow]) -> str
 
 
 def drift_section(record: RunRecord, key: str) -> ReportSection:
-    """Return what each condition's repeats say of its drift, which of them are left out, which were made up."""
+    """Return the drift of each condition's repeats, the repeats left out, and the make-ups."""
     parts: list[Part] = [
         Paragraph(
             "Drift is the change of the coefficient over a window, with its bound; the trend is the change from the "
@@ -136,16 +137,16 @@ def drift_section(record: RunRecord, key: str) -> ReportSection:
     if record.said:
         lines = [
             f"{one.condition}/{one.repeat} {'left out' if one.excluded else 'taken in again'} by "
-            f"{one.operator or 'somebody unnamed'}, {one.utc}: {one.reason}"
+            f"{one.operator or 'an unnamed person'}, {one.utc}: {one.reason}"
             for one in record.said
         ]
-        parts += [Paragraph("What people have said of single repeats:"), Listing(lines)]
+        parts += [Paragraph("Decisions of people on single repeats:"), Listing(lines)]
     return ReportSection(key, "Drift, repeats, exclusions", parts)
 
 
 def _drift_table(record: RunRecord) -> ReportTable:
     table = conditions_table(record.results)
-    shown = table.of(one for one in table.rows if one.measured is not None).view(Output.REPEATS)
+    shown = table.of(row for row in table.rows if row.measured is not None).view(Output.REPEATS)
     condition = Column[ConditionRow]("words", "condition", lambda one: condition_words(one.info.setpoint))
     void = Column[ConditionRow](
         "interrupted", "interrupted", lambda one: len(record.void.get(one.info.condition, ())), "", 0
@@ -158,7 +159,7 @@ def _drift_table(record: RunRecord) -> ReportTable:
 
 
 def verdict(results: RunResults) -> list[Part]:
-    """Return in words how many conditions have a value, which flags they carry, and what helps."""
+    """Return in words how many conditions have a value, their flags, and the remedies."""
     tally = tally_of(results)
     tone: Tone = "bad" if tally.missing else "care" if tally.doubted else "good"
     reasons = sorted({text for row in results.rows if (text := remedy(row.result))})

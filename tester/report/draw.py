@@ -1,7 +1,7 @@
-"""Draws charts with matplotlib, which comes with the extra ``report`` and is imported when something is drawn.
+"""Draws charts with matplotlib, which comes with the extra ``report`` and is imported for the first drawing.
 
-Readable in grey and by colour-blind people: what belongs together has a colour, a mark and a dash of its own, and the
-colours differ in lightness. Without a screen, a clock or anything random: the same chart gives the same file.
+Readable in grey and by colour-blind people: points that belong together share a colour, a mark and a dash, and the
+colours differ in lightness. Drawing uses no screen, no clock and nothing random: the same chart gives the same file.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 COLOURS: Final = ("#000000", "#D55E00", "#56B4E9", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#404040")
-"""Okabe and Ito's palette (jfly.uni-koeln.de/color), which colour-blind people can tell apart, in an order in which
-neighbours differ in lightness; a grey instead of its yellow, which is too light for lines."""
+"""Okabe and Ito's palette (jfly.uni-koeln.de/color), whose colours colour-blind people can distinguish, in an order in
+which neighbours differ in lightness; a grey instead of its yellow, which is too light for lines."""
 MARKS: Final = ("o", "s", "^", "D", "v", "P", "X", "<")
 DASHES: Final = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 FORMATS: Final = ("png", "svg", "pdf")
 PANEL_INCH: Final = (3.6, 3.2)
 STRIP_INCH: Final = (7.2, 1.5)
-"""Of a panel of a stacked chart."""
+"""Size of a panel of a stacked chart."""
 COLUMNS: Final = 3
 """Panels side by side."""
 TITLE_WIDTH, NOTE_WIDTH = 52, 64
@@ -51,16 +51,16 @@ RC: Final[dict[str, object]] = {
 }
 """matplotlib's own font, so that a figure looks the same everywhere; a $ in a name is no formula."""
 IN_A_PAGE: Final[dict[str, object]] = {"svg.fonttype": "none"}
-"""Text of a figure within a page is text: it can be searched and read out, and takes a tenth of the room."""
+"""Text of a figure within a page is text: a browser can search and read it out, and it takes a tenth of the space."""
 MARKED: Final = "points"
-"""Begins the id of what is drawn of a series' points: ``points-PANEL-SERIES``, each counted from 0."""
+"""Prefix of the id of a series' points: ``points-PANEL-SERIES``, each counted from 0."""
 LONGEST, LONGEST_LABEL = 200, 32
-"""Characters that are drawn of a title or a note, and of a label in a legend."""
+"""Most characters of a title or a note, and of a label in a legend."""
 NO_DATES: Final = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
 def draw(figure: Figure, path: Path, dpi: float = 150.0) -> None:
-    """Write a figure; the ending of ``path`` says the format. Raises MissingExtraError, OSError, ValueError."""
+    """Write a figure; the suffix of ``path`` selects the format. Raises MissingExtraError, OSError, ValueError."""
     ending = path.suffix.removeprefix(".").lower()
     if ending not in FORMATS:
         raise ValueError(f"{path.name}: a figure is one of {', '.join(FORMATS)}")
@@ -70,7 +70,7 @@ def draw(figure: Figure, path: Path, dpi: float = 150.0) -> None:
 
 
 def svg_for_a_page(figure: Figure) -> bytes:
-    """Return a figure as SVG whose text is text and whose points can be found (``MARKED``).
+    """Return a figure as SVG with text as text and with identifiers on its points (``MARKED``).
 
     Raises MissingExtraError.
     """
@@ -87,7 +87,7 @@ def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: di
         raise MissingExtraError(needs("a figure", "matplotlib", "report")) from error
     library: Any = matplotlib
     with library.rc_context({**RC, **further}), warnings.catch_warnings():
-        # A name in letters that the font has not is drawn as boxes; a page shows it in a font that has them.
+        # A name in letters that the font lacks is drawn as boxes; a page shows it in a font that has them.
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         stacked = isinstance(figure, Chart) and figure.stacked
         across = 1 if stacked else min(COLUMNS, len(figure.panels))
@@ -104,14 +104,14 @@ def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: di
         for place in flat[len(figure.panels) :]:
             place.set_axis_off()
         columns = 2 if stacked else across
-        canvas.suptitle(fill(_told(figure.title), TITLE_WIDTH * columns), fontsize=9.0)
+        canvas.suptitle(fill(_drawable(figure.title), TITLE_WIDTH * columns), fontsize=9.0)
         if figure.note:
-            canvas.supxlabel(fill(_told(figure.note), NOTE_WIDTH * columns), fontsize=7.0, color="#404040")
+            canvas.supxlabel(fill(_drawable(figure.note), NOTE_WIDTH * columns), fontsize=7.0, color="#404040")
         canvas.savefig(target, format=ending, dpi=dpi, metadata=NO_DATES[ending])
 
 
-def _told(text: str, longest: int = LONGEST) -> str:
-    """Return text as it is drawn: what people wrote may be long, and hold what is no character of a picture."""
+def _drawable(text: str, longest: int = LONGEST) -> str:
+    """Return text in drawable form: people's text may be long, and hold characters without a glyph."""
     plain = harmless(text).replace("\n", " ").replace("\t", " ")
     return plain if len(plain) <= longest else f"{plain[: longest - 1]}…"
 
@@ -123,15 +123,16 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
             place.set_xlabel(panel.x_label or chart.x_label)
         if chart.log_x:
             place.set_xscale("log")
-            place.xaxis.set_major_formatter("{x:g}")  # its own is a formula, which text here is never read as
+            # its own formatter writes a formula, and text here is never read as a formula
+            place.xaxis.set_major_formatter("{x:g}")
             place.xaxis.set_minor_formatter(_two_and_five if _narrow(panel) else "")
         place.set_ylabel(panel.y_label or chart.y_label)
-    if chart.from_zero:  # last: an axis that is set follows no further points, of no panel that shares it
+    if chart.from_zero:  # last: an axis with a fixed limit ignores further points, also of panels that share it
         places[0].set_ylim(bottom=0.0)
 
 
 def _narrow(panel: ChartPanel) -> bool:
-    """Tell whether a panel spans so little of a logarithmic axis that powers of ten alone would hardly mark it."""
+    """Return whether a panel spans so little of a logarithmic axis that powers of ten alone would hardly mark it."""
     every = [x for series in panel.series for x in series.x]
     return max(every) < 100.0 * min(every)
 
@@ -146,19 +147,19 @@ def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:
         drawn = _draw_series(series, place, joined=panel.joined and not series.widths and series.style not in lined)
         drawn.set_gid(f"{MARKED}-{number}-{turn}")
     if panel.title:
-        place.set_title(fill(_told(panel.title), TITLE_WIDTH), fontsize=8.0)
+        place.set_title(fill(_drawable(panel.title), TITLE_WIDTH), fontsize=8.0)
     if any(series.label for series in panel.series):
         place.legend()
 
 
 def _draw_series(series: Series, place: Any, joined: bool) -> Any:
-    """Draw measured points filled, published ones hollow, a law as a line, what was left out as crosses.
+    """Draw measured points filled, published ones hollow, a law as a line, excluded points as crosses.
 
-    ``joined``: measured points by a line, where no law is drawn through them. Returns the line of the points.
+    ``joined``: join measured points by a line, where no law is drawn through them. Returns the line of the points.
     """
     i = series.style % len(COLOURS)
     colour = COLOURS[i]
-    label = _told(series.label, LONGEST_LABEL) or None
+    label = _drawable(series.label, LONGEST_LABEL) or None
     if series.look == "law":
         return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0, label=label)[0]
     if series.look == "limit":
@@ -185,8 +186,8 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
 
 
 def _draw_surface(surface: ChartSurface, canvas: Any, places: Sequence[Any]) -> None:
-    """Draw a field for each pair of values, at its place on both axes, its number in it; lightness alone tells the
-    colours apart."""
+    """Draw a field for each pair of values, at its place on both axes, with its number; the colours differ in lightness
+    alone."""
     every = [v for _, _, _, grid in surface.panels for row in grid for v in row if v == v]
     low, high = min(every), max(every)
     drawn: Any = None
@@ -208,6 +209,6 @@ def _draw_surface(surface: ChartSurface, canvas: Any, places: Sequence[Any]) -> 
 
 
 def _edges(values: Sequence[float]) -> list[float]:
-    """Return where the fields of at least two ascending values end: half way between them, as far outside."""
-    between = [0.5 * (one + other) for one, other in pairwise(values)]
+    """Return the edges of the fields of at least two ascending values: half way between them, and as far outside."""
+    between = [0.5 * (lower + upper) for lower, upper in pairwise(values)]
     return [2.0 * values[0] - between[0], *between, 2.0 * values[-1] - between[-1]]

@@ -1,7 +1,7 @@
-"""A figure as SVG within a page: names of its own, every point named where a pointer is on it, nothing from elsewhere.
+"""A figure as SVG within a page: unique identifiers, a tooltip on every point, no external content.
 
-A browser shows the ``title`` of what a pointer is on; no script is needed. Identifiers get the figure's key in front,
-because those of all figures of a page are in one namespace.
+A browser shows the ``title`` of the element under the pointer; no script is needed. Identifiers get the figure's key in
+front, because those of all figures of a page share a namespace.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ SVG: Final = "http://www.w3.org/2000/svg"
 XLINK: Final = "http://www.w3.org/1999/xlink"
 HREF: Final = f"{{{XLINK}}}href"
 REACH: Final = 6.0
-"""Radius about a point, in points of the drawing, within which a pointer is on it."""
+"""Radius about a point, in points of the drawing, within which a pointer hits it."""
 _DECIMALS = re.compile(r"(\.\d\d)\d+")
 """A hundredth of a point is finer than any screen or printer."""
 _LONG: Final = ("d", "x", "y", "cx", "cy")
 """Attributes with coordinates, in which decimals may be cut."""
 _FONT, _FONTS = "'DejaVu Sans'", "'DejaVu Sans', Verdana, sans-serif"
-"""The font that is drawn with, and what stands in for it where a reader has it not: one as wide, or any."""
+"""The font of the drawing, and its substitutes for a reader without it: one of equal width, or any."""
 
 ElementTree.register_namespace("", SVG)
 ElementTree.register_namespace("xlink", XLINK)
@@ -55,21 +55,23 @@ def inline_svg(figure: Figure, key: str) -> str:
 
 
 def alt_text(figure: Figure) -> str:
-    """Return what a figure shows, in words: its title, and of each panel what its points span."""
-    told = [figure.title]
+    """Return the content of a figure in words: its title, and the span of each panel's points."""
+    sentences = [figure.title]
     if isinstance(figure, Chart):
         for panel in figure.panels:
             points = [one for one in panel.series if one.look in ("measured", "left out")]
-            x, y = _spans((v for one in points for v in one.x), (v for one in points for v in one.y))
+            x, y = _spans((v for point in points for v in point.x), (v for point in points for v in point.y))
             if x and y:
                 title = f"{panel.title}: " if panel.title else ""
                 upright = panel.y_label or figure.y_label
-                told.append(f"{title}{sum(len(one.x) for one in points)} points, {figure.x_label} {x}, {upright} {y}")
+                sentences.append(
+                    f"{title}{sum(len(one.x) for one in points)} points, {figure.x_label} {x}, {upright} {y}"
+                )
     else:
         for title, along, upward, grid in figure.panels:
             (z,) = _spans(value for row in grid for value in row)
-            told.append(f"{title}: {len(along)} by {len(upward)} values, {figure.z_label} {z}")
-    return _plain("; ".join(told), 4 * LONGEST)
+            sentences.append(f"{title}: {len(along)} by {len(upward)} values, {figure.z_label} {z}")
+    return _plain("; ".join(sentences), 4 * LONGEST)
 
 
 def _spans(*given: Iterator[float]) -> list[str]:
@@ -86,7 +88,7 @@ def _plain(text: str, longest: int = LONGEST) -> str:
 
 
 def _name_points(root: ElementTree.Element, chart: Chart) -> None:
-    groups = {one.get("id", ""): one for one in root.iter(f"{{{SVG}}}g")}
+    groups = {element.get("id", ""): element for element in root.iter(f"{{{SVG}}}g")}
     for i, panel in enumerate(chart.panels):
         upright = panel.y_label or chart.y_label
         for j, series in enumerate(panel.series):
@@ -96,7 +98,7 @@ def _name_points(root: ElementTree.Element, chart: Chart) -> None:
 
 
 def _names(series: Series, x_label: str, y_label: str) -> Sequence[str]:
-    """Return a name for each point that is drawn: one whose place is known."""
+    """Return a label for each drawn point: one at finite coordinates."""
     names = series.names or [
         f"{f'{series.label}: ' if series.label else ''}{x_label} {x:.4g}, {y_label} {y:.4g}"
         for x, y in zip(series.x, series.y, strict=True)
@@ -106,8 +108,8 @@ def _names(series: Series, x_label: str, y_label: str) -> Sequence[str]:
 
 
 def _name(group: ElementTree.Element, names: Sequence[str]) -> None:
-    """Put round every mark of a group a group with a title, and a disc on which a pointer finds it more easily."""
-    holders = [(parent, one) for parent in group.iter() for one in parent if one.tag == f"{{{SVG}}}use"]
+    """Wrap every mark of a group in a group with a title, and add a disc that a pointer hits more easily."""
+    holders = [(parent, child) for parent in group.iter() for child in parent if child.tag == f"{{{SVG}}}use"]
     if len(holders) != len(names):  # a mark outside the drawing is not drawn: better no name than a wrong one
         return
     for (parent, mark), name in zip(holders, names, strict=True):
@@ -120,30 +122,30 @@ def _name(group: ElementTree.Element, names: Sequence[str]) -> None:
 
 
 def _shorten(root: ElementTree.Element) -> None:
-    for one in root.iter():
+    for element in root.iter():
         for name in _LONG:
-            value = one.get(name)
+            value = element.get(name)
             if value is not None:
-                one.set(name, _DECIMALS.sub(r"\1", value).replace("  ", " "))
-        one.tail = None
-        if one.tag == f"{{{SVG}}}text":
-            one.set("style", one.get("style", "").replace(_FONT, _FONTS))
-        elif one.text is not None and not one.text.strip():
-            one.text = None
+                element.set(name, _DECIMALS.sub(r"\1", value).replace("  ", " "))
+        element.tail = None
+        if element.tag == f"{{{SVG}}}text":
+            element.set("style", element.get("style", "").replace(_FONT, _FONTS))
+        elif element.text is not None and not element.text.strip():
+            element.text = None
 
 
 def _own_names(root: ElementTree.Element, key: str) -> None:
-    """Put the key in front of every identifier that something refers to, and take the others away."""
+    """Put the key in front of every referenced identifier, and remove the others."""
     used: set[str] = set()
-    for one in root.iter():
-        for name, value in one.attrib.items():
+    for element in root.iter():
+        for name, value in element.attrib.items():
             if name == HREF and value.startswith("#"):
                 used.add(value[1:])
-                one.set(name, f"#{key}-{value[1:]}")
+                element.set(name, f"#{key}-{value[1:]}")
             elif "url(#" in value:
                 used.update(re.findall(r"url\(#([^)]+)\)", value))
-                one.set(name, value.replace("url(#", f"url(#{key}-"))
-    for one in root.iter():
-        own = one.attrib.pop("id", None)
-        if own in used:
-            one.set("id", f"{key}-{own}")
+                element.set(name, value.replace("url(#", f"url(#{key}-"))
+    for element in root.iter():
+        identifier = element.attrib.pop("id", None)
+        if identifier in used:
+            element.set("id", f"{key}-{identifier}")

@@ -12,43 +12,43 @@ from tester.report.chart import Chart, ChartPanel, Look, Series
 from tester.report.charts import Y_LABEL
 
 PLACES: Final = 300
-"""Of the curve that is drawn."""
+"""Points of the drawn curve."""
 STYLES: Final = 8
-"""Colours and marks that a drawing tells apart."""
+"""Number of distinct colours and marks of a drawing."""
 
 
-def master_chart(one: Master) -> Chart:
-    """Return the figure: on the left what was measured, on the right the same over aT v with the spline.
+def master_chart(master: Master) -> Chart:
+    """Return the figure: on the left the measured values, on the right the same over aT v with the spline.
 
     Each temperature has a colour and a mark of its own; from the ninth on the marks are hollow.
     """
-    of, rows = one.collapse.of, one.rows()
+    of, rows = master.collapse.of, master.rows()
     measured: list[Series] = []
     collapsed: list[Series] = []
     for i, block_c in enumerate(of.blocks_c):
-        own = [row for row, block in zip(rows, of.block, strict=True) if block == i]
-        mu = tuple(row.mu for row in own)
+        rows_of = [row for row, block in zip(rows, of.block, strict=True) if block == i]
+        mu = tuple(row.mu for row in rows_of)
         label = f"{block_c:g} °C"
         look: Look = "published" if i // STYLES % 2 else "measured"
-        measured.append(Series("", tuple(row.speed_m_s for row in own), mu, look, i))
-        collapsed.append(Series(label, tuple(float(10.0**row.x) for row in own), mu, look, i))
-    x = np.linspace(float(np.min(one.collapse.x)), float(np.max(one.collapse.x)), PLACES)
-    curve_x = tuple(float(10.0**at) for at in x - one.back)
-    curve_mu = tuple(float(mu) for mu in np.exp(one.collapse.curve.at(x)))
+        measured.append(Series("", tuple(row.speed_m_s for row in rows_of), mu, look, i))
+        collapsed.append(Series(label, tuple(float(10.0**row.x) for row in rows_of), mu, look, i))
+    x = np.linspace(float(np.min(master.collapse.x)), float(np.max(master.collapse.x)), PLACES)
+    curve_x = tuple(float(10.0**at) for at in x - master.back)
+    curve_mu = tuple(float(mu) for mu in np.exp(master.collapse.curve.at(x)))
     collapsed.append(Series("spline", curve_x, curve_mu, "limit", 0))
-    first = one.points[0]
-    held = "".join(f", {words}" for words in first.held.values())
-    c = one.collapse
+    first = master.points[0]
+    others = "".join(f", {words}" for words in first.held.values())
+    c = master.collapse
     ts = f"Ts {c.ts_c:.1f} °C" + ("" if c.searched else ", given")
     return Chart(
         name="master",
-        title=f"{first.compound}{held}: {one.judged.verdict.value}",
+        title=f"{first.compound}{others}: {master.judged.verdict.value}",
         x_label="v /m·s⁻¹",
         y_label="friction coefficient",
         panels=(
             ChartPanel("measured", tuple(measured)),
             ChartPanel(
-                f"shifted by WLF, {ts}", tuple(collapsed), x_label=f"aT v /m·s⁻¹ at {one.reference_c:g} °C",
+                f"shifted by WLF, {ts}", tuple(collapsed), x_label=f"aT v /m·s⁻¹ at {master.reference_c:g} °C",
                 joined=False,
             ),
         ),

@@ -1,6 +1,6 @@
-"""A report as data, before it is a page: sections of paragraphs, facts, lists, tables and pictures.
+"""A report as data, before rendering: sections of paragraphs, facts, lists, tables and pictures.
 
-All text is as people and devices wrote it; what makes it harmless is the page (tester.report.page).
+All text is as people and devices wrote it; the page makes it harmless (tester.report.page).
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from tester.base.words import NONE
 from tester.results.columns import R, Table, unit_of
 
 Tone = Literal["", "good", "care", "bad", "small"]
-"""What a paragraph or a row is: a plain one, a good word, one to be taken with care, a bad one, a remark."""
+"""Tone of a paragraph or a row: plain, good, with care, bad, or a remark in small print."""
 
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """Text, and in what tone."""
+    """Text, and its tone."""
 
     text: str
     tone: Tone = ""
@@ -38,7 +38,7 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class FactSheet:
-    """Names with what is to be said of each."""
+    """Names with a fact for each."""
 
     facts: Sequence[tuple[str, str]]
     kind: Literal["facts"] = "facts"
@@ -46,7 +46,7 @@ class FactSheet:
 
 @dataclass(frozen=True, slots=True)
 class ReportHead:
-    """Head of a column; ``number``: its cells are set to the right."""
+    """Head of a column; ``number``: its cells are aligned right."""
 
     text: str
     number: bool = True
@@ -59,7 +59,7 @@ class ReportRow:
     cells: Sequence[str]
     tone: Tone = ""
     key: str = ""
-    """By which other places of the page refer to it; "" nothing does."""
+    """Anchor for other places of the page; "" for none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class ReportTable:
     rows: Sequence[ReportRow]
     note: str = ""
     cards: bool = False
-    """Whether its rows are cards, with the heads beside the cells, where a screen is as narrow as a phone's."""
+    """Whether its rows become cards, with the heads beside the cells, on a screen as narrow as a phone's."""
     kind: Literal["table"] = "table"
 
 
@@ -85,7 +85,7 @@ class Columns:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A drawn figure, which has its title in it; ``svg`` is markup of this program's making."""
+    """A drawn figure, which includes its title; ``svg`` is markup that this program made."""
 
     svg: str
     wide: bool = False
@@ -106,7 +106,7 @@ class ReportSection:
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """What is told of one run, or of several together."""
+    """A chapter on one run, or on several together."""
 
     key: str
     title: str
@@ -115,26 +115,26 @@ class Chapter:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """A whole report: what a customer reads first, then chapters."""
+    """A whole report: the cover for a customer, then chapters."""
 
     title: str
     lead: str
     cover: Sequence[Part]
     chapters: Sequence[Chapter]
     made: str
-    """By which version it was made, of which records."""
+    """Version of the program, and names of the records."""
 
 
 def heads(*texts: str, text: Sequence[int] = (0,)) -> tuple[ReportHead, ...]:
     """Return heads of columns; those at the places ``text`` hold words, the others numbers."""
-    return tuple(ReportHead(one, number=i not in text) for i, one in enumerate(texts))
+    return tuple(ReportHead(title, number=i not in text) for i, title in enumerate(texts))
 
 
 def rendered(
     table: Table[R], caption: str, note: str = "", *, tone: Callable[[R], Tone] | None = None, cards: bool = False
 ) -> ReportTable:
     """Return a table of results as a report sets it; ``tone``: how a row is set."""
-    titles = tuple(ReportHead(one.head, number=one.numeric) for one in table.columns)
+    titles = tuple(ReportHead(column.head, number=column.numeric) for column in table.columns)
     rows = [
         ReportRow(cells, tone(row) if tone is not None else "")
         for row, cells in zip(table.rows, table.texts(), strict=True)

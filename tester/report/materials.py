@@ -1,4 +1,4 @@
-"""The section of a report on what was tested: the files of compounds and surface, as the record holds them."""
+"""The section of a report on the tested materials: the files of compounds and surface in the record."""
 
 from __future__ import annotations
 
@@ -26,62 +26,62 @@ from tester.store.records import StoredMaterial
 
 
 def materials_sections(record: RunRecord, key: str) -> Iterator[ReportSection]:
-    """Yield the section; nothing of a run whose materials are names alone."""
+    """Yield the section; nothing for a run whose materials are names alone."""
     files = record.results.run.info.materials
     if not files:
         return
     parts: list[Part] = []
-    compounds = {one.name: model for one in files if (model := _compound(one)) is not None}
+    compounds = {file.name: model for file in files if (model := _compound(file)) is not None}
     if any(model.formulation for model in compounds.values()):
         parts.append(_formulations(compounds))
-    for one in files:
-        parts += _told(one, compounds.get(one.name))
+    for material in files:
+        parts += _described(material, compounds.get(material.name))
     bare = [name for name in dict.fromkeys(row.info.compound for row in record.results.rows) if name not in compounds]
     if bare:
         parts.append(Paragraph(f"Named alone, without a file: {', '.join(bare)}.", "small"))
     yield ReportSection(key, "Materials", parts)
 
 
-def _compound(one: StoredMaterial) -> CompoundModel | None:
-    if one.role != "compound" or one.text is None:
+def _compound(stored_material: StoredMaterial) -> CompoundModel | None:
+    if stored_material.role != "compound" or stored_material.text is None:
         return None
     try:
-        return compound_model(one.text, one.file)
+        return compound_model(stored_material.text, stored_material.file)
     except InvalidSource:
-        return None  # a version that knew other keys wrote it; its hash and source are told all the same
+        return None  # a version with other keys wrote it; its hash and source are reported all the same
 
 
-def _surface(one: StoredMaterial) -> SurfaceModel | None:
-    if one.role != "surface" or one.text is None:
+def _surface(stored_material: StoredMaterial) -> SurfaceModel | None:
+    if stored_material.role != "surface" or stored_material.text is None:
         return None
     try:
-        return surface_model(one.text, one.file)
+        return surface_model(stored_material.text, stored_material.file)
     except InvalidSource:
         return None
 
 
 def _formulations(compounds: Mapping[str, CompoundModel]) -> ReportTable:
-    told = [(name, model) for name, model in compounds.items() if model.formulation]
-    ingredients = dict.fromkeys(one for _, model in told for one in model.formulation)
+    known = [(name, model) for name, model in compounds.items() if model.formulation]
+    ingredients = dict.fromkeys(one for _, model in known for one in model.formulation)
     rows = [
-        ReportRow((one, *(decimal(phr, 1) if (phr := model.formulation.get(one)) is not None else NONE
-                          for _, model in told)))
-        for one in ingredients
+        ReportRow((ingredient, *(decimal(phr, 1) if (phr := model.formulation.get(ingredient)) is not None else NONE
+                          for _, model in known)))
+        for ingredient in ingredients
     ]  # fmt: skip
-    titles = heads("ingredient", *(name for name, _ in told), text=(0,))
+    titles = heads("ingredient", *(name for name, _ in known), text=(0,))
     return ReportTable("Formulations (phr)", titles, rows, "phr: parts by weight per hundred of rubber")
 
 
-def _told(one: StoredMaterial, compound: CompoundModel | None) -> list[Part]:
-    facts = [("source", file_name(one.source)), ("SHA-256", one.sha256)]
+def _described(stored_material: StoredMaterial, compound: CompoundModel | None) -> list[Part]:
+    facts = [("source", file_name(stored_material.source)), ("SHA-256", stored_material.sha256)]
     if compound is not None:
         facts = [*_of_compound(compound), *facts]
-    surface = _surface(one)
+    surface = _surface(stored_material)
     if surface is not None:
         facts = [("note", surface.note or NONE), ("figures from", surface.source or NONE), *facts]
-    parts: list[Part] = [Paragraph(f"{one.role.capitalize()} {one.name}"), FactSheet(facts)]
-    if one.doubts:
-        parts += [Paragraph("Doubtful in it:", "care"), Listing(one.doubts.splitlines(), "care")]
+    parts: list[Part] = [Paragraph(f"{stored_material.role.capitalize()} {stored_material.name}"), FactSheet(facts)]
+    if stored_material.doubts:
+        parts += [Paragraph("Doubtful in it:", "care"), Listing(stored_material.doubts.splitlines(), "care")]
     return parts
 
 

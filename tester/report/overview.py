@@ -1,4 +1,4 @@
-"""A campaign at a glance: what was measured in order of time, one strip the coefficient, one each thing that varied."""
+"""A campaign at a glance: conditions in order of time, a strip for the coefficient and one for each varied axis."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MINUTES = 1.0 / 60.0
 
 @dataclass(frozen=True, slots=True)
 class _Placed:
-    """A condition of a run, with the minute in which it began and how long it took; minutes of all runs in a row."""
+    """A condition of a run, with the minute of its beginning and its duration; minutes of all runs in a row."""
 
     at: float
     half: float
@@ -30,8 +30,8 @@ class _Placed:
 def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
     """Return the conditions of runs (name and results), one run after the other by rig time; None where none began.
 
-    The coefficient has U of what was mounted as its bar; repeats that were refused, left out by hand or made up stand
-    beside it. Below it a strip for each axis of numbers that varied.
+    The bar of a coefficient is U of the mounted piece; repeats that were refused, left out by hand or made up appear
+    beside it. Below it is a strip for each numeric axis that varied.
     """
     placed = [*_placed(runs)]
     if not placed:
@@ -60,23 +60,27 @@ def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
 def _placed(runs: Sequence[tuple[str, RunResults]]) -> Iterator[_Placed]:
     origin = 0.0
     for name, results in runs:
-        for one in sorted(results.conditions(), key=lambda found: found.condition.started_s):
-            begin, end = one.condition.started_s, one.condition.ended_s
+        for condition in sorted(results.conditions(), key=lambda found: found.condition.started_s):
+            begin, end = condition.condition.started_s, condition.condition.ended_s
             if isfinite(begin):
                 end = end if isfinite(end) else begin
-                yield _Placed(origin + 0.5 * (begin + end) * MINUTES, 0.5 * (end - begin) * MINUTES, origin, name, one)
+                yield _Placed(
+                    origin + 0.5 * (begin + end) * MINUTES, 0.5 * (end - begin) * MINUTES, origin, name, condition
+                )
         origin += results.run.rig_seconds * MINUTES
 
 
-def _words(one: _Placed, several: bool) -> str:
-    result = one.measured.result
-    of = f"{one.run}: " if several else ""
-    told = f"{of}condition {one.measured.info.condition}, {condition_words(one.measured.info.setpoint)}"
-    return f"{told}: {coefficient(result.mu)}\u00a0±\u00a0{coefficient(result.expanded)}" if result.ok else told
+def _words(placed: _Placed, several: bool) -> str:
+    result = placed.measured.result
+    of = f"{placed.run}: " if several else ""
+    setpoints = f"{of}condition {placed.measured.info.condition}, {condition_words(placed.measured.info.setpoint)}"
+    return (
+        f"{setpoints}: {coefficient(result.mu)}\u00a0±\u00a0{coefficient(result.expanded)}" if result.ok else setpoints
+    )
 
 
 def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
-    """Yield the coefficients, a series a compound, then single repeats that are out of the ordinary."""
+    """Yield the coefficients, a series for each compound, then single repeats that are left out or make-ups."""
     compounds = sorted({one.measured.info.compound for one in placed})
     for style, compound in enumerate(compounds):
         own = [one for one in placed if one.measured.info.compound == compound and one.measured.result.ok]
@@ -115,5 +119,5 @@ def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
 
 def _of_repeat(measured: Measured, repeat: StoredRepeat) -> str:
     reason = measured.exclusion(repeat)
-    told = f"repeat {repeat.condition}/{repeat.repeat}: {coefficient(repeat.result.mu_resultant)} as measured"
-    return f"{told}, {reason}" if reason else f"{told}, a make-up"
+    value = f"repeat {repeat.condition}/{repeat.repeat}: {coefficient(repeat.result.mu_resultant)} as measured"
+    return f"{value}, {reason}" if reason else f"{value}, a make-up"

@@ -1,9 +1,9 @@
-"""A report as one HTML file: everything is in it, nothing is fetched, nothing runs.
+"""A report as one HTML file: self-contained, without requests or scripts.
 
-What people, devices and files say is text wherever it stands: Jinja2 escapes all of it, and before that every character
-that could steer a reader (control, bidirectional, invisible) becomes a question mark and what is very long is cut. Only
+Text from people, devices and files is text everywhere: Jinja2 escapes all of it, and before that every character that
+could steer a reader (control, bidirectional, invisible) becomes a question mark and very long text is cut. Only
 drawings are markup of this program's making. The page forbids itself everything but its own style and its own pictures.
-The markup is well-formed XML as well, which a test can hold strictly.
+The markup is well-formed XML as well, which a test can check strictly.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from tester.base.words import harmless
 from tester.report.layout import Report
 
 POLICY: Final = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
-"""What the page may do (Content-Security-Policy): show its own style and pictures that are in it; no script at all."""
+"""Content-Security-Policy of the page: its own style and embedded pictures; no script at all."""
 LONGEST: Final = 4000
-"""Characters of one text; the rest is counted."""
+"""Most characters of one text; the page gives the number of the rest."""
 
 
 def page_of(report: Report) -> str:
@@ -30,7 +30,7 @@ def page_of(report: Report) -> str:
         raise MissingExtraError(needs("a report", "jinja2", "report")) from error
 
     def finalize(value: object) -> object:
-        return value if isinstance(value, Markup) or not isinstance(value, str) else told(value)
+        return value if isinstance(value, Markup) or not isinstance(value, str) else readable(value)
 
     environment = Environment(
         loader=FunctionLoader(_packaged),
@@ -48,8 +48,8 @@ def page_of(report: Report) -> str:
     )
 
 
-def told(text: str) -> str:
-    """Return text as a page may show it: harmless, and of at most ``LONGEST`` characters."""
+def readable(text: str) -> str:
+    """Return text that is safe on a page: harmless, and of at most ``LONGEST`` characters."""
     plain = harmless(text)
     if len(plain) <= LONGEST:
         return plain

@@ -1,4 +1,4 @@
-"""Everything that a report tells of a run, read off its record and folder once."""
+"""The data of a run for a report, read from its record and folder once."""
 
 from __future__ import annotations
 
@@ -26,30 +26,30 @@ from tester.store.records import (
 )
 
 ALARMING = frozenset({"alarm", "trip"})
-"""Severities of events that a report names each; of warnings it names the kinds."""
+"""Severities of events that a report lists one by one; warnings are counted by kind."""
 
 
 @dataclass(frozen=True, slots=True)
 class MachineWords:
-    """What the kind of a rig says of itself."""
+    """Words of a kind of rig for a report."""
 
     title: str
     measurand: str
-    """What its coefficient is, in words that follow "measured was"; "" where the kind does not say."""
+    """Name of its coefficient, as the end of "measured was"; "" where the kind has none."""
     commented: str = ""
-    """Its packaged rig file that a run's is like, with its remarks."""
+    """The packaged rig file most like the run's, with its remarks."""
     packaged: str = ""
     """The same as a run stores it."""
     ring: RingPart | None = None
-    """Over which a device on a turning part is reached; None: there is none."""
+    """Slip ring to a device on a turning part; None without one."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """A run as a report tells it."""
+    """The data of a run for a report."""
 
     name: str
-    """Of its folder."""
+    """Name of its folder."""
     machine: MachineWords
     results: RunResults
     sessions: Sequence[SessionInfo]
@@ -60,35 +60,36 @@ class RunRecord:
     events: Sequence[StoredEvent]
     """Warnings and worse, in order."""
     said: Sequence[StoredExclusion]
-    """What people have said of single repeats, in order."""
+    """Decisions of people on single repeats, in order."""
     void: Mapping[int, Sequence[StoredRepeat]]
-    """Attempts that were interrupted, by condition."""
+    """Interrupted attempts, by condition."""
     verification: Verification
     files: Mapping[str, str]
-    """SHA-256 of the folder's files, as its manifest says."""
+    """SHA-256 of the folder's files, by its manifest."""
     ring: RingRun | None = None
-    """What is on record of its ring, where its machine has one."""
+    """Record of its ring, where its machine has one."""
 
     def left_out(self) -> list[tuple[Measured, StoredRepeat, str]]:
         """Return the repeats that are in no mean, each with its condition and the reason."""
         return [
-            (one, repeat, reason)
-            for one in self.results.conditions()
-            for repeat in one.repeats
-            if (reason := one.exclusion(repeat))
+            (condition, repeat, reason)
+            for condition in self.results.conditions()
+            for repeat in condition.repeats
+            if (reason := condition.exclusion(repeat))
         ]
 
 
 def read_record(folder: Path, machine: MachineWords) -> RunRecord:
-    """Return what a report tells of the run in ``folder``; raises StoreError where it cannot be read.
+    """Return the data of the run in ``folder``; raises StoreError where it cannot be read.
 
-    Its coefficients are recomputed from their samples, and its record held against its hashes (``tester verify``).
+    Its coefficients are recomputed from their samples, and its record is checked against its hashes (``tester
+    verify``).
     """
     with RunReader(folder) as reader:
         void: dict[int, list[StoredRepeat]] = {}
-        for one in reader.repeats(attempts=True):
-            if one.result.status in (RepeatStatus.VOID, RepeatStatus.OPEN):
-                void.setdefault(one.condition, []).append(one)
+        for repeat in reader.repeats(attempts=True):
+            if repeat.result.status in (RepeatStatus.VOID, RepeatStatus.OPEN):
+                void.setdefault(repeat.condition, []).append(repeat)
         return RunRecord(
             name=folder.name,
             machine=machine,
@@ -98,7 +99,7 @@ def read_record(folder: Path, machine: MachineWords) -> RunRecord:
             prompts=[*reader.prompts()],
             tares=[*reader.tares()],
             trips=[*reader.trips()],
-            events=[one for one in reader.events() if one.severity not in ("info", "debug")],
+            events=[event for event in reader.events() if event.severity not in ("info", "debug")],
             said=reader.exclusions(),
             void=void,
             verification=verify(folder),
@@ -108,7 +109,7 @@ def read_record(folder: Path, machine: MachineWords) -> RunRecord:
 
 
 def _files(folder: Path) -> dict[str, str]:
-    """Return the hashes of the manifest; none where it is missing or is not to be read, which `verify` tells."""
+    """Return the hashes of the manifest; empty where it is missing or unreadable, which `verify` reports."""
     try:
         listed: object = json.loads((folder / MANIFEST).read_text("utf-8"))["files"]
         if not isinstance(listed, dict):

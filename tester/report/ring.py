@@ -1,4 +1,4 @@
-"""The ring that carries a device's line to a turning part: errors by angle and speed in a run, trend over runs."""
+"""The slip ring with a device's line to a turning part: errors by angle and speed in a run, trend over runs."""
 
 from __future__ import annotations
 
@@ -15,23 +15,25 @@ from tester.report.record import RunRecord
 
 SECTOR_DEG = 30.0
 COVERAGE = 1.96
-"""Of a share of errors, binomial, 95 %."""
+"""Coverage factor of a share of errors, binomial, 95 %."""
 Rung = tuple[RunRecord, RingRun]
 
 
 def ring_sections(record: RunRecord, key: str) -> list[ReportSection]:
-    """Return the section of a run's ring; none where its machine has no ring, or nothing was asked over it."""
+    """Return the section of a run's ring; empty where its machine has no ring, or sent no request over it."""
     part, ring = record.machine.ring, record.ring
     if part is None or ring is None or not ring.requests:
         return []
-    told = (
+    totals = (
         f"{ring.errors} of {ring.requests} {part.counted} had no good reply ({decimal(ring.per_thousand, 2)} of 1000),"
         f" in {decimal(ring.turns, 0)} turns of {part.turns}."
     )
-    parts: list[Part] = [Paragraph(told, "care" if ring.errors else "good")]
+    parts: list[Part] = [Paragraph(totals, "care" if ring.errors else "good")]
     sectors, worn = ring.sectors(), record.results.worn
-    parts += [told_of(f"{worn} {place}", one) for place, one in enumerate(sectors, start=1) if one.errors]
-    if any(sum(one.sectors) for one in sectors):
+    parts += [
+        sector_paragraph(f"{worn} {place}", sector) for place, sector in enumerate(sectors, start=1) if sector.errors
+    ]
+    if any(sum(sector.sectors) for sector in sectors):
         parts.append(Picture(inline_svg(angle_chart(sectors, part.turns, worn), key)))
     rows = [
         ReportRow((words, str(requests), str(errors), decimal(1e3 * errors / requests, 2) if requests else NONE))
@@ -42,8 +44,8 @@ def ring_sections(record: RunRecord, key: str) -> list[ReportSection]:
     return [ReportSection(key, part.title, parts)]
 
 
-def told_of(name: str, sector: RingSector) -> Paragraph:
-    """Return where the errors gather that came while a part of some name was mounted."""
+def sector_paragraph(name: str, sector: RingSector) -> Paragraph:
+    """Return the angle at which errors gathered while a part of some name was mounted."""
     if not sector.found:
         return Paragraph(f"{name}: {counted(sector.errors, 'error')}, at no angle more than chance has it.")
     near = f"{sector.centre_deg:.0f}°, half of them within {sector.half_deg:.0f}° of it"
@@ -53,21 +55,21 @@ def told_of(name: str, sector: RingSector) -> Paragraph:
 
 
 def angle_chart(sectors: Sequence[RingSector], turns: str, worn: str) -> Chart:
-    """Return the errors in twelve sectors, a series for each part that was mounted."""
+    """Return the errors in twelve sectors, a series for each mounted part."""
     series = tuple(
         Series(
             f"{worn} {place}" if len(sectors) > 1 else "",
             tuple(SECTOR_DEG * (i + 0.5) for i in range(12)),
-            tuple(float(count) for count in one.sectors),
+            tuple(float(count) for count in sector.sectors),
             "measured",
             place - 1,
             widths=(0.5 * SECTOR_DEG,) * 12,
             names=tuple(
-                f"{30 * i} to {30 * i + 30}°: {counted(count, 'error')}" for i, count in enumerate(one.sectors)
+                f"{30 * i} to {30 * i + 30}°: {counted(count, 'error')}" for i, count in enumerate(sector.sectors)
             ),
         )
-        for place, one in enumerate(sectors, start=1)
-        if sum(one.sectors)
+        for place, sector in enumerate(sectors, start=1)
+        if sum(sector.sectors)
     )
     note = "angle from where it stood when it was mounted; each mark: a sector of 30°"
     return Chart("ring-angle", f"errors over the angle of {turns}", f"angle of {turns} (°)", "errors",
@@ -75,21 +77,21 @@ def angle_chart(sectors: Sequence[RingSector], turns: str, worn: str) -> Chart:
 
 
 def ring_trend_sections(records: Sequence[RunRecord], key: str) -> list[ReportSection]:
-    """Return the trend of the ring over runs of one rig, in order of time; none with fewer than two such runs."""
-    first = next((one for one in records if _has(one)), None)
+    """Return the trend of the ring over runs of one rig, in order of time; empty for fewer than two such runs."""
+    first = next((record for record in records if _has(record)), None)
     if first is None or first.machine.ring is None:
         return []
     rig = first.results.run.info.rig_source
     rung = [
-        (one, one.ring) for one in records if _has(one) and one.ring is not None
-        and one.results.run.info.rig_source == rig
+        (record, record.ring) for record in records if _has(record) and record.ring is not None
+        and record.results.run.info.rig_source == rig
     ]  # fmt: skip
     if len(rung) < 2:
         return []
     rung.sort(key=lambda pair: pair[1].started)
     ages = ages_of([ring for _, ring in rung])
     trend = trend_of([(age, ring.requests, ring.errors) for age, (_, ring) in zip(ages, rung, strict=True)])
-    told = trend.words or "too few errors, or turns, to say whether they grow"
+    trend_words = trend.words or "too few errors, or turns, to say whether they grow"
     rows = [
         ReportRow((record.name, decimal(age, 0), str(ring.requests), str(ring.errors), decimal(ring.per_thousand, 2)))
         for age, (record, ring) in zip(ages, rung, strict=True)
@@ -97,7 +99,7 @@ def ring_trend_sections(records: Sequence[RunRecord], key: str) -> list[ReportSe
     titles = heads("run", "turns until its end", "requests", "errors", "of 1000")
     note = "turns are those of these runs alone; a straight line through the shares, beyond chance with z of 2 or more"
     parts: list[Part] = [
-        Paragraph(f"{told[:1].upper()}{told[1:]}.", "bad" if trend.grows else ""),
+        Paragraph(f"{trend_words[:1].upper()}{trend_words[1:]}.", "bad" if trend.grows else ""),
         Picture(inline_svg(trend_chart(rung, ages), key)),
         ReportTable(f"{first.machine.ring.title} from run to run", titles, rows, note),
     ]
@@ -105,7 +107,7 @@ def ring_trend_sections(records: Sequence[RunRecord], key: str) -> list[ReportSe
 
 
 def trend_chart(rung: Sequence[Rung], ages: Sequence[float]) -> Chart:
-    """Return the share of failed requests over the turns of the ring, with what chance alone makes of each."""
+    """Return the share of failed requests over the turns of the ring, with bars for chance."""
     points = Series(
         "",
         tuple(ages),

@@ -1,4 +1,4 @@
-"""Sections of what is on record beside the results: what ran, zeros, calibration, trips, assumptions, provenance."""
+"""Sections on the rest of the record: recipe and rig, zeros, calibration, trips, assumptions, provenance."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from tester.results.pieces_table import pieces_table
 from tester.results.references_table import ReferenceRow, references_table
 
 EVENTS_AT_MOST = 200
-"""Alarms of a run that are listed; of more, the first."""
+"""Most alarms of a run in the list; of more, the first."""
 
 
 def ran_section(record: RunRecord, key: str) -> ReportSection:
-    """Return which recipe ran on which rig, on what, by whom, with which version."""
+    """Return recipe, rig, material, operator and version of a run."""
     results = record.results
     run, info = results.run, results.run.info
     ended = f", ended {day(run.ended_utc)}" if run.ended_utc else ""
@@ -54,9 +54,12 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
         parts.insert(0, Paragraph(f"Risk accepted: {info.risk}", "bad"))
     if results.pieces:
         parts.append(rendered(pieces_table(results).view(Output.REPORT), f"What was mounted ({results.worn})"))
-    asked = [one for one in record.prompts if one.answer]
+    asked = [prompt for prompt in record.prompts if prompt.answer]
     if asked:
-        lines = [f"{duration(one.asked_s)}: {one.text}: {one.answer} ({one.answered_by or 'unnamed'})" for one in asked]
+        lines = [
+            f"{duration(prompt.asked_s)}: {prompt.text}: {prompt.answer} ({prompt.answered_by or 'unnamed'})"
+            for prompt in asked
+        ]
         parts += [Paragraph("What people were asked, and answered:"), Listing(lines)]
     return ReportSection(key, "What ran on what", parts)
 
@@ -75,15 +78,15 @@ def _simulated(record: RunRecord) -> str:
 
 
 def tare_section(record: RunRecord, key: str) -> ReportSection:
-    """Return how the zeros of the load cell went."""
+    """Return the history of the load cell's zeros."""
     if not record.tares:
         return ReportSection(key, "Zeros of the load cell", [Paragraph("No zero of a cell is on record.")])
-    names = list(dict.fromkeys(name for one in record.tares for name in one.zeros))
+    names = list(dict.fromkeys(name for tare in record.tares for name in tare.zeros))
     rows: list[ReportRow] = []
-    for kind in dict.fromkeys(one.kind for one in record.tares):
-        own = [one for one in record.tares if one.kind == kind]
+    for kind in dict.fromkeys(tare.kind for tare in record.tares):
+        own = [tare for tare in record.tares if tare.kind == kind]
         for name in names:
-            values = [value for one in own if (value := one.zeros.get(name)) is not None and value == value]
+            values = [value for tare in own if (value := tare.zeros.get(name)) is not None and value == value]
             if values:
                 steps = [abs(b - a) for a, b in pairwise(values)]
                 cells = (len(values), values[0], values[-1], min(values), max(values), max(steps, default=0.0))
@@ -97,59 +100,66 @@ def tare_section(record: RunRecord, key: str) -> ReportSection:
 
 
 def calibration_section(record: RunRecord, key: str) -> ReportSection:
-    """Return the calibration that was in use."""
+    """Return the calibration in use."""
     info = record.results.run.info
     if not info.calibration:
-        told = "No calibration is on record" + (": a simulated rig has none." if info.simulated else ".")
-        return ReportSection(key, "Calibration", [Paragraph(told, "" if info.simulated else "care")])
+        missing = "No calibration is on record" + (": a simulated rig has none." if info.simulated else ".")
+        return ReportSection(key, "Calibration", [Paragraph(missing, "" if info.simulated else "care")])
     rows = [ReportRow((one.device, one.quantity, one.value, one.unit or NONE)) for one in info.calibration]
     titles = heads("device", "quantity", "value", "unit", text=(0, 1, 3))
     return ReportSection(key, "Calibration", [ReportTable("Calibration in use at the end", titles, rows)])
 
 
 def trips_section(record: RunRecord, key: str) -> ReportSection:
-    """Return trips, alarms and how many warnings there were of which kind."""
+    """Return trips, alarms and the number of warnings by kind."""
     parts: list[Part] = []
     if record.trips:
         rows = [
             ReportRow(
-                (duration(one.t_s), day(one.utc), one.interlock, one.text, one.compared or NONE, one.acknowledged),
+                (
+                    duration(trip.t_s),
+                    day(trip.utc),
+                    trip.interlock,
+                    trip.text,
+                    trip.compared or NONE,
+                    trip.acknowledged,
+                ),
                 "bad",
             )
-            for one in record.trips
+            for trip in record.trips
         ]
         titles = heads("rig time", "time", "interlock", "text", "value and limit", "acknowledged", text=range(6))
         parts.append(ReportTable("Trips", titles, rows))
     else:
         parts.append(Paragraph("No interlock tripped.", "good"))
-    alarms = [one for one in record.events if one.severity in ALARMING]
+    alarms = [event for event in record.events if event.severity in ALARMING]
     if alarms:
         rows = [
-            ReportRow((duration(one.t_s), day(one.utc), one.kind, one.severity, one.text))
-            for one in alarms[:EVENTS_AT_MOST]
+            ReportRow((duration(alarm.t_s), day(alarm.utc), alarm.kind, alarm.severity, alarm.text))
+            for alarm in alarms[:EVENTS_AT_MOST]
         ]
         titles = heads("rig time", "time", "kind", "severity", "text", text=range(5))
         note = f"and {len(alarms) - len(rows)} more" if len(alarms) > len(rows) else ""
         parts.append(ReportTable("Alarms", titles, rows, note))
     else:
         parts.append(Paragraph("No alarm was raised.", "good"))
-    warned = Counter(one.kind for one in record.events if one.severity not in ALARMING)
+    warned = Counter(event.kind for event in record.events if event.severity not in ALARMING)
     if warned:
-        told = ", ".join(f"{kind} {n}" for kind, n in sorted(warned.items()))
-        parts.append(Paragraph(f"Warnings by kind: {told}."))
+        by_kind = ", ".join(f"{kind} {n}" for kind, n in sorted(warned.items()))
+        parts.append(Paragraph(f"Warnings by kind: {by_kind}."))
     if record.results.run.overruns:
         parts.append(Paragraph(f"{record.results.run.overruns} samples were dropped while recording.", "care"))
     return ReportSection(key, "Alarms and trips", parts)
 
 
 def control_section(record: RunRecord, key: str) -> ReportSection:
-    """Return what the reference conditions say, with their control chart, where there were any."""
+    """Return the result of the reference conditions, with their control chart, where there were any."""
     title, watch = "Control chart", record.results.watch
     if watch is None or not watch.charts:
         return ReportSection(key, title, [Paragraph("No reference condition was measured.")])
     table = references_table(record.results)
-    valued = [one for one in table.rows if one.within is not None]
-    outside = sum(not one.within for one in valued)
+    valued = [row for row in table.rows if row.within is not None]
+    outside = sum(not row.within for row in valued)
     return ReportSection(
         key,
         title,
@@ -164,13 +174,12 @@ def control_section(record: RunRecord, key: str) -> ReportSection:
     )
 
 
-
-def _tone(one: ReferenceRow) -> Tone:
-    return "bad" if one.within is False else ""
+def _tone(reference_row: ReferenceRow) -> Tone:
+    return "bad" if reference_row.within is False else ""
 
 
 def assumption_section(record: RunRecord, key: str) -> ReportSection:
-    """Return what is assumed and not measured, as far as it entered these results."""
+    """Return the assumptions that entered these results."""
     results = record.results
     terms = [ReportRow(cells) for cells in assumed_terms(results)]
     keys = assumed_keys(record.machine.commented, record.machine.packaged, results.run.info.rig_text)
@@ -193,7 +202,7 @@ def assumption_section(record: RunRecord, key: str) -> ReportSection:
 
 
 def provenance_section(record: RunRecord, key: str) -> ReportSection:
-    """Return versions, hashes, the record's head, and whether the run is as it was left."""
+    """Return versions, hashes, the record's head, and whether the run is unchanged."""
     run, found = record.results.run, record.verification
     info = run.info
     read = f"{found.samples} samples in {found.blocks} blocks read, {found.coefficients} coefficients recomputed"
@@ -209,10 +218,10 @@ def provenance_section(record: RunRecord, key: str) -> ReportSection:
         parts.append(
             ReportTable("Files of the run's folder, by its manifest", heads("file", "SHA-256", text=(0, 1)), rows)
         )
-    versions = ", ".join(f"{name} {one}" for name, one in info.versions.items())
+    versions = ", ".join(f"{name} {version}" for name, version in info.versions.items())
     parts.append(Paragraph(f"Versions: {versions or NONE}.", "small"))
-    went_on = [*_went_on(record)]
-    parts += [Paragraph("The run went on, or was changed:"), Listing(went_on)] if went_on else []
+    resumed = [*_resumed(record)]
+    parts += [Paragraph("The run was resumed, or changed:"), Listing(resumed)] if resumed else []
     return ReportSection(key, "Where it is from", parts)
 
 
@@ -226,8 +235,9 @@ def _hashes(record: RunRecord) -> Iterator[tuple[str, str]]:
     yield "revision", run.info.git_revision
 
 
-def _went_on(record: RunRecord) -> Iterator[str]:
-    for one in record.sessions[1:]:
-        yield f"{duration(one.origin_s)} of rig time, {day(one.started_utc)}, version {one.software_version or NONE}"
+def _resumed(record: RunRecord) -> Iterator[str]:
+    for session in record.sessions[1:]:
+        version = session.software_version or NONE
+        yield f"{duration(session.origin_s)} of rig time, {day(session.started_utc)}, version {version}"
     for change in record.changes:
         yield f"{change.subject} changed before stretch {change.session}: {change.reason}"

@@ -43,9 +43,9 @@ def budget_table(results: RunResults) -> Table[TermRow]:
     return Table((*which, *axes, *_columns(results.worn)), tuple(rows))
 
 
-def terms_table(one: ConditionRow, worn: str) -> Table[TermRow]:
+def terms_table(condition_row: ConditionRow, worn: str) -> Table[TermRow]:
     """Return a row for each term of a condition's budgets, the largest first; ``worn``: the kind's word for a piece."""
-    return Table(_columns(worn), tuple(TermRow(one, term) for term in terms_of(one.result)))
+    return Table(_columns(worn), tuple(TermRow(condition_row, term) for term in terms_of(condition_row.result)))
 
 
 def terms_of(r: ConditionResult) -> list[Contribution]:
@@ -59,17 +59,17 @@ def budgeted_rows(conditions: Table[ConditionRow]) -> list[ConditionRow]:
     return [row for row in recipe_rows(conditions).rows if isfinite(row.result.standard)]
 
 
-def sums(conditions: Table[ConditionRow], one: ConditionRow) -> tuple[str, str, str]:
+def sums(conditions: Table[ConditionRow], condition_row: ConditionRow) -> tuple[str, str, str]:
     """Return the sums of a condition's budgets in words: the coefficient, then both expanded uncertainties."""
-    first, this, compound = (_in_words([conditions[key] for key in keys], one) for keys in _SUMS)
+    first, this, compound = (_in_words([conditions[key] for key in keys], condition_row) for keys in _SUMS)
     return first, this, compound
 
 
-def _in_words(columns: Sequence[Column[ConditionRow]], one: ConditionRow) -> str:
+def _in_words(columns: Sequence[Column[ConditionRow]], condition_row: ConditionRow) -> str:
     """Return headings with values; a heading that two neighbours share appears once."""
     before = ("", *(column.heading for column in columns))
     return ", ".join(
-        f"{'' if column.heading == other else column.heading} {column.text(one)} {column.unit}".strip()
+        f"{'' if column.heading == other else column.heading} {column.text(condition_row)} {column.unit}".strip()
         for column, other in zip(columns, before, strict=False)
     )
 

@@ -47,13 +47,13 @@ class Pair(NamedTuple):
         return "differ" if self.found.told_apart else "not told apart"
 
 
-def same_rig(one: StoredRun, other: StoredRun) -> bool:
+def same_rig(stored_run: StoredRun, other: StoredRun) -> bool:
     """Return whether two runs share the errors of the measuring chain.
 
     They do with the same calibration of the same rig; a simulated rig has other imperfections for every seed.
     """
-    first, second = one.info, other.info
-    return (one.calibration_sha256, first.simulated, first.seed) == (
+    first, second = stored_run.info, other.info
+    return (stored_run.calibration_sha256, first.simulated, first.seed) == (
         other.calibration_sha256,
         second.simulated,
         second.seed,

@@ -72,15 +72,15 @@ def means_of(pairs: Sequence[FilmPair]) -> Iterator[SharesMean]:
         yield SharesMean(compound, interface, len(shares), mean_of(shares))
 
 
-def _slope(one: Measured, valued: Sequence[Measured]) -> Slope:
+def _slope(measured: Measured, valued: Sequence[Measured]) -> Slope:
     """Return the sensitivity to temperature from conditions that differ from this one in temperature alone."""
-    key = _key(one, _TEMPERATURE)
+    key = _key(measured, _TEMPERATURE)
     points = [(o.result.measured.temperature, o.result.mu_resultant) for o in valued if _key(o, _TEMPERATURE) == key]
-    slope = slope_of_pairs(one.result.measured.temperature, points)
+    slope = slope_of_pairs(measured.result.measured.temperature, points)
     return slope if slope is not None else UNKNOWN
 
 
-def _key(one: Measured, without: str) -> _Key:
-    setpoint: Setpoint = one.info.setpoint
+def _key(measured: Measured, without: str) -> _Key:
+    setpoint: Setpoint = measured.info.setpoint
     values = tuple(axis.of(setpoint) for axis in setpoint.axes if axis.name != without)
-    return one.info.specimen, one.info.replicate, setpoint.compound, values
+    return measured.info.specimen, measured.info.replicate, setpoint.compound, values

@@ -86,9 +86,9 @@ def record_word(folder: Path, word: Word) -> None:
             write_all(folder)
 
 
-def is_unfinished(said: list[StoredExclusion], manifest: str) -> bool:
+def is_unfinished(exclusions: list[StoredExclusion], manifest: str) -> bool:
     """Return whether a power cut or a kill came between the latest decision and its tables."""
-    return bool(said) and bool(manifest) and said[-1].manifest_before == manifest
+    return bool(exclusions) and bool(manifest) and exclusions[-1].manifest_before == manifest
 
 
 def _wanted(repeats: list[StoredRepeat], word: Word) -> StoredRepeat:
@@ -104,8 +104,8 @@ def _wanted(repeats: list[StoredRepeat], word: Word) -> StoredRepeat:
     )
 
 
-def _refuse_contradiction(said: list[StoredExclusion], repeat: StoredRepeat, word: Word) -> None:
-    present = standing(said).get(repeat.target)
+def _refuse_contradiction(exclusions: list[StoredExclusion], repeat: StoredRepeat, word: Word) -> None:
+    present = standing(exclusions).get(repeat.target)
     name = f"{word.condition}/{word.repeat}"
     if word.excluded and present is not None:
         by = f" by {present.operator}" if present.operator else ""

@@ -51,8 +51,8 @@ def sorted_out(name: str, results: RunResults, refused: Callable[[Measured], str
     return kept, tuple(left_out)
 
 
-def _doubt(one: Measured) -> str:
-    result = one.result
+def _doubt(measured: Measured) -> str:
+    result = measured.result
     if not result.ok:
         return result.status.value
     if REFERENCE in flags_in(result.flags):
@@ -122,11 +122,11 @@ def declared_scatter(compound: str, metadata: Mapping[str, str], declared: Mappi
     return declared.get(compound, declared.get("", Scatter(0.0, "")))
 
 
-def _repeatability(one: Measured, metadata: Mapping[str, str]) -> Scatter:
+def _repeatability(measured: Measured, metadata: Mapping[str, str]) -> Scatter:
     """Return the standard uncertainty of a condition's mean from repeats, as a share: pooled over the run, else as
     declared by the recipe or the rig.
     """
-    result = one.result
+    result = measured.result
     pooled = next((part for part in result.budget.contributions if part.name == REPEATABILITY), None)
     if pooled is not None and isfinite(pooled.standard) and pooled.standard > 0.0:
         return Scatter(pooled.standard / result.mu_resultant, "repeats of the run", pooled.df)
@@ -136,11 +136,11 @@ def _repeatability(one: Measured, metadata: Mapping[str, str]) -> Scatter:
     return Scatter(share / sqrt(max(result.n_valid, 1)), source)
 
 
-def _rest(one: Measured, apart: Set[str], *, own: bool) -> float:
+def _rest(measured: Measured, apart: Set[str], *, own: bool) -> float:
     """Return the budget without the names in ``apart``, as a share of the coefficient; ``own``: the condition's
     independent part, else the part that conditions share.
     """
-    result = one.result
+    result = measured.result
     parts = [part for part in result.budget.contributions if part.name not in apart and own is not bool(part.common)]
     squares = sum(part.standard**2 for part in parts)
     return sqrt(squares) / result.mu_resultant if isfinite(squares) else 0.0
@@ -151,6 +151,6 @@ def _apart(terms: Iterable[Term]) -> Set[str]:
     return {REPEATABILITY, TEMPERATURE_SENSITIVITY, *(term.name for term in terms if term.acts is Acts.TEMPERATURE)}
 
 
-def _piece(one: Measured) -> int:
+def _piece(measured: Measured) -> int:
     """Return the piece on which a condition was measured, of several the last."""
-    return max((repeat.piece for repeat in one.repeats if repeat.result.valid), default=0)
+    return max((repeat.piece for repeat in measured.repeats if repeat.result.valid), default=0)

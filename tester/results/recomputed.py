@@ -45,21 +45,21 @@ def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
     return len(measured), problems
 
 
-def _recomputed(reader: RunReader, one: StoredRepeat, info: ConditionInfo) -> RepeatResult:
-    samples = reader.samples(one.condition, one.repeat, one.attempt)
-    rolling = ROLLING in flags_in(one.result.flags)
+def _recomputed(reader: RunReader, stored_repeat: StoredRepeat, info: ConditionInfo) -> RepeatResult:
+    samples = reader.samples(stored_repeat.condition, stored_repeat.repeat, stored_repeat.attempt)
+    rolling = ROLLING in flags_in(stored_repeat.result.flags)
     trace = Trace(reader.quantities())
     blocks = blocks_from_samples(samples, reader.quantities(), trace)
     swing = None if rolling else swing_of(trace)
     return reduce_repeat(blocks, info.window_revolutions, info.window_s, rolling=rolling, swing=swing)
 
 
-def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
-    place = f"repeat {one.condition}/{one.repeat}, attempt {one.attempt}"
+def _differing(stored_repeat: StoredRepeat, again: RepeatResult) -> Iterator[str]:
+    place = f"repeat {stored_repeat.condition}/{stored_repeat.repeat}, attempt {stored_repeat.attempt}"
     if not isfinite(again.mu_resultant):
-        yield f"{place}: its samples give no coefficient, on record is {one.result.mu_resultant:.6g}"
+        yield f"{place}: its samples give no coefficient, on record is {stored_repeat.result.mu_resultant:.6g}"
         return
-    on_record, by_samples = _figures(one.result), _figures(again)
+    on_record, by_samples = _figures(stored_repeat.result), _figures(again)
     for name, stored in on_record.items():
         computed = by_samples[name]
         if not isclose(stored, computed, rel_tol=TOLERANCE, abs_tol=TOLERANCE) and (
@@ -67,12 +67,13 @@ def _differing(one: StoredRepeat, again: RepeatResult) -> Iterator[str]:
         ):
             yield f"{place}: {name} is {computed:.6g} by its samples, on record is {stored:.6g}"
     for name in _LOOKED_AT:
-        stored, computed = getattr(one.result, name), getattr(again, name)
+        stored, computed = getattr(stored_repeat.result, name), getattr(again, name)
         if not isclose(stored, computed, rel_tol=LOOSER, abs_tol=LOOSER) and not (isnan(stored) and isnan(computed)):
             yield f"{place}: {name} is {computed:.6g} by its samples, on record is {stored:.6g}"
-    if one.result.revolutions != again.revolutions:
-        yield f"{place}: {again.revolutions} revolutions by its samples, on record are {one.result.revolutions}"
-    if one.result.status is RepeatStatus.VALID and again.status is not RepeatStatus.VALID:
+    if stored_repeat.result.revolutions != again.revolutions:
+        earlier = stored_repeat.result.revolutions
+        yield f"{place}: {again.revolutions} revolutions by its samples, on record are {earlier}"
+    if stored_repeat.result.status is RepeatStatus.VALID and again.status is not RepeatStatus.VALID:
         yield f"{place}: {again.status.value} by its samples ({again.reason}), on record is valid"
 
 

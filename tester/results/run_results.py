@@ -105,7 +105,7 @@ class TableRow:
 
 @dataclass(frozen=True, slots=True)
 class ReferenceWatch:
-    """Result of a run's reference conditions: themselves, the counterface's drift, a control chart for each compound."""
+    """Result of a run's references: themselves, the counterface's drift, a control chart for each compound."""
 
     references: tuple[Reference, ...]
     drift: CounterfaceDrift | None
@@ -295,7 +295,7 @@ def results_of(reader: RunReader) -> RunResults:
 def _budgeted(
     found: Sequence[Measured], surroundings: SurroundingsOf
 ) -> tuple[list[Measured], tuple[RepeatedSetting, ...]]:
-    """Return the conditions with their budgets, those of a setting that disagrees flagged, and the repeated settings."""
+    """Return the conditions with their budgets, flagged where their setting disagrees, and the repeated settings."""
     listed: list[Measured] = []
     settings = SettingsOf()
     for one in found:
@@ -337,10 +337,10 @@ def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: 
     return ReferenceWatch(tuple(listed), counterface_drift(listed, known), control_charts(listed, known))
 
 
-def _flagged(one: Measured, flag: str) -> Measured:
+def _flagged(measured: Measured, flag: str) -> Measured:
     """Return a condition with one more flag."""
-    flags = joined([*flags_in(one.result.flags), flag])
-    return replace(one, result=replace(one.result, flags=flags))
+    flags = joined([*flags_in(measured.result.flags), flag])
+    return replace(measured, result=replace(measured.result, flags=flags))
 
 
 def _measured(

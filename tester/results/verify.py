@@ -115,12 +115,12 @@ def _made_by(reader: RunReader) -> str:
     return exclusions[-1].software_version if exclusions else sessions[-1].software_version if sessions else ""
 
 
-def _cut_off(folder: Path, said: list[StoredExclusion]) -> list[str]:
+def _cut_off(folder: Path, exclusions: list[StoredExclusion]) -> list[str]:
     """Return the remedy where a kill came between a person's decision on a repeat and the tables that follow it."""
     path = folder / MANIFEST
-    if not path.is_file() or not is_unfinished(said, path.read_text("utf-8", errors="replace")):
+    if not path.is_file() or not is_unfinished(exclusions, path.read_text("utf-8", errors="replace")):
         return []
-    last = said[-1]
+    last = exclusions[-1]
     command = f"tester results {'exclude' if last.excluded else 'include'} {folder.name} {last.condition}/{last.repeat}"
     return [f"`{command}` was cut off before the tables were made: the same command again makes them"]
 
