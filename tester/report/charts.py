@@ -64,9 +64,7 @@ class Material:
 def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
     """Return the rows of a run that have a value; ``run``: its name among others."""
     return [
-        ChartValue(row.info.setpoint, row.result.mu, row.result.expanded, run)
-        for row in results.rows
-        if row.result.ok
+        ChartValue(row.info.setpoint, row.result.mu, row.result.expanded, run) for row in results.rows if row.result.ok
     ]
 
 
@@ -171,9 +169,7 @@ def _panelled(values: Iterable[ChartValue]) -> list[list[ChartValue]]:
     return [panels[key] for key in sorted(panels)]
 
 
-def _panel(
-    material: Material, own: Sequence[ChartValue], along: Axis, across: Axis | None
-) -> ChartPanel | None:
+def _panel(material: Material, own: Sequence[ChartValue], along: Axis, across: Axis | None) -> ChartPanel | None:
     """Return the panel of values of one group (``_panelled``)."""
     compound = own[0].held.compound
     free = {along.name, *([across.name] if across is not None else [])}
@@ -295,8 +291,8 @@ LABEL = "friction coefficient"
 
 
 def control_chart(charts: Sequence[ControlChart]) -> Chart:
-    """Return the charts of the references, one a compound, over their turn; those out of limits are crosses."""
-    panels = tuple(ChartPanel(one.compound if len(charts) > 1 else "", _series(one)) for one in charts)
+    """Return the charts of the references, one for each compound, over their turn; those out of limits are crosses."""
+    panels = tuple(ChartPanel(chart.compound if len(charts) > 1 else "", _series(chart)) for chart in charts)
     return Chart(
         "control",
         "reference condition in the order in which it was measured",
@@ -309,10 +305,10 @@ def control_chart(charts: Sequence[ControlChart]) -> Chart:
 
 
 def _series(chart: ControlChart) -> tuple[Series, ...]:
-    valued = [one for one in chart.points if isfinite(one.mu)]
-    inside = [one for one in valued if one.within]
-    outside = [one for one in valued if not one.within]
-    along = tuple(float(one.number) for one in chart.points)
+    valued = [point for point in chart.points if isfinite(point.mu)]
+    inside = [point for point in valued if point.within]
+    outside = [point for point in valued if not point.within]
+    along = tuple(float(point.number) for point in chart.points)
     return (
         *([_turn_points("in control", inside, 0)] if inside else []),
         *([_turn_points("out of control", outside, 1)] if outside else []),
@@ -324,12 +320,13 @@ def _series(chart: ControlChart) -> tuple[Series, ...]:
 def _turn_points(label: str, points: Sequence[ControlPoint], style: int) -> Series:
     return Series(
         label,
-        tuple(float(one.number) for one in points),
-        tuple(one.mu for one in points),
+        tuple(float(point.number) for point in points),
+        tuple(point.mu for point in points),
         "left out" if style else "measured",
         style,
-        tuple(one.expanded for one in points),
+        tuple(point.expanded for point in points),
         names=tuple(
-            f"turn {one.number}: {coefficient(one.mu)}\u00a0±\u00a0{coefficient(one.expanded)}" for one in points
+            f"turn {point.number}: {coefficient(point.mu)}\u00a0±\u00a0{coefficient(point.expanded)}"
+            for point in points
         ),
     )

@@ -61,7 +61,7 @@ def master_chart(master: Master) -> Chart:
 def components_chart(
     at: Callable[[float], tuple[float, float]], x: Sequence[float], x_label: str, title: str, note: str
 ) -> Chart:
-    """Return the chart of a law's parts at values of one quantity (``x``, above 0, which are set out by ratios).
+    """Return the chart of a law's parts at values of one quantity (``x``, above 0, drawn on a logarithmic axis).
 
     ``at`` returns adhesion and hysteresis.
     """

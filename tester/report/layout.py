@@ -148,12 +148,12 @@ def day(utc: str) -> str:
 
 
 def file_name(source: str) -> str:
-    """Return where something was read from without its folders, which are nobody's business but its maker's."""
+    """Return the name of a source without its folders, which are private to its maker."""
     return re.split(r"[/\\]", source.rstrip("/\\"))[-1]
 
 
 def name_of(axis: Axis) -> str:
-    """Return what an axis is called."""
+    """Return the name of an axis."""
     return axis.name.replace("_", " ")
 
 

@@ -252,24 +252,31 @@ def results_of(reader: RunReader) -> RunResults:
     stored = reader.conditions()
     conditions = [_measured(one, repeats.get(one.info.condition, []), left_out, combining) for one in stored]
     soaks = reader.soaks()
-    conditions = [replace(one, soak=soaks.get(one.info.condition)) for one in conditions]
-    conditions = [one if one.soak is None or one.soak.agrees else _flagged(one, THERMOMETER) for one in conditions]
+    conditions = [replace(condition, soak=soaks.get(condition.info.condition)) for condition in conditions]
+    conditions = [
+        condition if condition.soak is None or condition.soak.agrees else _flagged(condition, THERMOMETER)
+        for condition in conditions
+    ]
     pieces, checks = tuple(reader.pieces()), tuple(reader.wear_checks())
-    surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([one.result for one in conditions]))
-    watching = [is_reference(one.info.grid, run.info.metadata) for one in conditions]
+    surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([condition.result for condition in conditions]))
+    watching = [is_reference(condition.info.grid, run.info.metadata) for condition in conditions]
     for one, watches in zip(conditions, watching, strict=True):
         if not watches:
             surroundings.add(one.info.setpoint, one.result)
     watch = None
     if any(watching):
-        references = [one for one, watches in zip(conditions, watching, strict=True) if watches]
+        references = [condition for condition, watches in zip(conditions, watching, strict=True) if watches]
         watch = watch_of(references, surroundings, run)
         surroundings.watched(watch.drift)
-        ordinary = [one.info.condition for one, watches in zip(conditions, watching, strict=True) if not watches]
+        ordinary = [
+            condition.info.condition for condition, watches in zip(conditions, watching, strict=True) if not watches
+        ]
         doubts = doubted(watch.charts, ordinary)
         conditions = [
-            _flagged(one, REFERENCE if watches else OUT_OF_LIMITS) if watches or one.info.condition in doubts else one
-            for one, watches in zip(conditions, watching, strict=True)
+            _flagged(condition, REFERENCE if watches else OUT_OF_LIMITS)
+            if watches or condition.info.condition in doubts
+            else condition
+            for condition, watches in zip(conditions, watching, strict=True)
         ]
     conditions, settings = _budgeted(conditions, surroundings)
     rows = _rows(conditions, surroundings)
