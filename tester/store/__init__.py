@@ -1,1 +1,1 @@
-"""One SQLite file per run: everything that was asked, done and measured."""
+"""One SQLite file per run: the plan, the journal and the measurements."""

@@ -1,4 +1,4 @@
-"""Add to the record of a run that is over: what people say of it afterwards, each word on the disk at once."""
+"""Adds to the record of a finished run: later decisions of people, each on disk at once."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tester.store.schema import StoreError, migrate
 
 @contextmanager
 def amended(folder: Path) -> Generator[sqlite3.Connection]:
-    """Give the record in ``folder`` inside a transaction that is chained and committed at the block's end.
+    """Yield the record in ``folder`` inside a transaction that is chained and committed at the block's end.
 
-    An older record is brought to the present schema. Raises StoreError.
+    An older record is migrated to the present schema. Raises StoreError.
     """
     path = folder / DATABASE
     try:
         uri = f"{path.absolute().as_uri()}?mode=rw"
         with closing(sqlite3.connect(uri, uri=True, isolation_level=None)) as database:
-            # EXTRA: a rollback journal whose deletion is not on the disk would take the row back.
+            # EXTRA: a rollback journal whose deletion is not yet on disk would undo the row.
             database.execute("PRAGMA synchronous = EXTRA")
             migrate(database)
-            # Not WAL any more, as after the end of a run: the manifest counts what is in the one file. Somebody who
-            # reads a record that is still WAL prevents that; then what is committed waits in the log until they leave.
+            # Leave WAL mode, as at the end of a run: the manifest covers a single file. A reader of a record that is
+            # still in WAL mode prevents that; then the commit waits in the log until the reader leaves.
             with suppress(sqlite3.OperationalError):
                 database.execute("PRAGMA journal_mode = DELETE")
             chain = Chain(database)
@@ -41,10 +41,10 @@ def amended(folder: Path) -> Generator[sqlite3.Connection]:
 
 
 def acknowledge_trips(folder: Path, trips: Iterable[int], by: str, utc: str) -> None:
-    """Record who has acknowledged trips (their numbers) of a run that is over. Raises StoreError."""
+    """Store who has acknowledged trips (by number) of a finished run. Raises StoreError."""
     sql = "UPDATE trip SET acknowledged_utc = ?, acknowledged_by = ? WHERE id = ?"
     with amended(folder) as database:
-        database.executemany(sql, [(utc, by, one) for one in trips])
+        database.executemany(sql, [(utc, by, trip) for trip in trips])
 
 
 _ADD = """
@@ -53,37 +53,39 @@ VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)
 """
 
 
-def standing(said: Iterable[StoredExclusion]) -> dict[tuple[int, int, int], StoredExclusion]:
-    """Return what is left out at present, by condition, repeat and attempt: the last word on each counts."""
-    found: dict[tuple[int, int, int], StoredExclusion] = {}
-    for one in said:
-        if one.excluded:
-            found[one.target] = one
+def standing(exclusions: Iterable[StoredExclusion]) -> dict[tuple[int, int, int], StoredExclusion]:
+    """Return the present exclusions, by condition, repeat and attempt: the last decision on each counts."""
+    present: dict[tuple[int, int, int], StoredExclusion] = {}
+    for exclusion in exclusions:
+        if exclusion.excluded:
+            present[exclusion.target] = exclusion
         else:
-            found.pop(one.target, None)
-    return found
+            present.pop(exclusion.target, None)
+    return present
 
 
-def add_exclusion(folder: Path, said: StoredExclusion) -> None:
-    """Add a person's word on a repeat to the record in ``folder``, on the disk when this returns; its id is given here.
+def add_exclusion(folder: Path, exclusion: StoredExclusion) -> None:
+    """Add a person's decision on a repeat to the record in ``folder``, on disk when this returns; its id is assigned
+    here.
 
-    A record of an older schema is brought to the present one. Raises StoreError.
+    A record of an older schema is migrated to the present one. Raises StoreError.
     """
-    values = (*said.target, said.excluded, said.reason, said.operator, said.utc, said.software_version)
+    who = (exclusion.operator, exclusion.utc, exclusion.software_version)
+    values = (*exclusion.target, exclusion.excluded, exclusion.reason, *who)
     with amended(folder) as database:
-        database.execute(_ADD, (*values, said.manifest_before))
+        database.execute(_ADD, (*values, exclusion.manifest_before))
 
 
-def problems(said: Iterable[StoredExclusion], repeats: Iterable[StoredRepeat]) -> list[str]:
-    """Return what is wrong with a run's exclusions: rows that are gone, and such that speak of no committed repeat."""
-    listed = list(said)
+def problems(exclusions: Iterable[StoredExclusion], repeats: Iterable[StoredRepeat]) -> list[str]:
+    """Return faults of a run's exclusions: missing rows, and rows for repeats that are not committed."""
+    listed = list(exclusions)
     committed = {repeat.target for repeat in repeats}
-    found = [f"exclusion {number} is gone" for number in _gaps([one.id for one in listed])]
-    for one in listed:
-        if one.target not in committed:
-            found.append(f"exclusion {one.id} speaks of condition {one.condition}, repeat {one.repeat}, "
-                         f"attempt {one.attempt}, which is not committed")  # fmt: skip
-    return found
+    faults = [f"exclusion {number} is gone" for number in _gaps([exclusion.id for exclusion in listed])]
+    for exclusion in listed:
+        if exclusion.target not in committed:
+            which = f"condition {exclusion.condition}, repeat {exclusion.repeat}, attempt {exclusion.attempt}"
+            faults.append(f"exclusion {exclusion.id} speaks of {which}, which is not committed")
+    return faults
 
 
 def _gaps(ids: list[int]) -> list[int]:

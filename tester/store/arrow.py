@@ -10,16 +10,16 @@ from tester.store.reader import RunReader
 
 
 class ArrowTable(Protocol):
-    """What is promised of a ``pyarrow.Table``, which has no type information."""
+    """The used part of a ``pyarrow.Table``, which has no type information."""
 
     @property
     def num_rows(self) -> int:
-        """Rows."""
+        """Return the number of rows."""
         ...
 
     @property
     def column_names(self) -> list[str]:
-        """Names of the columns."""
+        """Return the names of the columns."""
         ...
 
 
@@ -30,7 +30,7 @@ class _Arrow(Protocol):
 def sample_table(
     reader: RunReader, condition: int | None = None, repeat: int | None = None, attempt: int | None = None
 ) -> ArrowTable:
-    """Return samples as a ``pyarrow.Table`` of float64, chosen as in ``RunReader.samples``.
+    """Return samples as a ``pyarrow.Table`` of float64, selected as in ``RunReader.samples``.
 
     Raises StoreError, and MissingExtraError without pyarrow.
     """
@@ -40,7 +40,8 @@ def sample_table(
 
 
 def arrow_module(name: str, what: str) -> object:
-    """Return pyarrow or a module of it; raises MissingExtraError where it is not installed: ``what`` needs it."""
+    """Return pyarrow or a module of it; raises MissingExtraError, with ``what`` as the reason, where it is not
+    installed."""
     try:
         return import_module(name)
     except ModuleNotFoundError as error:

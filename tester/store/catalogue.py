@@ -15,26 +15,26 @@ from tester.store.reader import DATABASE, RunReader
 from tester.store.schema import StoreError
 
 RUNS = Path("runs")
-"""Where runs are kept unless told: under the working directory."""
+"""Default folder of runs, under the working directory."""
 
 MANIFEST = "manifest.json"
-"""Written at a run's end, whatever the end: a run without one was cut off, or is under way."""
+"""Written at every end of a run: a run without one was cut off, or is in progress."""
 
 
 NAMED = 4
-"""Runs that a message names at most."""
+"""Most runs named in a message."""
 LATEST = "latest"
-"""In place of a run's name: the newest run."""
+"""Replaces a run's name: the newest run."""
 _STAMPED = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}(?=-)")
-"""How the name of a run's folder begins."""
+"""Beginning of the name of a run's folder."""
 
 
 def find_run(name: str, under: Path = RUNS) -> Path:
-    """Return the folder of a run, given as a folder, its ``run.db`` or a name under ``under``.
+    """Return the folder of a run, by folder, by its ``run.db`` or by a name under ``under``.
 
-    The beginning of a name does where one run alone begins so. ``latest`` is the newest run under ``under``,
-    ``FOLDER/latest`` the newest under another folder; a folder of that very name comes first. Raises StoreError naming
-    where it was looked for, and the runs that begin so, or the nearest name there is.
+    A prefix is enough if it fits only one run. ``latest`` is the newest run under ``under``, ``FOLDER/latest`` the
+    newest under another folder; a folder of that very name has precedence. Raises StoreError with the searched places,
+    and the runs with this prefix, or the nearest name.
     """
     for folder in (Path(name), under / name):
         if (folder / DATABASE).is_file():
@@ -43,9 +43,9 @@ def find_run(name: str, under: Path = RUNS) -> Path:
             return folder.parent
     there = under if name == LATEST else Path(name).parent
     if Path(name).name == LATEST:
-        found = newest_run(there)
-        if found is not None:
-            return found
+        newest = newest_run(there)
+        if newest is not None:
+            return newest
         raise StoreError(f"no run {name}: there is no run under {there}")
     begin_so = _beginning_with(name, under)
     if len(begin_so) == 1:
@@ -70,18 +70,18 @@ def _beginning_with(name: str, under: Path) -> list[Path]:
 def newest_run(under: Path = RUNS) -> Path | None:
     """Return the folder of the run that began last, None where there is none.
 
-    By the date in the names; runs of one second, and folders without a date (looked at where no other is there), by
-    what their records say.
+    The date in the names decides; between runs of the same second, and between folders without a date (considered only
+    where no other exists), their records do.
     """
     folders = list(run_folders(under))
-    stamps = {folder: found[0] for folder in folders if (found := _STAMPED.match(folder.name))}
+    stamps = {folder: stamp[0] for folder in folders if (stamp := _STAMPED.match(folder.name))}
     newest = max(stamps.values(), default="")
     among = [folder for folder in folders if stamps.get(folder, "") == newest]
     return max(among, key=_began, default=None)
 
 
 def _began(folder: Path) -> tuple[str, int, str]:
-    """Return when a run began, by its record; where that says nothing, or the same, by its name."""
+    """Return when a run began, by its record; without an entry, or between equal ones, its name decides."""
     began = ""
     with suppress(StoreError), RunReader(folder) as reader:
         began = reader.run().info.started_utc
@@ -89,33 +89,34 @@ def _began(folder: Path) -> tuple[str, int, str]:
 
 
 def run_folders(under: Path = RUNS) -> Iterator[Path]:
-    """Yield the folders of runs under a folder, by name (which begins with the date); none where there is no folder."""
+    """Yield the folders of runs under a folder, by name (which begins with the date); nothing for a missing folder."""
     for folder in sorted(under.iterdir()) if under.is_dir() else ():
         if (folder / DATABASE).is_file():
             yield folder
 
 
 def under_way(folder: Path) -> Holder | None:
-    """Return who works on a run at present, None where nobody does."""
+    """Return the process that works on a run at present, None without one."""
     return user_of(folder / RUN_LOCK)
 
 
 def cut_off(under: Path) -> list[Path]:
-    """Return the runs under a folder that ended without an end: the process died, or the power failed."""
+    """Return the runs under a folder that have no end on record: the process died, or the power failed."""
     return [f for f in run_folders(under) if not (f / MANIFEST).is_file() and under_way(f) is None]
 
 
 class RunStatus(StrEnum):
-    """How a run stands. The words are those of every command, screen, catalogue and of JSON."""
+    """Status of a run. All commands, screens, catalogues and JSON use these words."""
 
     RUNNING = "running"
     """A process works on it: it holds the lock of the run's folder."""
     INTERRUPTED = "interrupted"
-    """It has no end on record and nobody works on it: the process died, the power failed, the program broke off."""
+    """It has no end on record and no process works on it: the process died, the power failed, or the program was
+    aborted."""
     DONE = "done"
-    """It went through its plan, and every condition has a value to be trusted."""
+    """It completed its plan, and every condition has a trustworthy value."""
     INCOMPLETE = "incomplete"
-    """It went through its plan, and a condition at least has no value to be trusted."""
+    """It completed its plan, and at least one condition has no trustworthy value."""
     STOPPED = "stopped"
     TRIPPED = "tripped"
     FAILED = "failed"
@@ -125,17 +126,17 @@ class RunStatus(StrEnum):
 
     @property
     def over(self) -> bool:
-        """Return whether its plan was gone through to the end: nothing is left to resume."""
+        """Return whether the plan was completed: nothing is left to resume."""
         return self in (RunStatus.DONE, RunStatus.INCOMPLETE)
 
     @property
     def can_resume(self) -> bool:
-        """Return whether `tester resume` may go on with it."""
+        """Return whether `tester resume` may continue it."""
         return not self.over and self not in (RunStatus.RUNNING, RunStatus.UNREADABLE)
 
 
 WENT_THROUGH = "done"
-"""What a record says of a run that went through its whole plan."""
+"""Status in the record of a run that completed its plan."""
 _RECORDED = {
     "stopped": RunStatus.STOPPED,
     "tripped": RunStatus.TRIPPED,
@@ -143,16 +144,16 @@ _RECORDED = {
     "running": RunStatus.INTERRUPTED,
     "interrupted": RunStatus.INTERRUPTED,
 }
-"""What a record says, and what that means where nobody works on the run. ``running`` is written at the beginning."""
+"""Status by the word in the record, for a run without a process. ``running`` is written at the beginning."""
 
 
 def run_status(recorded: str, *, held: bool, missing: bool) -> RunStatus:
     """Return the status of a run.
 
     ``recorded``: the status in its record; ``held``: a process holds the lock of its folder; ``missing``: a condition
-    has no value to be trusted. A record whose word is none of ours has failed: nothing says that it went through.
+    has no trustworthy value. An unknown word counts as failed: nothing shows that the run completed its plan.
     """
     if recorded == WENT_THROUGH:
-        # Also while held: tables are being made, or a repeat is left out by hand.
+        # Even while held: tables are being made, or a repeat is being left out by hand.
         return RunStatus.INCOMPLETE if missing else RunStatus.DONE
     return RunStatus.RUNNING if held else _RECORDED.get(recorded, RunStatus.FAILED)

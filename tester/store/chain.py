@@ -1,14 +1,13 @@
-"""A chain of hashes over every row of a run's record, in the order of commits: what was changed afterwards shows.
+"""A chain of hashes over every row of a run's record, in the order of commits, which reveals later changes.
 
-The table ``chain`` has an entry for each row at each commit that made or changed it, or took it out:
+The table ``chain`` has an entry for each row at each commit that added, changed or deleted it:
 
-    row_sha256 = SHA-256 of the JSON text [table, key, {column: value, ...}]      (null in place of a row taken out)
-    head       = SHA-256 of (head of the entry before | row_sha256), 32 bytes each; 32 zero bytes before the first
+  row_sha256 = SHA-256 of the JSON text [table, key, {column: value, ...}]      (null in place of a deleted row)
+  head       = SHA-256 of (head of the entry before | row_sha256), 32 bytes each; 32 zero bytes before the first
 
-``key`` is the row's rowid. Columns are in the table's order, those that are NULL left out (a column that a later
-version adds changes no hash); numbers as Python's ``repr`` writes them, text escaped to ASCII, a blob as its own
-SHA-256. Who can write the file can also make the whole chain anew. What shows that is the last head, kept elsewhere by
-a person.
+``key`` is the row's rowid. Columns are in the table's order, without those that are NULL (a column that a later version
+adds changes no hash); numbers as Python's ``repr`` writes them, text escaped to ASCII, a blob as its own SHA-256. A
+person who can write the file can also rebuild the whole chain. The last head, kept elsewhere by a person, reveals that.
 """
 
 from __future__ import annotations
@@ -24,19 +23,19 @@ Cell = str | int | float | bytes | None
 TABLE = "chain"
 START = bytes(32)
 NAMED_AT_MOST = 5
-"""Rows of a table that are named; of more, only the number is told."""
+"""Most rows of a table named in the list of problems; the rest are counted."""
 
 _INSERT = "INSERT INTO chain (seq, name, key, row_sha256, head) VALUES (?, ?, ?, ?, ?)"
 
 
 def tables_in(connection: sqlite3.Connection) -> list[str]:
-    """Return the tables that the chain is over: all of the database but itself and SQLite's own."""
-    found = connection.execute("SELECT name FROM main.sqlite_master WHERE type = 'table' ORDER BY name")
-    return [name for (name,) in found if name != TABLE and not name.startswith("sqlite_")]
+    """Return the tables under the chain: all of the database but itself and SQLite's own."""
+    tables = connection.execute("SELECT name FROM main.sqlite_master WHERE type = 'table' ORDER BY name")
+    return [name for (name,) in tables if name != TABLE and not name.startswith("sqlite_")]
 
 
 def row_sha256(table: str, key: int, columns: Sequence[str], values: Sequence[Cell] | None) -> bytes:
-    """Return the hash of a row; ``values`` None: it was taken out."""
+    """Return the hash of a row; ``values`` None: it was deleted."""
     row = None
     if values is not None:
         row = {name: _plain(v) for name, v in zip(columns, values, strict=True) if v is not None}
@@ -48,12 +47,12 @@ def _plain(value: Cell) -> object:
 
 
 def next_head(head: bytes, row: bytes) -> bytes:
-    """Return the head that follows when a row's hash is added."""
+    """Return the head after a row's hash."""
     return sha256(head + row).digest()
 
 
 class Chain:
-    """Chains what one connection writes. ``seal`` belongs before every COMMIT of a transaction that changes rows.
+    """Chains the writes of one connection. Call ``seal`` before every COMMIT of a transaction that changes rows.
 
     Temporary triggers note which rows a transaction touches, so no statement can be forgotten.
     """
@@ -75,7 +74,7 @@ class Chain:
                 )
 
     def seal(self) -> None:
-        """Add an entry for each row that this transaction has touched, as it is now."""
+        """Add an entry for each row that this transaction has touched, in its present state."""
         connection = self._connection
         touched = connection.execute("SELECT name, key FROM touched ORDER BY n").fetchall()
         if touched:
@@ -83,11 +82,11 @@ class Chain:
             connection.execute("DELETE FROM touched")
 
     def _hash(self, table: str, key: int) -> bytes:
-        if table not in self._columns:  # only now: a new record gets its columns as the run begins
+        if table not in self._columns:  # read lazily: a new record gets its columns when the run begins
             self._columns[table] = columns_of(self._connection, table)
         columns = self._columns[table]
-        found = self._connection.execute(f"SELECT {', '.join(columns)} FROM main.{table} WHERE rowid = ?", (key,))
-        return row_sha256(table, key, columns, found.fetchone())
+        row = self._connection.execute(f"SELECT {', '.join(columns)} FROM main.{table} WHERE rowid = ?", (key,))
+        return row_sha256(table, key, columns, row.fetchone())
 
 
 def columns_of(connection: sqlite3.Connection, table: str) -> tuple[str, ...]:
@@ -113,7 +112,7 @@ def hashes_of(connection: sqlite3.Connection, table: str) -> Iterator[tuple[int,
 
 @dataclass(frozen=True, slots=True)
 class ChainFound:
-    """What a look at a chain has found. ``heads``: all of it, in order, as far as it is unbroken."""
+    """Result of inspecting a chain. ``heads``: all of it, in order, as far as it is unbroken."""
 
     problems: tuple[str, ...]
     heads: tuple[bytes, ...]
@@ -122,12 +121,13 @@ class ChainFound:
 
     @property
     def head(self) -> str:
-        """Return the last head, hexadecimal; "" of an empty chain."""
+        """Return the last head, hexadecimal; "" for an empty chain."""
         return self.heads[-1].hex() if self.heads else ""
 
 
 def inspect(connection: sqlite3.Connection) -> ChainFound:
-    """Hold a record of this schema against its chain, as it is at one moment: a run may go on. Raises sqlite3.Error."""
+    """Compare a record of this schema with its chain, in one snapshot, as a run may be in progress. Raises
+    sqlite3.Error."""
     connection.execute("BEGIN")
     try:
         problems: list[str] = []
@@ -136,9 +136,9 @@ def inspect(connection: sqlite3.Connection) -> ChainFound:
         names: list[str] = []
         head = START
         entries = connection.execute("SELECT seq, name, key, row_sha256, head FROM chain ORDER BY seq")
-        for n, (seq, name, key, row, said) in enumerate(entries, start=1):
+        for n, (seq, name, key, row, stored_head) in enumerate(entries, start=1):
             head = next_head(head, bytes(row))
-            if seq != n or head != said:
+            if seq != n or head != stored_head:
                 problems.append(f"the chain is broken at entry {n}")
                 break
             heads.append(head)
@@ -146,7 +146,7 @@ def inspect(connection: sqlite3.Connection) -> ChainFound:
             latest[name, key] = row
         for table in tables_in(connection):
             of_table = {key: row for (name, key), row in latest.items() if name == table}
-            problems += _told(table, of_table, connection)
+            problems += _differences(table, of_table, connection)
         unknown = {name for name, _ in latest}.difference(tables_in(connection))
         problems += [f"the table {name} is gone" for name in sorted(unknown)]
     finally:
@@ -154,17 +154,17 @@ def inspect(connection: sqlite3.Connection) -> ChainFound:
     return ChainFound(tuple(problems), tuple(heads), tuple(names))
 
 
-def _told(table: str, said: dict[int, bytes], connection: sqlite3.Connection) -> Iterator[str]:
-    """Yield what differs between a table's rows and the last entries of the chain on them."""
+def _differences(table: str, latest: dict[int, bytes], connection: sqlite3.Connection) -> Iterator[str]:
+    """Yield the differences between a table's rows and the last entries of the chain on them."""
     changed: list[int] = []
     strange: list[int] = []
     for key, row in hashes_of(connection, table):
-        expected = said.pop(key, None)
+        expected = latest.pop(key, None)
         if expected is None:
             strange.append(key)
         elif expected != row:
             changed.append(key)
-    gone = [key for key, row in said.items() if row != row_sha256(table, key, (), None)]
+    gone = [key for key, row in latest.items() if row != row_sha256(table, key, (), None)]
     for keys, words in ((changed, "changed"), (strange, "not in the chain"), (gone, "gone")):
         yield from (f"{table} {key}: {words}" for key in keys[:NAMED_AT_MOST])
         if len(keys) > NAMED_AT_MOST:

@@ -1,4 +1,4 @@
-"""A record's own table of channels: what its samples and its measured means are, without the kind of rig at hand."""
+"""A record's own table of channels, which defines its samples and means without the code of its kind of rig."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from tester.store.statements import Value, insert
 
 COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "whole", "shown_name", "shown_unit",
            "scale", "role", "block", "screen")  # fmt: skip
-"""Of the table ``channel``. ``role``: words of _ROLES, joined; ``block`` beside the role ``turn``; ``screen``: JSON."""
+"""Columns of the table ``channel``. ``role``: words of _ROLES, joined; ``block`` beside the role ``turn``; ``screen``:
+JSON."""
 
 _FIGURES = ("low", "high", "limit")
 _ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING = _ROLES = (
@@ -24,7 +25,7 @@ _ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING = _ROLES = (
 def channel_rows(quantities: Quantities) -> list[dict[str, Value]]:
     """Return a row of the table ``channel`` for each channel, in order."""
     roles = quantities.roles
-    held = {
+    by_role = {
         _ALONG: roles.friction[0],
         _ACROSS: roles.friction[1] if len(roles.friction) > 1 else "",
         _NORMAL: roles.normal,
@@ -35,26 +36,26 @@ def channel_rows(quantities: Quantities) -> list[dict[str, Value]]:
     return [
         {
             "position": position,
-            "name": one.name,
-            "unit": one.unit,
-            "label": one.label,
-            "source": one.source,
-            "mean": one.mean,
-            "decimals": one.decimals,
-            "whole": int(one.whole),
-            "shown_name": one.column,
-            "shown_unit": one.shown_unit,
-            "scale": one.scale,
-            "role": " ".join(role for role, name in held.items() if name == one.name),
-            "block": roles.block if one.name == roles.turn else None,
-            "screen": "" if one.screen is None else json.dumps(asdict(one.screen)),
+            "name": quantity.name,
+            "unit": quantity.unit,
+            "label": quantity.label,
+            "source": quantity.source,
+            "mean": quantity.mean,
+            "decimals": quantity.decimals,
+            "whole": int(quantity.whole),
+            "shown_name": quantity.column,
+            "shown_unit": quantity.shown_unit,
+            "scale": quantity.scale,
+            "role": " ".join(role for role, name in by_role.items() if name == quantity.name),
+            "block": roles.block if quantity.name == roles.turn else None,
+            "screen": "" if quantity.screen is None else json.dumps(asdict(quantity.screen)),
         }
-        for position, one in enumerate(quantities)
+        for position, quantity in enumerate(quantities)
     ]
 
 
 def quantities_of(rows: Iterable[Mapping[str, object]]) -> Quantities:
-    """Return the table whose rows these are, in order; raises ValueError, KeyError, TypeError where it is none."""
+    """Return the channels from their rows, in order; raises ValueError, KeyError, TypeError for unusable rows."""
     listed = list(rows)
     holder = {role: str(row["name"]) for row in listed for role in str(row["role"]).split()}
     blocks = [float(str(row["block"])) for row in listed if row["block"] is not None]
@@ -84,36 +85,39 @@ def _channel(row: Mapping[str, object]) -> Channel:
 def _screen(text: str) -> Screen | None:
     if not text:
         return None
-    said = json.loads(text)
-    figures: dict[str, Any] = {name: Figure(**said[name]) for name in _FIGURES if said[name] is not None}
-    return Screen(**{**said, **figures})
+    stored = json.loads(text)
+    figures: dict[str, Any] = {name: Figure(**stored[name]) for name in _FIGURES if stored[name] is not None}
+    return Screen(**{**stored, **figures})
 
 
 def recorded_channels(connection: sqlite3.Connection) -> Quantities | None:
-    """Return the channels of the record that a connection is open on, None of one that is new; raises sqlite3.Error.
+    """Return the channels of an open record, None for a new one; raises sqlite3.Error.
 
-    Also ValueError where its table of channels is none.
+    Raises ValueError for an unreadable table of channels.
     """
-    found = connection.execute(f"SELECT {', '.join(COLUMNS)} FROM channel ORDER BY position").fetchall()
-    if not found:
+    rows_found = connection.execute(f"SELECT {', '.join(COLUMNS)} FROM channel ORDER BY position").fetchall()
+    if not rows_found:
         return None
     try:
-        return quantities_of([dict(zip(COLUMNS, tuple(row), strict=True)) for row in found])
+        return quantities_of([dict(zip(COLUMNS, tuple(row), strict=True)) for row in rows_found])
     except (KeyError, TypeError) as error:
         raise ValueError(f"the table of channels cannot be read: {error}") from error
 
 
 def add_channels(connection: sqlite3.Connection, quantities: Quantities) -> None:
-    """Give a new record its channels, inside a transaction: their rows, columns of repeats and tares for their values.
+    """Add the channels to a new record, inside a transaction: their rows, and columns of repeats and tares for their
+    values.
 
     A repeat gets a column for the mean of each averaged channel, a tare one for its zero. Raises ValueError for a
-    channel whose name is another column's.
+    channel with the name of another column.
     """
     for row in channel_rows(quantities):
         connection.execute(*insert("channel", row))
     for table in ("repeat", "tare"):
         taken = {row[1] for row in connection.execute(f"PRAGMA main.table_info({table})")}
-        for one in quantities.averaged:
-            if one.name in taken:
-                raise ValueError(f"channel {one.name}: a {table} has another column of this name, rename the channel")
-            connection.execute(f"ALTER TABLE {table} ADD COLUMN {one.name} REAL")
+        for quantity in quantities.averaged:
+            if quantity.name in taken:
+                raise ValueError(
+                    f"channel {quantity.name}: a {table} has another column of this name, rename the channel"
+                )
+            connection.execute(f"ALTER TABLE {table} ADD COLUMN {quantity.name} REAL")

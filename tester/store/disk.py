@@ -1,4 +1,4 @@
-"""Files that are whole or absent, also after a power cut; room on the disk for a run, twice over."""
+"""Files that are whole or absent, even after a power cut; free disk space for a run."""
 
 from __future__ import annotations
 
@@ -13,69 +13,70 @@ from tester.inputs.recipe.estimate import Estimate
 from tester.inputs.recipe.plan import Plan
 
 ROW_BYTES = 60.0
-"""A recorded sample in its block, with its share of the log and of the tables (measured: 38 to 55)."""
+"""Size of a recorded sample in its block, with its share of the log and of the tables (measured: 38 to 55)."""
 CONTACT_ROWS_S = 60.0
 """Samples per rig second of a step in contact: 100 in slip, 20 while rolling (interface: exports). Simulated runs of
 the shipped recipes record 25 to 40."""
 IDLE_ROWS_S = 2.0
 FIXED_BYTES = 2_000_000.0
-"""Recipe, rig file, journal, device parameters, tables, and the log before it is folded in."""
+"""Recipe, rig file, journal, device parameters, tables, and the log before its checkpoint."""
 MARGIN = 2.0
-"""Free room is to be this many times the estimate [A]."""
+"""Required free space, as a multiple of the estimate [A]."""
 
 
 def free_bytes(folder: Path) -> int:
-    """Return the room that is free under a folder, bytes; on a network share this may take for ever. Raises OSError."""
+    """Return the free space under a folder, bytes; on a network share this may block for ever. Raises OSError."""
     return shutil.disk_usage(folder).free
 
 
 class FreeRoom:
-    """The room under a folder as it was told last. A thread asks: whoever looks never waits for a disk that hangs."""
+    """The latest known free space under a folder. A thread measures it: callers never wait for a disk that hangs."""
 
     def __init__(self, folder: Path, ask: Callable[[Path], int] = free_bytes) -> None:
-        """``folder``: the working folder stands in until it is there; ``ask`` as ``free_bytes``."""
+        """``folder``: while it is missing, the working folder is measured; ``ask`` as ``free_bytes``."""
         self.folder = folder
         self.hangs = False
-        """A question was still waiting for its answer when the next one was due."""
-        self._told: int | None = None
+        """Whether the previous measurement was still running when the next was due."""
+        self._free: int | None = None
         self._ask = ask
         self._asking: Thread | None = None
 
     @property
     def free(self) -> int | None:
-        """Bytes; None where nothing was told yet, an error was, or the disk hangs."""
-        return None if self.hangs else self._told
+        """Return bytes; None before the first result, after an error, or while the disk hangs."""
+        return None if self.hangs else self._free
 
     def look(self) -> None:
-        """Have it asked for anew, unless an answer is still due; never waits."""
+        """Start a new measurement, unless one is still running; never waits."""
         self.hangs = self._asking is not None and self._asking.is_alive()
         if not self.hangs:
             self._asking = Thread(target=self._work, name="free room", daemon=True)
             self._asking.start()
 
     def wait(self, seconds: float) -> None:
-        """Wait so long at most for the answer; for a moment when nothing is under control."""
+        """Wait at most ``seconds`` for the result; for use while nothing is under control."""
         if self._asking is not None:
             self._asking.join(seconds)
 
     def _work(self) -> None:
         try:
-            self._told = self._ask(self.folder if self.folder.is_dir() else Path())
+            self._free = self._ask(self.folder if self.folder.is_dir() else Path())
         except OSError:
-            self._told = None
+            self._free = None
 
 
 def expected_bytes(plan: Plan, expected: Estimate) -> float:
-    """Return what a run of the plan will take on disk, bytes; ``expected`` is the plan's estimate."""
+    """Return the disk space that a run of the plan will take, bytes; ``expected`` is the plan's estimate."""
     rows = 0.0
-    for step, one in zip(plan.steps, expected.steps, strict=True):
+    for step, estimate in zip(plan.steps, expected.steps, strict=True):
         in_contact = step.contact
-        rows += one.seconds * (CONTACT_ROWS_S if in_contact else IDLE_ROWS_S)
+        rows += estimate.seconds * (CONTACT_ROWS_S if in_contact else IDLE_ROWS_S)
     return FIXED_BYTES + ROW_BYTES * rows
 
 
 def too_little_room(folder: Path, needed: float) -> str:
-    """Return why there is not room for ``needed`` bytes under a folder, with the numbers; empty where there is."""
+    """Return why the space under a folder is too small for ``needed`` bytes, with the numbers; empty where it is
+    enough."""
     free = free_bytes(folder)
     if free >= MARGIN * needed:
         return ""
@@ -90,7 +91,7 @@ def _mb(size: float) -> str:
 
 
 def write_whole(path: Path, fill: Callable[[Path], None]) -> None:
-    """Let ``fill`` write a file beside ``path``, then put it in its place, synced; raises OSError."""
+    """Let ``fill`` write a temporary file, sync it, and rename it to ``path``; raises OSError."""
     part = path.with_name(f"{path.name}.part")
     try:
         fill(part)
@@ -103,7 +104,7 @@ def write_whole(path: Path, fill: Callable[[Path], None]) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text as UTF-8, line ends as they are, whole and synced; raises OSError."""
+    """Write a text as UTF-8, line ends unchanged, whole and synced; raises OSError."""
 
     def fill(part: Path) -> None:
         part.write_bytes(text.encode())
@@ -112,7 +113,8 @@ def write_text(path: Path, text: str) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Make names in a folder last: files made, replaced or deleted there. Nothing where folders cannot be synced."""
+    """Sync the names in a folder: files made, replaced or deleted there. Does nothing where folders cannot be synced.
+    """
     with suppress(OSError):  # Windows opens no folders
         descriptor = os.open(folder, os.O_RDONLY)
         try:

@@ -1,8 +1,8 @@
-"""Put the records of a run's parts into the run's own: one run whose times follow one another.
+"""Puts the records of a run's parts into the run's own: one run whose times follow one another.
 
-A part is recorded by itself, from time 0 and with keys from 1. Here it is copied into the run's database behind the
-parts before it: times later by their rig seconds, keys higher by those given so far. What the columns mean is said
-once, in ``TABLES``; columns that only hold values need no mention.
+A part is recorded by itself, from time 0 and with keys from 1. This module copies it into the run's database behind the
+parts before it: times increase by their rig seconds, keys by those assigned so far. ``TABLES`` defines the meaning of
+the columns; columns that only hold values need no entry.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Cell = str | int | float | bytes | None
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """What a table's columns mean: rig times, and keys.
+    """Meaning of a table's columns: rig times, and keys.
 
     ``key`` counts through the run (None: the part's own keys hold in the run), ``repeat`` refers to a repeat's key.
     """
@@ -56,7 +56,7 @@ TABLES: dict[str, Merged] = {
     "truth": Merged(key="id"),
     "travel": Merged(key="id", repeat="repeat_id"),
 }
-"""Tables that are filled while a run goes on, in the order in which they refer to each other."""
+"""Tables that a run in progress fills, in the order in which they refer to each other."""
 
 HEADER = frozenset(
     {
@@ -77,30 +77,30 @@ HEADER = frozenset(
         "chain",
     }
 )
-"""Tables of the whole run, which parts do not fill. ``condition`` is brought up to date."""
+"""Tables of the whole run, which parts do not fill. ``condition`` is updated."""
 
 LEFT = ("status", "reason", "warming_k_s", "holdable_band_k", *(field.name for field in fields(Judgement)))
-"""How a condition was left; ``started_s`` and ``ended_s`` are times."""
+"""Final state of a condition; ``started_s`` and ``ended_s`` are times."""
 
 _DIGITS = 6
-"""Rig times lie on a grid of microseconds (tester.machine.tickers); a sum of two is put back on it."""
+"""Rig times lie on a grid of microseconds (tester.machine.tickers); a sum of two is rounded to it."""
 _LEVEL = 1
-"""Of compression, as tester.store.sample_blocks writes."""
+"""Compression level, as in tester.store.sample_blocks."""
 
 
 class Merge:
     """Puts parts into a run's database, each in a transaction of its own; use in a ``with`` block.
 
-    Begins by taking out what an earlier merge left, so it may be done again, after a crash or a resumed part. Raises
+    It begins by deleting the result of an earlier merge, so it may be repeated, after a crash or a resumed part. Raises
     sqlite3.Error and StoreError; the parts are never written.
     """
 
     def __init__(self, folder: Path) -> None:
-        """``folder``: the run's, whose ``run.db`` holds the run and its conditions."""
+        """Open the merge; ``folder``: the run's, whose ``run.db`` has the run and its conditions."""
         self.rig_seconds = 0.0
         self._connection = sqlite3.connect(folder / DATABASE, isolation_level=None)
         try:
-            # The deletion of a rollback journal is synced, too: one that came back would take the merge back.
+            # The deletion of a rollback journal is synced as well: a journal that came back would undo the merge.
             self._connection.execute("PRAGMA synchronous = EXTRA")
             migrate(self._connection)
             self._channels = _channels(self._connection)
@@ -120,7 +120,7 @@ class Merge:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._connection.close()
 
     def add(self, part: Path) -> None:
@@ -139,7 +139,7 @@ class Merge:
         self.rig_seconds = self._later(self.rig_seconds, run.rig_seconds)
 
     def finish(self, status: str, reason: str, ended_utc: str) -> None:
-        """Record how the whole run ended."""
+        """Store the end of the whole run."""
         sql = "UPDATE run SET status = ?, reason = ?, rig_seconds = ?, ended_utc = ?"
         with self._transaction():
             self._connection.execute(sql, (status, reason, self.rig_seconds, ended_utc))
@@ -148,16 +148,16 @@ class Merge:
 
     def _copy(self, source: sqlite3.Connection, table: str, bases: dict[str, int]) -> None:
         kind = TABLES[table]
-        found = source.execute(f"SELECT * FROM {table} ORDER BY rowid")
-        names = [column[0] for column in found.description]
+        rows = source.execute(f"SELECT * FROM {table} ORDER BY rowid")
+        names = [column[0] for column in rows.description]
         times = [names.index(name) for name in kind.times]
         key = names.index(kind.key) if kind.key is not None else -1
         repeat = names.index(kind.repeat) if kind.repeat is not None else -1
         data = names.index("data") if table == "sample_block" else -1
 
         def moved() -> Iterator[list[Cell]]:
-            for one in found:
-                row: list[Cell] = list(one)
+            for stored in rows:
+                row: list[Cell] = list(stored)
                 for i in times:
                     row[i] = self._moved(row[i])
                 if key >= 0:
@@ -215,7 +215,7 @@ def _channels(connection: sqlite3.Connection) -> Quantities:
 
 
 class _MergeTransaction:
-    """All of it or nothing, and chained."""
+    """Commits everything or nothing, chained."""
 
     def __init__(self, connection: sqlite3.Connection, chain: Chain) -> None:
         self._connection = connection
@@ -237,5 +237,5 @@ class _MergeTransaction:
 
 
 def _raised(key: Cell, base: int) -> Cell:
-    """Return a key of the run; 0 stands for no repeat and stays."""
+    """Return a key of the run; 0 means no repeat and stays."""
     return key + base if isinstance(key, int) and key > 0 else key

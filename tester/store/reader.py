@@ -106,30 +106,31 @@ def _optional(row: Row, name: str) -> float | None:
 
 
 _OF_A_TARE = ("id", "t_s", "kind", "repeat_id")
-"""Columns of the table ``tare`` that are no channel's zero."""
+"""Columns of the table ``tare`` other than the zeros of channels."""
 _READERS = {
     "str": _text, "float": _number, "int": _whole, "bool": _flag,
     "str | None": _text_or_none, "float | None": _optional, "int | None": _whole_or_none,
 }  # fmt: skip
 
 
-def _record(record: type[T], row: Row, **given: object) -> T:
+def _record(record: type[T], row: Row, **known: object) -> T:
     """Return a record whose fields are the row's columns of the same names, except those given."""
     values = {
-        field.name: _READERS[str(field.type)](row, field.name) for field in fields(record) if field.name not in given
+        field.name: _READERS[str(field.type)](row, field.name) for field in fields(record) if field.name not in known
     }
     build: Callable[..., T] = record
-    return build(**values, **given)
+    return build(**values, **known)
 
 
 def _read_only(path: Path) -> sqlite3.Connection:
-    """Return a connection that reads; raises sqlite3.Error."""
+    """Return a read-only connection; raises sqlite3.Error."""
     uri = f"{path.absolute().as_uri()}?mode=ro"
     connection = sqlite3.connect(uri, uri=True)
     try:
         connection.execute("SELECT count(*) FROM sqlite_master")
     except sqlite3.OperationalError:
-        # A power cut at the very beginning or end of a run leaves a rollback journal, which a reader may not play back.
+        # A power cut at the very beginning or end of a run leaves a rollback journal, which a reader must not play
+        # back.
         connection.close()
         with closing(sqlite3.connect(path)) as repairing:
             repairing.execute("SELECT count(*) FROM sqlite_master")
@@ -141,7 +142,7 @@ def _read_only(path: Path) -> sqlite3.Connection:
 class RunReader:
     """A run's record, from its folder or its ``run.db``; use in a ``with`` block or close it.
 
-    Raises StoreError where there is no database, or none that this version reads.
+    Raises StoreError for a missing database, or one that this version cannot read.
     """
 
     def __init__(self, path: Path) -> None:
@@ -168,7 +169,7 @@ class RunReader:
         if version == 0:
             connection.close()
             raise NotBegunError(f"{self.path}: the run was not begun")
-        # An older record stays as it is (its manifest holds); a copy is brought to the present schema.
+        # An older record stays unchanged (its manifest holds); a copy is migrated to the present schema.
         self._copy = TemporaryDirectory(prefix="tester-", ignore_cleanup_errors=True)
         with closing(connection), closing(sqlite3.connect(Path(self._copy.name) / DATABASE)) as present:
             connection.backup(present)
@@ -186,7 +187,7 @@ class RunReader:
         self.close()
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._connection.close()
         if self._copy is not None:
             self._copy.cleanup()
@@ -210,7 +211,7 @@ class RunReader:
             raise StoreError(f"{self.path} cannot be read: {error}") from error
 
     def run(self) -> StoredRun:
-        """Return the run; raises StoreError if nothing was recorded of it."""
+        """Return the run; raises StoreError if none is recorded."""
         for row in self._rows("SELECT * FROM run"):
             info = _record(
                 RunInfo,
@@ -218,7 +219,7 @@ class RunReader:
                 calibration=tuple(self.calibration()),
                 axes=self.axes(),
                 terms=self.terms(),
-                known=tuple(_record(KnownSlope, one) for one in self._rows("SELECT * FROM known_slope")),
+                known=tuple(_record(KnownSlope, slope) for slope in self._rows("SELECT * FROM known_slope")),
                 metadata=self._texts("metadata", "key", "value"),
                 versions=self._texts("version", "component", "version"),
                 materials=tuple(self.materials()),
@@ -240,7 +241,7 @@ class RunReader:
         return axes_of(self._rows("SELECT * FROM axis ORDER BY position"))
 
     def terms(self) -> tuple[Term, ...]:
-        """Return what the machine's measuring chain may be off by."""
+        """Return the possible errors of the machine's measuring chain."""
         try:
             return tuple(map(term_of, self._rows("SELECT * FROM budget_term ORDER BY position")))
         except (TypeError, ValueError) as error:
@@ -255,24 +256,25 @@ class RunReader:
         return {_whole(row, "repeat_id"): _number(row, "rate") for row in self._rows(sql)}
 
     def travels(self) -> dict[int, Travel]:
-        """Return how far counterface and piece had come as each repeat began, by the repeat's key."""
+        """Return how far counterface and piece had come at the beginning of each repeat, by the repeat's key."""
         rows = self._rows("SELECT * FROM travel WHERE repeat_id > 0")
         return {_whole(row, "repeat_id"): _record(Travel, row) for row in rows}
 
     def slid(self) -> dict[int, list[float]]:
-        """Return how far each piece had slid as its repeats began and as its state was stored last, m, in order."""
-        found: dict[int, list[float]] = {}
+        """Return the sliding of each piece at the beginning of its repeats and at its last stored state, m, in order.
+        """
+        slid: dict[int, list[float]] = {}
         for row in self._rows("SELECT piece, piece_m FROM travel WHERE piece_m IS NOT NULL ORDER BY piece_m"):
-            found.setdefault(_whole(row, "piece"), []).append(_number(row, "piece_m"))
-        return found
+            slid.setdefault(_whole(row, "piece"), []).append(_number(row, "piece_m"))
+        return slid
 
     def counterface_m(self) -> float:
-        """Return how far the counterface has travelled under load since the run began, m; 0 where nothing says."""
+        """Return the counterface's travel under load since the run began, m; 0 without a record."""
         rows = self._rows("SELECT coalesce(max(counterface_m), 0.0) AS travel_m FROM travel")
         return next(_number(row, "travel_m") for row in rows)
 
     def materials(self) -> list[StoredMaterial]:
-        """Return the files of compounds and surfaces, each before what it refers to."""
+        """Return the files of compounds and surfaces, each before the files that it refers to."""
         return [_record(StoredMaterial, row) for row in self._rows("SELECT * FROM material ORDER BY id")]
 
     def specimens(self) -> list[SpecimenInfo]:
@@ -280,48 +282,48 @@ class RunReader:
         return [_record(SpecimenInfo, row) for row in self._rows("SELECT * FROM specimen ORDER BY specimen")]
 
     def pieces(self) -> list[PieceInfo]:
-        """Return what was mounted to be measured, with its last known wear."""
+        """Return the mounted pieces, with their last known wear."""
         return [_record(PieceInfo, row) for row in self._rows("SELECT * FROM piece ORDER BY piece")]
 
     def wear_checks(self) -> list[WearCheck]:
-        """Return the checks of diameters in the order in which they were made."""
+        """Return the checks of diameters in order of time."""
         return [_record(WearCheck, row) for row in self._rows("SELECT * FROM wear_check ORDER BY id")]
 
     def soaks(self) -> dict[int, SoakCheck]:
-        """Return what thermometer and heater's sensor showed at the end of the last soak of each condition."""
-        found = (_record(SoakCheck, row) for row in self._rows("SELECT * FROM soak ORDER BY id"))
-        return {one.condition: one for one in found}
+        """Return the readings of thermometer and heater's sensor at the end of the last soak of each condition."""
+        checks = (_record(SoakCheck, row) for row in self._rows("SELECT * FROM soak ORDER BY id"))
+        return {check.condition: check for check in checks}
 
     def conditions(self) -> list[StoredCondition]:
         """Return the plan's conditions in the recipe's order, replicates one after the other."""
-        found: list[StoredCondition] = []
+        conditions: list[StoredCondition] = []
         axes = self.axes()
         for row in self._rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
             status = ConditionStatus(_text(row, "status"))
             left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
             info = _record(ConditionInfo, row, setpoint=setpoint_of(row, axes))
             judged = _record(Judgement, row)
-            found.append(_record(StoredCondition, row, info=info, status=left, judged=judged))
-        return found
+            conditions.append(_record(StoredCondition, row, info=info, status=left, judged=judged))
+        return conditions
 
     def repeats(self, condition: int | None = None, *, attempts: bool = False) -> list[StoredRepeat]:
         """Return the committed repeats, in order of condition and repeat: the last attempt of each.
 
-        ``attempts``: every attempt instead, also void ones and the one under way.
+        ``attempts``: every attempt instead, including void ones and the one in progress.
         """
         where, values = ("WHERE condition = ?", (condition,)) if condition is not None else ("", ())
-        found: dict[tuple[int, ...], StoredRepeat] = {}
+        repeats: dict[tuple[int, ...], StoredRepeat] = {}
         channels = self.quantities()
         for row in self._rows(f"SELECT * FROM repeat {where} ORDER BY condition, repeat, attempt, id", values):
             status = RepeatStatus(_text(row, "status"))
             if not attempts and status in (RepeatStatus.OPEN, RepeatStatus.VOID):
                 continue
-            means = Means(channels, [_number(row, one.name) for one in channels.averaged])
+            means = Means(channels, [_number(row, quantity.name) for quantity in channels.averaged])
             result = _record(RepeatResult, row, status=status, means=means)
             stored = _record(StoredRepeat, row, key=_whole(row, "id"), result=result)
             key = (stored.condition, stored.repeat, stored.attempt if attempts else 0)
-            found[key] = stored
-        return list(found.values())
+            repeats[key] = stored
+        return list(repeats.values())
 
     def bursts(self, repeat_key: int) -> list[Burst]:
         """Return the bursts of a committed repeat."""
@@ -339,32 +341,32 @@ class RunReader:
         return [_text(row, "data") for row in self._rows(sql, (kind,))]
 
     def commands(self) -> Iterator[StoredEvent]:
-        """Yield what clients have commanded, and who, in order; steps by hand are left out."""
+        """Yield the commands of clients, with their senders, in order; manual steps are left out."""
         for row in self._rows("SELECT * FROM event WHERE kind = 'command' AND severity <> 'debug' ORDER BY sequence"):
             yield _record(StoredEvent, row)
 
     def holds(self) -> Iterator[StoredEvent]:
-        """Yield the ends of holds, in order; each text is how long it lasted."""
+        """Yield the ends of holds, in order; each text is the duration."""
         for row in self._rows("SELECT * FROM event WHERE kind = 'held' ORDER BY sequence"):
             yield _record(StoredEvent, row)
 
     def sessions(self) -> list[SessionInfo]:
-        """Return the stretches in which the run was worked on, a process each."""
+        """Return the sessions of the run, one for each process."""
         return [_record(SessionInfo, row) for row in self._rows("SELECT * FROM session ORDER BY session")]
 
     def changes(self) -> list[Change]:
-        """Return what was changed between the stretches, and why."""
+        """Return the changes between the sessions, with their reasons."""
         return [_record(Change, row) for row in self._rows("SELECT * FROM change ORDER BY id")]
 
     def calibration(self, session: int | None = None) -> list[Calibration]:
-        """Return the calibration in use at the end, or from a stretch on in which it was changed."""
+        """Return the calibration at the end, or from a session on in which it was changed."""
         which = "(SELECT max(session) FROM calibration)" if session is None else "?"
         values = () if session is None else (session,)
         rows = self._rows(f"SELECT * FROM calibration WHERE session = {which} ORDER BY id", values)
         return [_record(Calibration, row) for row in rows]
 
     def exclusions(self) -> list[StoredExclusion]:
-        """Return what people have said of single repeats, in order: left out, or taken in again."""
+        """Return people's decisions on single repeats, in order: left out, or included again."""
         return [_record(StoredExclusion, row) for row in self._rows("SELECT * FROM exclusion ORDER BY id")]
 
     def tares(self) -> Iterator[StoredTare]:
@@ -384,12 +386,12 @@ class RunReader:
             yield _record(StoredTrip, row)
 
     def parameters(self) -> Iterator[StoredParameter]:
-        """Yield what was read back from the devices, in order."""
+        """Yield the values read back from the devices, in order."""
         for row in self._rows("SELECT * FROM device_parameter ORDER BY id"):
             yield _record(StoredParameter, row)
 
     def bus_statistics(self, bus: str) -> Iterator[tuple[str, float]]:
-        """Yield counters of a bus and their values, in the order they were stored."""
+        """Yield counters of a bus and their values, in the order of storage."""
         for row in self._rows("SELECT counter, value FROM bus_statistic WHERE bus = ? ORDER BY id", (bus,)):
             yield _text(row, "counter"), _number(row, "value")
 
@@ -399,7 +401,7 @@ class RunReader:
         return next((_text(row, "head") for row in last), "")
 
     def chain(self) -> ChainFound:
-        """Compare every row with the record's chain."""
+        """Compare every row with the record's chain and return the result."""
         factory, self._connection.row_factory = self._connection.row_factory, None
         try:
             return inspect(self._connection)
@@ -409,9 +411,9 @@ class RunReader:
             self._connection.row_factory = factory
 
     def integrity_problems(self) -> list[str]:
-        """Return what SQLite's own check finds wrong in the file; none in a sound one."""
-        found = [_text(row, "integrity_check") for row in self._rows("PRAGMA integrity_check")]
-        return [] if found == ["ok"] else found
+        """Return the faults that SQLite's own check reports; empty for a sound file."""
+        report = [_text(row, "integrity_check") for row in self._rows("PRAGMA integrity_check")]
+        return [] if report == ["ok"] else report
 
     def count(self, table: Literal["repeat", "condition", "sample_block", "event"], where: str = "1") -> int:
         """Return how many rows a table has."""
@@ -433,8 +435,8 @@ class RunReader:
     ) -> dict[str, NDArray[np.float64]]:
         """Return samples as NumPy arrays by column name, in order of time.
 
-        Those of a condition, of one repeat of it, of one attempt (default: the last) at it; without a
-        condition all there are. Raises StoreError.
+        They are those of a condition, of one repeat of it, of one attempt (default: the last) at it; without a
+        condition all. Raises StoreError.
         """
         import numpy as np
 

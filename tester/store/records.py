@@ -1,4 +1,4 @@
-"""What goes into a run's database and comes out of it, as plain values. Units in the names."""
+"""Rows of a run's database as plain values. Units in the names."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ NAN = float("nan")
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """One figure that turns what a device says into a quantity, e.g. load cell, scale fz, 0.1, N."""
+    """One figure that converts a device's reading into a quantity, e.g. load cell, scale fz, 0.1, N."""
 
     device: str
     quantity: str
@@ -27,7 +27,7 @@ class Calibration:
 
 @dataclass(frozen=True, slots=True)
 class SessionInfo:
-    """One process's stretch of a run, counted from 1. ``origin_s``: rig seconds of the run at its beginning."""
+    """One process's session of a run, counted from 1. ``origin_s``: rig seconds of the run at its beginning."""
 
     session: int
     origin_s: float
@@ -38,14 +38,14 @@ class SessionInfo:
     software_version: str
     git_revision: str
     versions: str
-    """Of libraries, as JSON."""
+    """Versions of libraries, as JSON."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What differed when a run was resumed (``subject``: recipe, rig or calibration), and why it went on.
+    """A difference at the resumption of a run (``subject``: recipe, rig or calibration), and the reason to continue.
 
-    ``before`` is the earlier text; the run itself holds the present one.
+    ``before`` is the earlier text; the run itself has the present one.
     """
 
     session: int
@@ -63,16 +63,16 @@ class StoredMaterial:
 
     role: str
     name: str
-    """As the recipe says it; of data the file's own."""
+    """Name in the recipe; for data the file's own."""
     file: str
-    """Where its copy lies in the run's folder."""
+    """Path of its copy in the run's folder."""
     source: str
     sha256: str
-    """Of its bytes, hexadecimal."""
+    """Hash of its bytes, hexadecimal."""
     text: str | None
-    """None of what is no short text: the copy alone holds it."""
+    """None for anything but a short text: only the copy has it."""
     doubts: str = ""
-    """What was doubtful in it, a line each."""
+    """Doubtful points in it, a line each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ class StoredPrompt:
 class StoredTrip:
     """A trip: the interlock, the value that caused it and its limit, who acknowledged it and when.
 
-    Value and limit are NaN where what is watched is no number, ``acknowledged_s`` where the run was over by then.
+    Value and limit are NaN where the interlock watches no number, ``acknowledged_s`` where the run had ended by then.
     """
 
     id: int
@@ -119,16 +119,16 @@ class StoredTrip:
 
     @property
     def compared(self) -> str:
-        """Value and limit in words, "" where there are none."""
+        """Return value and limit in words, "" without them."""
         if isnan(self.value) and isnan(self.limit_value):
             return ""
         unit = "" if self.unit in ("", "1") else f" {self.unit}"
-        value, limit = ("unknown" if isnan(one) else f"{one:.4g}" for one in (self.value, self.limit_value))
+        value, limit = ("unknown" if isnan(number) else f"{number:.4g}" for number in (self.value, self.limit_value))
         return f"{value}{unit}, limit {limit}{unit}"
 
     @property
     def acknowledged(self) -> str:
-        """Who acknowledged it and when, in words."""
+        """Return who acknowledged it and when, in words."""
         if not self.acknowledged_utc:
             return "not acknowledged"
         by = f" by {self.acknowledged_by}" if self.acknowledged_by else ""
@@ -137,7 +137,7 @@ class StoredTrip:
 
 @dataclass(frozen=True, slots=True)
 class StoredParameter:
-    """What was read back from a device."""
+    """A value read back from a device."""
 
     t_s: float
     device: str
@@ -147,11 +147,11 @@ class StoredParameter:
 
 
 ACCEPTED_RISK, LOOSE_KEYS = "accepted_risk", "loose_safety_keys"
-"""Metadata of a run on a rig whose safety keys are looser than they should be: why that is so, and which they are."""
+"""Metadata of a run on a rig whose safety keys are looser than allowed: the reason, and the keys."""
 
 
 EXTENSION = "extension "
-"""Begins the component, in a run's versions, that is an extension which the run had loaded: ``extension laws/NAME``."""
+"""Prefix of the components, in a run's versions, that are loaded extensions: ``extension laws/NAME``."""
 
 
 def risk_text(metadata: Mapping[str, str]) -> str:
@@ -162,9 +162,9 @@ def risk_text(metadata: Mapping[str, str]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class RunInfo:
-    """A run as it begins. Texts of recipe and rig file as they were used; times as ISO 8601 UTC text.
+    """A run at its beginning. Texts of recipe and rig file as used; times as ISO 8601 UTC text.
 
-    ``metadata`` is the recipe's (abrasive, humidity, experiment fields), and the risks that were accepted (``risk``);
+    ``metadata`` is the recipe's (abrasive, humidity, experiment fields), and the accepted risks (``risk``);
     ``versions`` those of libraries and extensions.
     """
 
@@ -175,31 +175,31 @@ class RunInfo:
     started_utc: str
     simulated: bool
     kind: str
-    """Of the rig: the name under which its package is found."""
+    """Kind of the rig: the name of its package."""
     axes: Axes
-    """Of the conditions."""
+    """Axes of the conditions."""
     worn: str = ""
-    """What people call the part of the machine that wears and is measured on."""
+    """The kind's word for the part of the machine that wears and is measured on."""
     seed: int | None = None
     software_version: str = ""
     git_revision: str = ""
     operator: str = ""
     recipe_source: str = ""
     rig_source: str = ""
-    """Where recipe and rig file were read from: a path, the name of a packaged file, or empty."""
+    """Origin of recipe and rig file: a path, the name of a packaged file, or empty."""
     calibration: tuple[Calibration, ...] = ()
     metadata: Mapping[str, str] = field(default_factory=dict[str, str])
     versions: Mapping[str, str] = field(default_factory=dict[str, str])
     terms: tuple[Term, ...] = ()
-    """What the machine's measuring chain may be off by."""
+    """Possible errors of the machine's measuring chain."""
     known: tuple[KnownSlope, ...] = ()
-    """What is known of the compounds' sensitivity to temperature."""
+    """Known sensitivity of the compounds to temperature."""
     materials: tuple[StoredMaterial, ...] = ()
-    """Files of the compounds and the surface that the recipe names, as far as there are any."""
+    """Files of the compounds and the surface that the recipe names, as far as they exist."""
 
     @property
     def extensions(self) -> Mapping[str, str]:
-        """What was loaded from other packages, by ``group/name``: package, version, hash of the file."""
+        """Return the extensions from other packages, by ``group/name``: package, version, hash of the file."""
         return {
             component.removeprefix(EXTENSION): described
             for component, described in self.versions.items()
@@ -208,13 +208,13 @@ class RunInfo:
 
     @property
     def risk(self) -> str:
-        """Which safety keys are looser than they should be, and why that was accepted; "" where none is."""
+        """Return the safety keys that are looser than allowed, and why that was accepted; "" where none is."""
         return risk_text(self.metadata)
 
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run as it stands: ``status`` is ``running`` until the run said otherwise, also after a crash."""
+    """A run in its stored state: ``status`` is ``running`` until the run stores another, even after a crash."""
 
     info: RunInfo
     recipe_sha256: str
@@ -224,7 +224,7 @@ class StoredRun:
     reason: str
     ended_utc: str
     rig_seconds: float
-    """Rig time at the end, or of the last thing recorded while the run is open."""
+    """Rig time at the end, or of the last entry while the run is open."""
     overruns: int
     """Samples that the recorder had to drop."""
 
@@ -240,8 +240,8 @@ class SpecimenInfo:
 
 @dataclass(frozen=True, slots=True)
 class PieceInfo:
-    """What was mounted to be measured (of a specimen, several in turn: a wheel), and how worn it was at ``updated_s``
-    (rig seconds) for a resumed run. ``diameter_mm``: what wears of it."""
+    """A mounted piece (of a specimen, several in turn: a wheel), and its wear at ``updated_s`` (rig seconds) for a
+    resumed run. ``diameter_mm``: of its wearing part."""
 
     piece: int
     specimen: int
@@ -253,7 +253,7 @@ class PieceInfo:
     sliding_m: float = 0.0
     updated_s: float = 0.0
     ground_s: float = NAN
-    """When pre-grinding was complete; NaN before."""
+    """Time at which pre-grinding was complete; NaN before."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -275,7 +275,7 @@ class ConditionInfo:
     at_most: int = 0
     until_percent: float | None = None
     both_directions: bool = False
-    """Repeats alternate between sliding as asked for and reversed; counts above are of pairs."""
+    """Repeats alternate between the requested direction and the reverse; counts above are of pairs."""
 
     @property
     def scheme(self) -> Scheme:
@@ -284,7 +284,7 @@ class ConditionInfo:
 
     @property
     def repeats_planned(self) -> int:
-        """Return how many repeats are to be made, if none is made up for."""
+        """Return the planned number of repeats, without make-ups."""
         return self.repeats * self.scheme.repeats_each
 
     @property
@@ -295,7 +295,7 @@ class ConditionInfo:
 
 @dataclass(frozen=True, slots=True)
 class StoredCondition:
-    """A condition and how the run left it; ``status`` None while it has not."""
+    """A condition and its final state; ``status`` None before its end."""
 
     info: ConditionInfo
     status: ConditionStatus | None
@@ -303,10 +303,10 @@ class StoredCondition:
     started_s: float
     ended_s: float
     warming_k_s: float
-    """Where the temperature could not be held: the rate measured, K/s, and the band that would do, K."""
+    """Where the temperature could not be held: the measured rate, K/s, and a sufficient band, K."""
     holdable_band_k: float
     judged: Judgement = NOT_JUDGED
-    """What its repeats say of its drift."""
+    """Judgement of its repeats' drift."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -318,19 +318,19 @@ class StoredRepeat:
     repeat: int
     attempt: int
     piece: int
-    """What it was measured on."""
+    """Number of the measured piece."""
     begun_s: float
     result: RepeatResult
 
     @property
     def target(self) -> tuple[int, int, int]:
-        """Return condition, repeat and attempt, by which it is known for good: keys change when parts are merged."""
+        """Return condition, repeat and attempt, its permanent identity: keys change when parts are merged."""
         return self.condition, self.repeat, self.attempt
 
 
 @dataclass(frozen=True, slots=True)
 class Travel:
-    """How far the counterface had travelled under load since the run began, and a piece had slid, in m."""
+    """The counterface's travel under load since the run began, and a piece's sliding, in m."""
 
     counterface_m: float
     piece_m: float
@@ -338,7 +338,7 @@ class Travel:
 
 @dataclass(frozen=True, slots=True)
 class StoredExclusion:
-    """A person's word on a repeat: out of the mean (``excluded`` 1), or in again (0); ``id`` counts from 1.
+    """A person's decision on a repeat: out of the mean (``excluded`` 1), or in again (0); ``id`` counts from 1.
 
     ``manifest_before`` is the text of the folder's manifest before it, "" where there was none.
     """

@@ -1,4 +1,4 @@
-"""Where an interrupted run stands: which conditions are over, what is committed of the others, which wheel is on."""
+"""Start of a resumed run: which conditions are over, the committed repeats of the others, the mounted wheel."""
 
 from __future__ import annotations
 
@@ -21,48 +21,48 @@ ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
 
 @dataclass(frozen=True, slots=True)
 class ConditionSoFar:
-    """What is committed of a condition that is not over."""
+    """The committed part of a condition that is not over."""
 
     results: tuple[RepeatResult, ...] = ()
-    """Of its committed repeats, in order."""
+    """Results of its committed repeats, in order."""
     attempts: Mapping[int, int] = field(default_factory=dict[int, int])
     """Attempts at each repeat, committed or not."""
     warming_k_s: float = NAN
     holdable_band_k: float = NAN
     keys: tuple[int, ...] = ()
-    """Of the results' repeats."""
+    """Keys of the results' repeats."""
     blocks: tuple[tuple[Block, ...], ...] = ()
-    """Of the results' repeats, from their samples: what a condition is judged by."""
+    """Blocks of the results' repeats, from their samples: the basis of a condition's judgement."""
     judged: Judgement = NOT_JUDGED
-    """How it was judged when the last of them was committed."""
+    """Judgement at the commit of the last of them."""
 
     @property
     def over(self) -> RepeatStatus | None:
-        """Return the status with which its last repeat ended it, None where it goes on."""
+        """Return the status with which its last repeat ended it, None where it continues."""
         status = self.results[-1].status if self.results else None
         return status if status in ENDS_A_CONDITION else None
 
 
 @dataclass(frozen=True, slots=True)
 class ResumePoint:
-    """Everything a resumed run starts from. Times in rig seconds of the whole run."""
+    """The start of a resumed run. Times in rig seconds of the whole run."""
 
     finished: bool
     origin_s: float
-    """Rig time at which the run goes on: that of the last thing recorded."""
+    """Rig time at which the run continues: that of the last entry."""
     stand: Stand
     conditions: Mapping[int, ConditionSoFar]
-    """Conditions that are not over, by number; one that is missing has nothing committed."""
+    """Conditions that are not over, by number; a missing one has nothing committed."""
     reference_tare: Mapping[str, float] | None
-    """Zero of each channel of the load cell, by its name, when the present wheel was mounted."""
+    """Zero of each channel of the load cell, by its name, at the mounting of the present wheel."""
     session: int
-    """Number of the next stretch."""
+    """Number of the next session."""
     pool: Pool = NOTHING_POOLED
     """Repeatability of the conditions that are over."""
 
     @property
     def next_repeat(self) -> tuple[int, int] | None:
-        """Return condition and repeat of the first one begun and not committed, None where none has been begun."""
+        """Return condition and repeat of the first one begun and not committed, None where none has begun."""
         for number, condition in sorted(self.conditions.items()):
             if condition.over is None:
                 return number, len(condition.results) + 1
@@ -70,7 +70,7 @@ class ResumePoint:
 
 
 def resume_point(reader: RunReader) -> ResumePoint:
-    """Return where a run stands; raises StoreError where the record cannot be read."""
+    """Return the start of a resumed run; raises StoreError where the record cannot be read."""
     run = reader.run()
     repeats: dict[int, list[StoredRepeat]] = {}
     for repeat in reader.repeats(attempts=True):
@@ -101,19 +101,19 @@ def resume_point(reader: RunReader) -> ResumePoint:
 
 def _so_far(reader: RunReader, attempts: list[StoredRepeat], stored: StoredCondition) -> ConditionSoFar:
     committed = {r.repeat: r for r in attempts if r.result.status not in (RepeatStatus.OPEN, RepeatStatus.VOID)}
-    found: list[StoredRepeat] = []
-    while len(found) + 1 in committed:
-        found.append(committed[len(found) + 1])
+    in_order: list[StoredRepeat] = []
+    while len(in_order) + 1 in committed:
+        in_order.append(committed[len(in_order) + 1])
     counted: dict[int, int] = {}
     for r in attempts:
         counted[r.repeat] = max(counted.get(r.repeat, 0), r.attempt)
     return ConditionSoFar(
-        tuple(r.result for r in found),
+        tuple(r.result for r in in_order),
         counted,
         stored.warming_k_s,
         stored.holdable_band_k,
-        tuple(r.key for r in found),
-        tuple(tuple(_blocks(reader, r)) for r in found),
+        tuple(r.key for r in in_order),
+        tuple(tuple(_blocks(reader, r)) for r in in_order),
         stored.judged,
     )
 
@@ -133,7 +133,7 @@ def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int], schemes:
 
 
 def _pieces(pieces: list[PieceInfo], repeats: Mapping[int, list[StoredRepeat]]) -> list[Mounted]:
-    """Return what was mounted, in that order, each with the last condition it was used in."""
+    """Return the mounted pieces, in that order, each with the last condition of its use."""
     used: dict[int, int] = {}
     for condition, attempts in repeats.items():
         for repeat in attempts:
@@ -153,8 +153,8 @@ def _pieces(pieces: list[PieceInfo], repeats: Mapping[int, list[StoredRepeat]]) 
 
 
 def _reference(reader: RunReader) -> Mapping[str, float] | None:
-    found = None
+    zeros = None
     for tare in reader.tares():
         if tare.kind == "reference":
-            found = tare.zeros
-    return found
+            zeros = tare.zeros
+    return zeros

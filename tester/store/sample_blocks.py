@@ -1,6 +1,6 @@
 """Layout of a sample block: rows of samples as one compressed blob.
 
-    blob = zlib( column 0 | column 1 | ... )        column = rows * float64, little endian
+  blob = zlib( column 0 | column 1 | ... )        column = rows * float64, little endian
 
 Columns are the channels with a source, in the order of the table ``channel``; the number of rows is beside the blob.
 Values are kept bit by bit, NaN included. Measured on rows of 21 columns with quantised noise: 38 bytes a row in blocks
@@ -28,7 +28,7 @@ _LEVEL = 1
 
 
 def pack(rows: Sequence[Sequence[float]], columns: int) -> bytes:
-    """Return the blob of rows that have ``columns`` values each; raises ValueError where one has not."""
+    """Return the blob of rows with ``columns`` values each; raises ValueError for a row of another length."""
     if any(len(row) != columns for row in rows):
         raise ValueError(f"a sample does not have {columns} values")
     layout = Struct(f"<{len(rows)}d")
@@ -39,14 +39,14 @@ def unpack(data: bytes, rows: int, columns: int) -> list[array[float]]:
     """Return the columns of a blob; raises ValueError where it does not hold rows * columns values."""
     raw = _inflated(data, rows, columns)
     size = 8 * rows
-    found: list[array[float]] = []
+    unpacked: list[array[float]] = []
     for i in range(columns):
         column = array("d")
         column.frombytes(raw[i * size : (i + 1) * size])
         if sys.byteorder == "big":
             column.byteswap()
-        found.append(column)
-    return found
+        unpacked.append(column)
+    return unpacked
 
 
 def unpack_array(data: bytes, rows: int, columns: int) -> NDArray[np.float64]:

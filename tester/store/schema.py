@@ -90,11 +90,11 @@ CREATE TABLE material (
     doubts TEXT NOT NULL
 );
 """
-"""The run (``worn``: what people call the part of the machine that wears), its sessions (one for each process that
-worked on it), what changed between them and why, and the calibration as a history. ``material``: files of the compounds
-and surfaces that the recipe names. Its ``role`` is compound, surface, or data for a file that one of them refers to;
-``file`` is where the copy lies in the run's folder; ``text`` is NULL of anything but a short text, which its hash alone
-holds; ``doubts`` has a line for each."""
+"""The run (``worn``: the kind's word for the part of the machine that wears), its sessions (one for each process that
+worked on it), the changes between them with reasons, and the calibration as a history. ``material``: files of the
+compounds and surfaces that the recipe names. Its ``role`` is compound, surface, or data for a file that one of them
+refers to; ``file`` is the path of the copy in the run's folder; ``text`` is NULL for anything but a short text, which
+only its hash represents; ``doubts`` has a line for each."""
 
 _CHANNELS = """
 CREATE TABLE axis (
@@ -154,9 +154,9 @@ CREATE TABLE known_slope (
     source TEXT NOT NULL
 );
 """
-"""What makes a record readable without its kind of rig: the axes of its conditions (tester.base.axes; ``field`` is the
-column of ``condition`` that holds a value), its channels (tester.store.channels; those with a source are the columns of
-its samples, in order), the terms of its budgets (tester.analysis.terms; ``df`` NULL: taken as known), and the
+"""Tables that make a record readable without its kind of rig: the axes of its conditions (tester.base.axes; ``field``
+is the column of ``condition`` with the value), its channels (tester.store.channels; those with a source are the columns
+of its samples, in order), the terms of its budgets (tester.analysis.terms; ``df`` NULL: taken as known), and the
 compounds' known sensitivity to temperature."""
 
 _PIECES = """
@@ -207,11 +207,11 @@ CREATE TABLE travel (
     UNIQUE (piece, repeat_id)
 );
 """
-"""What was mounted to be measured: of a specimen, several pieces in turn. ``wear_check``: checks of a piece's diameter
-between its conditions (``before`` and ``after``: their numbers, 0 for none), compared with the first of their series at
-``reference_s``; ``expected_mm`` is the diameter believed until the check. ``travel``: how far the counterface had
-travelled under load since the run began, and how far the piece had slid, as each repeat began; with ``repeat_id`` 0, as
-the state of the piece was recorded last."""
+"""The mounted pieces: of a specimen, several in turn. ``wear_check``: checks of a piece's diameter between its
+conditions (``before`` and ``after``: their numbers, 0 for none), compared with the first of their series at
+``reference_s``; ``expected_mm`` is the diameter assumed until the check. ``travel``: the counterface's travel under
+load since the run began, and the piece's sliding, at the beginning of each repeat; with ``repeat_id`` 0, at the last
+stored state of the piece."""
 
 _CONDITIONS = """
 CREATE TABLE condition (
@@ -317,10 +317,10 @@ CREATE TABLE truth (
     value REAL
 );
 """
-"""Conditions with the judgement of their repeats, and what was measured. ``soak``: the surface's thermometer against
-the heater's sensor at the end of each soak (tester.analysis.results); a condition that soaked again after a hold has
-a row for each. ``truth``: what a simulated rig knows of each repeat beside what was measured, on request
-(tester.run.simulated); for tests that judge results, no reader returns it."""
+"""Conditions with the judgement of their repeats, and the measurements. ``soak``: the surface's thermometer against the
+heater's sensor at the end of each soak (tester.analysis.results); a condition that soaked again after a hold has a row
+for each. ``truth``: a simulated rig's true values of each repeat, on request (tester.run.simulated); for tests that
+judge results, no reader returns it."""
 
 _JOURNAL = """
 CREATE TABLE event (
@@ -396,30 +396,30 @@ CREATE TABLE chain (
 );
 """
 """The journal. A trip that is acknowledged after the run has ``acknowledged_utc`` alone. ``exclusion``: repeats that a
-person has left out of a mean, or taken in again (``excluded`` 0): who, when, why. Rows are only ever added;
-``manifest_before`` is the folder's manifest as it was, with the hashes of the record without this row. ``chain``: the
+person has left out of a mean, or included again (``excluded`` 0): who, when, why. Rows are only ever added;
+``manifest_before`` is the folder's earlier manifest, with the hashes of the record without this row. ``chain``: the
 hashes over all rows (tester.store.chain)."""
 
 SCHEMA: Final = _RUN + _CHANNELS + _PIECES + _CONDITIONS + _JOURNAL
 """Version 1."""
 
 MIGRATIONS: tuple[str, ...] = ()
-"""SQL that leads from version n to n + 1, from 1 on, never edited once released. A new column without values changes no
-hash of the chain; a migration that changes values has to chain those rows again."""
+"""SQL that migrates from version n to n + 1, from 1 on, never edited once released. A new column without values changes
+no hash of the chain; a migration that changes values must chain those rows again."""
 
 VERSION = 1 + len(MIGRATIONS)
 
 
 class StoreError(Exception):
-    """A run's database cannot be used; the message says why, for people."""
+    """A run's database cannot be used; the message gives the reason, for people."""
 
 
 class NotBegunError(StoreError):
-    """A database in which no run is recorded: its program was cut off before the first entry."""
+    """A database without a run: its program was cut off before the first entry."""
 
 
 def version_of(connection: sqlite3.Connection) -> int:
-    """Return the schema's number, 0 of an empty database; raises StoreError for another version's file."""
+    """Return the schema's number, 0 for an empty database; raises StoreError for another version's file."""
     version: int = connection.execute("PRAGMA user_version").fetchone()[0]
     application: int = connection.execute("PRAGMA application_id").fetchone()[0]
     if application != APPLICATION_ID and not (application == 0 and version == 0 and _empty(connection)):
@@ -438,7 +438,8 @@ def _empty(connection: sqlite3.Connection) -> bool:
 
 
 def migrate(connection: sqlite3.Connection) -> None:
-    """Bring a database, an empty one too, to the present schema, each step in a transaction; raises StoreError."""
+    """Migrate a database, or create an empty one, to the present schema, each step in a transaction; raises StoreError.
+    """
     steps = (SCHEMA, *MIGRATIONS)
     for version in range(version_of(connection), VERSION):
         connection.executescript(

@@ -1,4 +1,4 @@
-"""What a record is told, as SQL: statements that belong together, and the promise that they are on disk."""
+"""The record's entries as SQL: statements that belong together, and the promise that they are on disk."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _JUDGEMENT_FIELDS = tuple(field.name for field in fields(Judgement))
 
 
 class Ticket:
-    """A promise that something will be on disk: ``done`` once COMMIT has returned, ``error`` if it failed."""
+    """A promise of a commit: ``done`` once COMMIT has returned, ``error`` if it failed."""
 
     __slots__ = ("done", "error")
 
@@ -47,7 +47,7 @@ def text_sha256(text: str) -> str:
 
 
 def calibration_sha256(calibration: Iterable[Calibration]) -> str:
-    """Return the SHA-256 by which two calibrations are compared."""
+    """Return the SHA-256 for comparing two calibrations."""
     return text_sha256("".join(f"{c.device}\t{c.quantity}\t{c.value}\t{c.unit}\n" for c in calibration))
 
 
@@ -69,7 +69,7 @@ def calibration_rows(figures: Iterable[Calibration], session: int) -> list[State
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """How a condition was judged, and what that makes of its repeats: result by key."""
+    """A condition's judgement, and its repeats after it: result by key."""
 
     condition: int
     judgement: Judgement
@@ -77,12 +77,12 @@ class Judged:
 
 
 def judged_rows(judged: Judged | None) -> Iterator[Statement]:
-    """Yield the UPDATEs of a judged condition and its repeats; none where it was not judged."""
+    """Yield the UPDATEs of a judged condition and its repeats; nothing without a judgement."""
     if judged is None:
         return
-    found = columns_in(judged.judgement, _JUDGEMENT_FIELDS)
-    assignments = ", ".join(f"{name} = ?" for name in found)
-    yield f"UPDATE condition SET {assignments} WHERE condition = ?", (*found.values(), judged.condition)
+    figures = columns_in(judged.judgement, _JUDGEMENT_FIELDS)
+    assignments = ", ".join(f"{name} = ?" for name in figures)
+    yield f"UPDATE condition SET {assignments} WHERE condition = ?", (*figures.values(), judged.condition)
     sql = "UPDATE repeat SET status = ?, reason = ?, drift_percent = ?, bound_percent = ? WHERE id = ?"
     for key, r in judged.repeats.items():
         yield sql, (r.status.value, r.reason, r.drift_percent, r.bound_percent, key)

@@ -1,17 +1,17 @@
 """Writes a run's database from a thread of its own, fed through a bounded queue.
 
-A file beside the database keeps RESERVE_BYTES of room. On a full disk it is given up: what the run still has to say
-while it comes to rest, its status among it, is written in that room.
+A file beside the database reserves RESERVE_BYTES of disk space. On a full disk it is deleted, and the last entries of
+the run, including its status, are written into that space.
 
-The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in the
-order in which they came. Appending to and popping from a deque is atomic, so no lock is held in a scan. The
-logger's thread takes what has come and commits it in one transaction: every second of wall time, and at
-once for an urgent batch (a repeat, an alarm). What is taken stays in memory until COMMIT has returned. After
-an error ``failed`` says why for good: the run is to stop. What is in memory stays there, no more than the queue's
-limit, and is tried again every second while the rig comes to rest, and by ``close``.
+The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in order of
+arrival. Appending to and popping from a deque is atomic, so the scan holds no lock. The logger's thread takes the
+queued items and commits them in one transaction: every second of wall time, and at once for an urgent batch (a repeat,
+an alarm). Items stay in memory until COMMIT has returned. After an error ``failed`` keeps the reason for good: the run
+must stop. Items in memory stay there, no more than the queue's limit, and are tried again every second while the rig
+comes to rest, and by ``close``.
 
-A full queue drops the sample and counts it, for a real rig waits for nobody. ``lossless`` (simulated time)
-waits instead, and waits for the COMMIT of a repeat, so that results do not depend on the disk's speed.
+A full queue drops the sample and counts it, as a real rig cannot wait. ``lossless`` (simulated time) waits instead, and
+waits for the COMMIT of a repeat, so that results do not depend on the disk's speed.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from tester.store.schema import StoreError, migrate, version_of
 from tester.store.statements import Batch, Judged, Ticket
 
 COMMIT_EVERY_S = 0.7
-"""Longest time, of the wall clock, for which a sample waits for its commit to begin: a second with what a slow disk
-and a busy machine take."""
+"""Longest wait of a sample for the start of its commit, by the wall clock: a second less the time of a slow disk and a
+busy machine."""
 
 QUEUE_LIMIT = 65536
 """Items the queue holds before samples are dropped: ten minutes at 100 Hz, a minute at 1 kHz."""
@@ -47,27 +47,27 @@ RETRY_S = 1.0
 """After a write error the next attempt is made this much later."""
 
 RESERVE_BYTES = 4_000_000
-"""Room that is kept for the end of a run: a cool-down of 45 min at two samples a second takes 0.3 MB, what waits in a
-full queue (65536 samples of 40 to 60 bytes) up to 4 MB."""
+"""Space reserved for the end of a run: a cool-down of 45 min at two samples a second takes 0.3 MB, a full queue (65536
+samples of 40 to 60 bytes) up to 4 MB."""
 RESERVE = ".reserve.part"
-"""Ending of the file that keeps it; no manifest lists such files."""
+"""Suffix of the reserving file; no manifest lists such files."""
 
 LOSSLESS_LIMIT = 8192
-"""Items the queue holds before the simulation waits; also the most samples in one transaction."""
+"""Most items in the queue before the simulation waits; also the most samples in one transaction."""
 
 _WRITE_ERRORS = (sqlite3.Error, OSError, ValueError, OverflowError, TypeError, IndexError)
-"""What a disk (first two) or a value that no column takes (the others) can raise."""
+"""Errors of a disk (first two) or of a value that no column takes (the others)."""
 
 
 class RecordGoneError(OSError):
-    """The file that is written lies under its name no more: what is written now would be lost with it."""
+    """The open file no longer lies under its name: further writes would be lost with it."""
 
 
 class _Reserve:
-    """Keeps room on the disk until it is needed."""
+    """Reserves disk space until it is needed."""
 
     def __init__(self, path: Path, size: int) -> None:
-        """Take ``size`` bytes in ``path``; where there is not so much, none are kept."""
+        """Reserve ``size`` bytes in ``path``; where there is less space, reserve none."""
         self._path = path
         try:
             with path.open("wb") as file:
@@ -79,26 +79,26 @@ class _Reserve:
             self.give_up()
 
     def give_up(self) -> None:
-        """Give the room back."""
+        """Release the space."""
         with suppress(OSError):
             self._path.unlink(missing_ok=True)
 
 
 def _identity(path: Path) -> tuple[int, int]:
-    found = path.stat()
-    return found.st_dev, found.st_ino
+    status = path.stat()
+    return status.st_dev, status.st_ino
 
 
 def _averaged(quantities: Quantities) -> tuple[str, ...]:
-    return tuple(one.name for one in quantities.averaged)
+    return tuple(quantity.name for quantity in quantities.averaged)
 
 
 def _open(path: Path, quantities: Quantities) -> tuple[sqlite3.Connection, Chain]:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
     try:
-        version_of(connection)  # before anything is changed in a file that may be somebody else's
-        # EXTRA until the log is in use: the deletion of a rollback journal is synced too. One that came back after a
-        # power cut would take back everything since.
+        version_of(connection)  # before any change to a file that another program may own
+        # EXTRA until the log is in use: the deletion of a rollback journal is synced as well. A journal that came back
+        # after a power cut would undo everything since.
         connection.execute("PRAGMA synchronous = EXTRA")
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = FULL")
@@ -124,12 +124,12 @@ def _open(path: Path, quantities: Quantities) -> tuple[sqlite3.Connection, Chain
 
 
 class RunWriter(Recorder):
-    """The record of one run in ``path`` (run.db): a new file, or the file of a run that goes on.
+    """The record of one run in ``path`` (run.db): a new file, or the file of a resumed run.
 
-    ``quantities``: the channels of its samples; a run that goes on must have been begun with the same.
-    ``clock`` gives seconds of a monotonic wall clock, ``utc`` the time of day as text. ``synchronous`` works
-    without a thread: for tests, and for simulations in which a thread only costs.
-    Raises StoreError for a database that is not ours or newer, sqlite3.Error if the file cannot be opened.
+    ``quantities``: the channels of its samples; a resumed run must have been begun with the same. ``clock`` returns
+    seconds of a monotonic wall clock, ``utc`` the time of day as text. ``synchronous`` works without a thread: for
+    tests, and for simulations in which a thread only costs. Raises StoreError for a foreign or newer database,
+    sqlite3.Error if the file cannot be opened.
     """
 
     def __init__(
@@ -145,7 +145,7 @@ class RunWriter(Recorder):
         commit_every_s: float = COMMIT_EVERY_S,
         reserve: int = 0,
     ) -> None:
-        """Open the file and start the logger. ``reserve``: bytes of room to keep for the end."""
+        """Open the file and start the logger. ``reserve``: bytes of disk space to reserve for the end."""
         super().__init__(utc)
         self._path = path
         self._clock = clock
@@ -174,7 +174,8 @@ class RunWriter(Recorder):
             self._thread.start()
 
     def __deepcopy__(self, memo: dict[int, object]) -> NullRecorder:
-        """Return a recorder that records nothing and counts on: a copied engine does not write the file."""
+        """Return a recorder that records nothing and continues the numbering: a copied engine must not write the file.
+        """
         copied = NullRecorder(self._utc)
         copied.continue_from(self)
         return copied
@@ -233,7 +234,7 @@ class RunWriter(Recorder):
             self._committed.clear()
 
     def close(self) -> None:
-        """Commit what is left, fold the log into the database and let go of the file."""
+        """Commit the rest, fold the log into the database and close the file."""
         if self._stopping:
             return
         self._stopping = True
@@ -244,8 +245,8 @@ class RunWriter(Recorder):
         self._commit()
         self._give_room()
         if not self._rows and not self._batches:
-            # Not WAL any more: a finished run is one file that reading does not touch. Somebody who reads it just now
-            # prevents that; then the log is folded in when the last of them leaves, and the file stays WAL.
+            # Leave WAL mode: a finished run is a single file that reading does not touch. A reader at this moment
+            # prevents that; then the log is folded in when the last reader leaves, and the file stays in WAL mode.
             self._connection.execute("PRAGMA busy_timeout = 0")
             self._connection.execute("PRAGMA synchronous = EXTRA")
             with suppress(sqlite3.OperationalError):
@@ -254,11 +255,11 @@ class RunWriter(Recorder):
 
     @property
     def lost(self) -> str | None:
-        """Why something is missing in the record; None where everything has been written in the end."""
+        """Return why the record is incomplete; None where everything was written in the end."""
         return self.failed if self._rows or self._batches or self.overruns else None
 
     def _give_room(self) -> None:
-        """Give the room up that was kept for the end."""
+        """Release the space reserved for the end."""
         if self._reserve is not None:
             self._reserve.give_up()
             self._reserve = None
@@ -272,12 +273,12 @@ class RunWriter(Recorder):
                 self._wake.clear()
                 self.service()
         finally:
-            # Whoever waits for this thread must not wait for ever, whatever ended it.
+            # A caller that waits for this thread must not wait for ever, whatever ended it.
             if not self._stopping and self.failed is None:
                 self.failed = "the recorder has ended unexpectedly"
 
     def service(self) -> None:
-        """Take what has come and commit what is due: what the logger's thread does ten times a second."""
+        """Take the queued items and commit those that are due; the logger's thread calls it ten times a second."""
         waited = self._clock() - self._committed_at
         if self.failed is not None:
             self._try_again(waited)
@@ -287,9 +288,9 @@ class RunWriter(Recorder):
             self._commit()
 
     def _try_again(self, waited_s: float) -> None:
-        """Write what an error has kept in memory, a second after the last attempt."""
+        """Write the items that an error has kept in memory, a second after the last attempt."""
         if waited_s >= RETRY_S:
-            if len(self._rows) < QUEUE_LIMIT:  # else the queue fills, and what comes is dropped and counted
+            if len(self._rows) < QUEUE_LIMIT:  # else the queue fills, and further samples are dropped and counted
                 self._drain()
             self._commit()
 
@@ -342,7 +343,8 @@ class RunWriter(Recorder):
         self._stored_overruns = overruns
 
     def _look_for_file(self) -> None:
-        """Raise RecordGoneError where the file was removed, moved or exchanged: writing to it would go on unseen."""
+        """Raise RecordGoneError where the file was removed, moved or exchanged: writes to it would be lost unnoticed.
+        """
         try:
             there = _identity(self._path) == self._file
         except FileNotFoundError:
