@@ -17,6 +17,7 @@ HOT = (
     "drivers/modbus/schedule.py",
     "drivers/sensor.py",
     "drivers/servo.py",
+    "drivers/servo_axis.py",
     "drivers/temperature_controller.py",
     "sim/wires/can_listeners.py",
     "sim/wires/can_traffic.py",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from drivers.canopen.dictionary import PRODUCT_CODE, VENDOR_ID
-from drivers.canopen.emcy import register_text
+from drivers.canopen.messages import register_text
 from drivers.canopen.objects import emergency_text
 from drivers.digital_io import USUAL_WIRING, DigitalWiring
 from drivers.drives.model import DriveProfile

@@ -5,24 +5,20 @@ Each function is a conversation for ``CanMaster.start``.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from drivers.axis import Diagnosis
 from drivers.canopen import objects as o
 from drivers.canopen.conversation import AwaitedCondition, Conversation, RequestError, SendNmt, Until, read_number
 from drivers.canopen.objects import NmtCommand, OperationMode
 from drivers.cia402 import Goal, State
 from drivers.drive_settings import mode_of
+from drivers.servo_axis import ServoAxis
 from drivers.servo_setup import START_TIMEOUT_S, STOP_TIMEOUT_S
 from drivers.servo_talk import SetupRefusedError, Step, apply, set_mode, write
-
-if TYPE_CHECKING:
-    from drivers.servo import ServoDrive
 
 ENABLE_TIMEOUT_S = 3.0      # brake release and power stage [A]
 
 
-def home(drive: ServoDrive) -> Conversation:
+def home(drive: ServoAxis) -> Conversation:
     """Find the reference of an axis with a position (mode 6), then go back to its own mode, disabled.
 
     Sets the goal itself (DISABLED, ENABLED, DISABLED); a caller who sets another meanwhile ends the homing.
@@ -59,7 +55,7 @@ def home(drive: ServoDrive) -> Conversation:
         drive.refused = str(failure)
 
 
-def _power_off(drive: ServoDrive) -> Step:
+def _power_off(drive: ServoAxis) -> Step:
     if drive.goal is Goal.ENABLED:
         drive.goal = Goal.DISABLED
     done = yield Until(AwaitedCondition.DISABLED, STOP_TIMEOUT_S)
@@ -67,7 +63,7 @@ def _power_off(drive: ServoDrive) -> Step:
         raise SetupRefusedError(f"still {drive.state.name} {STOP_TIMEOUT_S:g} s after it was told to stop")
 
 
-def _run_homing(drive: ServoDrive) -> Step:
+def _run_homing(drive: ServoAxis) -> Step:
     drive.set_homing(active=True)
     drive.goal = Goal.DISABLED                # ends an earlier inhibition
     drive.goal = Goal.ENABLED
@@ -82,7 +78,7 @@ def _run_homing(drive: ServoDrive) -> Step:
         raise SetupRefusedError(f"homing failed: statusword 0x{drive.statusword:04X} ({drive.state.name})")
 
 
-def diagnose(drive: ServoDrive) -> Conversation:
+def diagnose(drive: ServoAxis) -> Conversation:
     """Read 0x603F, 0x1001 and 0x1003 into ``drive.diagnosis``, for the journal, before anybody resets."""
     error_code = 0
     register = 0
@@ -99,7 +95,7 @@ def diagnose(drive: ServoDrive) -> Conversation:
     drive.diagnosis = Diagnosis(error_code, register, tuple(history), failed)
 
 
-def ask(drive: ServoDrive) -> Conversation:
+def ask(drive: ServoAxis) -> Conversation:
     """Take the statusword of a drive that is connected, but sends no process data at present."""
     try:
         drive.take_statusword((yield from read_number(o.STATUSWORD)))
@@ -107,13 +103,13 @@ def ask(drive: ServoDrive) -> Conversation:
         drive.refused = str(error)
 
 
-def start_again(drive: ServoDrive) -> Conversation:
+def start_again(drive: ServoAxis) -> Conversation:
     """Bring a connected drive back to OPERATIONAL; it is still configured, and its goal decides what it does there."""
     yield SendNmt(NmtCommand.START)
     yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
 
 
-def release(drive: ServoDrive) -> Conversation:
+def release(drive: ServoAxis) -> Conversation:
     """Leave a drive: power off, its watch on our heartbeat ended, PRE-OPERATIONAL, nothing commanded.
 
     Without this a drive reports the end of our program as a fault. While its power is on it keeps watching,

@@ -8,11 +8,10 @@ that does not come ends the conversation.
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from typing import TYPE_CHECKING
 
 from drivers import cia402
 from drivers.axis import DeviceIdentity
-from drivers.canopen import heartbeat, nmt
+from drivers.canopen import heartbeat
 from drivers.canopen import objects as o
 from drivers.canopen.conversation import (
     AwaitedCondition,
@@ -27,11 +26,13 @@ from drivers.canopen.conversation import (
     read_number,
 )
 from drivers.canopen.dictionary import describe
+from drivers.canopen.messages import state_name
 from drivers.canopen.objects import NmtCommand
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX, TIMED_OUT
 from drivers.cia402 import State
 from drivers.drive_settings import NO_STATE_CHANGE, RATED_TORQUE_SHARE, DrivePlan, PdoSetting, mode_of, plan, tried
 from drivers.drives.model import Key
+from drivers.servo_axis import ServoAxis
 from drivers.servo_talk import (
     POLL_S,
     Read,
@@ -45,9 +46,6 @@ from drivers.servo_talk import (
     write_where_present,
 )
 
-if TYPE_CHECKING:
-    from drivers.servo import ServoDrive
-
 BOOT_TIMEOUT_S = 2.0        # a servo's restart of its communication takes well under a second [A]
 START_TIMEOUT_S = 1.0       # NMT start to the first heartbeat that says OPERATIONAL: 20 periods of 50 ms
 STOP_TIMEOUT_S = 10.0       # the slowest ramp from full speed [A]
@@ -55,7 +53,7 @@ STOP_TIMEOUT_S = 10.0       # the slowest ramp from full speed [A]
 COB_ID_COMPARED = o.COB_INVALID | o.COB_ID_MASK     # devices are free to answer bit 30 as they like
 
 
-def connect(drive: ServoDrive, pc_node_id: int) -> Conversation:
+def connect(drive: ServoAxis, pc_node_id: int) -> Conversation:
     """Bring a drive from any state to OPERATIONAL and SWITCH_ON_DISABLED with all commands zero.
 
     A drive that stands in FAULT is connected as it is: a fault is only ever reset by ``reset_fault``.
@@ -84,7 +82,7 @@ def _boot() -> Step:
         raise SetupRefusedError(f"no boot-up message within {BOOT_TIMEOUT_S:g} s; {error}") from error
 
 
-def _identify(drive: ServoDrive) -> Step:
+def _identify(drive: ServoAxis) -> Step:
     """See that it is the drive of the configuration: nothing is written to any other."""
     config = drive.config
     wrong: list[str] = []
@@ -108,7 +106,7 @@ def _identify(drive: ServoDrive) -> Step:
         raise SetupRefusedError("; ".join(wrong))
 
 
-def _make_quiet(drive: ServoDrive) -> Step:
+def _make_quiet(drive: ServoAxis) -> Step:
     """Have the power off before anything is changed; a fault stays as it is."""
     statusword = yield from read_number(o.STATUSWORD)
     state = cia402.decode(statusword)
@@ -142,7 +140,7 @@ def _await(condition: Callable[[int], bool], timeout_s: float) -> Read:
                        f"({cia402.decode(statusword).name}), not SWITCH_ON_DISABLED after {timeout_s:g} s")
 
 
-def _configure(drive: ServoDrive, pc_node_id: int) -> Step:
+def _configure(drive: ServoAxis, pc_node_id: int) -> Step:
     """Write everything; raise SetupRefusedError with all that was refused."""
     config = drive.config
     made = yield from _plan(drive)
@@ -171,7 +169,7 @@ def _configure(drive: ServoDrive, pc_node_id: int) -> Step:
         yield from write(drive, o.CONSUMER_HEARTBEAT, 1, watched)
 
 
-def _plan(drive: ServoDrive) -> Generator[Request, Reply, DrivePlan]:
+def _plan(drive: ServoAxis) -> Generator[Request, Reply, DrivePlan]:
     """Return what is to be written, once it is known which objects this drive has."""
     absent: list[Key] = []
     for index, sub in tried(drive.config):
@@ -197,7 +195,7 @@ def _collect(refused: list[str], step: Step) -> Step:
         refused.append(str(error))
 
 
-def _check_rated_torque(drive: ServoDrive) -> Step:
+def _check_rated_torque(drive: ServoAxis) -> Step:
     """Torques are per mille of it: another one than the rig file's makes every torque and every torque limit wrong."""
     counts = yield from keep(drive, o.RATED_TORQUE)
     config = drive.config
@@ -209,12 +207,12 @@ def _check_rated_torque(drive: ServoDrive) -> Step:
             f"the configuration's rated_torque is {config.rated_torque_nm:g} N m")
 
 
-def _aim_where_it_stands(drive: ServoDrive) -> Step:
+def _aim_where_it_stands(drive: ServoAxis) -> Step:
     position = yield from read_number(o.POSITION_ACTUAL)
     yield from write(drive, o.TARGET_POSITION, 0, position)
 
 
-def _map(drive: ServoDrive, one: PdoSetting) -> Step:
+def _map(drive: ServoAxis, one: PdoSetting) -> Step:
     """Change a PDO in the order CiA 301 (7.5.2.36) asks: off, map empty, map, count, type, on."""
     limits = drive.config.drive.pdo
     settable = limits.cob_ids == "set"
@@ -241,12 +239,12 @@ def _map(drive: ServoDrive, one: PdoSetting) -> Step:
         yield from write(drive, one.communication, 1, one.cob_id, COB_ID_COMPARED)
 
 
-def _start(drive: ServoDrive) -> Step:
+def _start(drive: ServoAxis) -> Step:
     config = drive.config
     yield SendNmt(NmtCommand.START)
     started = yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
     if not started:
-        said = f"the heartbeat says {nmt.state_name(drive.nmt_state)}" if drive.nmt_state >= 0 else "no heartbeat"
+        said = f"the heartbeat says {state_name(drive.nmt_state)}" if drive.nmt_state >= 0 else "no heartbeat"
         raise SetupRefusedError(f"not OPERATIONAL within {START_TIMEOUT_S:g} s of NMT start: {said}")
     statusword = yield from _await(_is_off, START_TIMEOUT_S)
     raw = yield from read_number(o.POSITION_ACTUAL if config.feedback == "position" else o.VELOCITY_ACTUAL)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from typing import TYPE_CHECKING
 
 from drivers.canopen import objects as o
 from drivers.canopen.conversation import Pause, Reply, Request, RequestError, SdoWrite, read_number
@@ -11,9 +10,7 @@ from drivers.canopen.dictionary import describe
 from drivers.canopen.objects import DataType, OperationMode
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX
 from drivers.drive_settings import Setting
-
-if TYPE_CHECKING:
-    from drivers.servo import ServoDrive
+from drivers.servo_axis import ServoAxis
 
 MODE_TIMEOUT_S = 0.5
 POLL_S = 0.02               # between two reads of an object that is waited for
@@ -26,14 +23,14 @@ class SetupRefusedError(Exception):
     """The device is not what the configuration says, or does not do as told."""
 
 
-def keep(drive: ServoDrive, index: int, sub: int = 0, kind: DataType | None = None) -> Read:
+def keep(drive: ServoAxis, index: int, sub: int = 0, kind: DataType | None = None) -> Read:
     """Read an object and keep it with the drive's parameters."""
     value = yield from read_number(index, sub, kind)
     drive.parameters[index, sub] = value
     return value
 
 
-def write(drive: ServoDrive, index: int, sub: int, value: int, mask: int = -1, kind: DataType | None = None) -> Step:
+def write(drive: ServoAxis, index: int, sub: int, value: int, mask: int = -1, kind: DataType | None = None) -> Step:
     """Write an object and read it back; only bits of ``mask`` are compared."""
     yield SdoWrite(index, sub, value, kind)
     back = yield from keep(drive, index, sub, kind)
@@ -41,14 +38,14 @@ def write(drive: ServoDrive, index: int, sub: int, value: int, mask: int = -1, k
         raise SetupRefusedError(f"{describe(index, sub)}: wrote {value}, read {back}")
 
 
-def compare(drive: ServoDrive, index: int, sub: int, value: int, mask: int = -1) -> Step:
+def compare(drive: ServoAxis, index: int, sub: int, value: int, mask: int = -1) -> Step:
     """Read what the drive cannot be told; only bits of ``mask`` are compared."""
     back = yield from keep(drive, index, sub)
     if back & mask != value & mask:
         raise SetupRefusedError(f"{describe(index, sub)}: read 0x{back:X}, 0x{value:X} is needed and cannot be set")
 
 
-def write_where_present(drive: ServoDrive, index: int, sub: int, value: int) -> Step:
+def write_where_present(drive: ServoAxis, index: int, sub: int, value: int) -> Step:
     """Write an optional object and read it back; a device without it has nothing to be told."""
     try:
         yield from write(drive, index, sub, value)
@@ -57,7 +54,7 @@ def write_where_present(drive: ServoDrive, index: int, sub: int, value: int) -> 
             raise
 
 
-def apply(drive: ServoDrive, setting: Setting) -> Step:
+def apply(drive: ServoAxis, setting: Setting) -> Step:
     """Write one setting, or what stands in for it."""
     value, instead = setting.value, setting.substitute
     if instead is not None:
@@ -76,7 +73,7 @@ def apply(drive: ServoDrive, setting: Setting) -> Step:
         raise RequestError(f"{error}{hint}", error.code) from error
 
 
-def set_mode(drive: ServoDrive, mode: OperationMode) -> Step:
+def set_mode(drive: ServoAxis, mode: OperationMode) -> Step:
     """Select a mode of operation and see it confirmed by 0x6061."""
     yield from write(drive, o.MODE, 0, mode)
     shown = yield from keep(drive, o.MODE_DISPLAY)

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, isfinite, nan
-from typing import Final
+from typing import Final, Literal
 
 from drivers.modbus import Device, ModbusLink, Request
-from drivers.profiles.model import DeviceProfile, Kind, ProfileError
+from drivers.profiles.model import DeviceProfile, ProfileError
 
 JACKET_RENEW_S: Final = 0.45
 """The jacket's command registers are written again after this: twice a second also with scans at 20 Hz [A]."""
@@ -21,6 +21,7 @@ CHAMBER_RENEW_S: Final = 2.0
 """The chamber's command registers are written again after this, s [A]."""
 CHAMBER_LEASE_S: Final = 30.0
 """Without a setpoint for this long the chamber stands by, s [A]: its air then changes by 1.5 K."""
+ControllerKind = Literal["jacket", "chamber"]
 UNHEARD: Final = "our setpoint does not reach it, its lease has run out"
 STATUS_AGE_S: Final = 2.0
 """A status older than this against the temperature makes the reading invalid [A]."""
@@ -37,7 +38,7 @@ class _Commanding:
     """Run and standby are followed by a read: a wheel that stops must not be taken for one that is still heated."""
 
 
-_COMMANDED: Final[Mapping[Kind, _Commanding]] = {
+_COMMANDED: Final[Mapping[ControllerKind, _Commanding]] = {
     "jacket": _Commanding(JACKET_RENEW_S, JACKET_LEASE_S, needs_lease=False, reads_at_once=True),
     "chamber": _Commanding(CHAMBER_RENEW_S, CHAMBER_LEASE_S, needs_lease=True, reads_at_once=False),
 }
@@ -52,7 +53,7 @@ class TemperatureController(Device):
     register.
     """
 
-    def __init__(self, kind: Kind, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
+    def __init__(self, kind: ControllerKind, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
         """Put a controller of ``kind`` (jacket, chamber) on ``link``; its lease is written where the profile has one.
 
         ``has_lease``: it has. ``ends_s`` is when it heats no more by itself without a setpoint, s: by its lease, or by

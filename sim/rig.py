@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 from math import floor, inf
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
@@ -21,6 +21,9 @@ from sim.nodes.sensor_node import SimulatedSensorNode
 from sim.nodes.sensor_slave import PlantQuantity, Quantity, SensorSlave
 from sim.wires.can_wire import CanWire
 from sim.wires.modbus_wire import ModbusWire
+
+if TYPE_CHECKING:
+    from sim.physics.laws import LawSetting
 
 SHORTEST_STEP_S: Final = 1e-3
 LONGEST_STEP_S: Final = 0.1
@@ -104,6 +107,14 @@ class SimRig:
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
         raise NotImplementedError
+
+    @property
+    def of_materials(self) -> bool:
+        """Whether friction is made of a rubber and a surface (``sim.physics.materials``), which ``take`` finds."""
+        return False
+
+    def take(self, setting: LawSetting) -> None:
+        """Take where materials are found, before a specimen is put on."""
 
     @property
     def urgent_s(self) -> float:

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Protocol
 
-from drivers.canopen import nmt
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY, describe
+from drivers.canopen.messages import encode_nmt
 from drivers.canopen.objects import DataType, NmtCommand
 from drivers.canopen.sdo import SdoClient, SdoError
 
@@ -211,7 +211,7 @@ class Dialogue:
             frame = self._sdo.download(request.index, request.sub, data, now)
             send(o.SDO_REQUEST_BASE + self._peer.node_id, frame)
         elif isinstance(request, SendNmt):
-            send(o.NMT_ID, nmt.encode(request.command, self._peer.node_id))
+            send(o.NMT_ID, encode_nmt(request.command, self._peer.node_id))
         elif isinstance(request, Until):
             self._until = now + request.timeout_s
         else:

@@ -12,11 +12,11 @@ import os
 from collections import deque
 from collections.abc import Callable
 from threading import Thread
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from drivers.canopen import objects as o
 from drivers.ports import BusLost, CanFrame, FrameByFrame
-from drivers.transports import can_health, slcan, socketcand
+from drivers.transports import slcan, socketcand
 from drivers.transports.own_frames import OwnFrames
 
 if TYPE_CHECKING:
@@ -26,6 +26,16 @@ POLL_S = 0.1
 """How long the receive thread waits for a frame before it looks whether the port was closed."""
 MAX_WAITING = 20_000
 """Frames kept until the caller takes them: over 2 s of a full bus at 1 Mbit/s. More means that nobody reads."""
+BUS_OFF: Final = 0x40
+"""Class bit of a SocketCAN error frame (linux/can/error.h, CAN_ERR_BUSOFF)."""
+_CLASSES: Final = {
+    0x001: "transmit time-out", 0x002: "lost arbitration", 0x004: "controller", 0x008: "protocol violation",
+    0x010: "transceiver", 0x020: "no acknowledgement", BUS_OFF: "bus-off", 0x080: "bus error", 0x100: "restarted",
+    0x200: "error counters",
+}  # fmt: skip
+"""Class bits of a SocketCAN error frame (linux/can/error.h)."""
+_BY_CLASS: Final = ("socketcan", socketcand.INTERFACE)
+"""Interfaces whose error frames have these; those of others say what their makers chose."""
 _FUNCTION = 0x780
 _BOOT_UP = bytes((o.NmtState.BOOT_UP,))
 _STATE_LOW, _STATE_HIGH = 0x7F, 0x22
@@ -111,7 +121,7 @@ class PythonCanPort(FrameByFrame):
     @property
     def state(self) -> str:
         """The adapter's: active, passive or error; "" where its interface tells none."""
-        return can_health.state_of(self._bus)
+        return adapter_state(self._bus)
 
     def close(self) -> None:
         """Stop receiving and give the adapter back; the port is lost afterwards."""
@@ -152,9 +162,9 @@ class PythonCanPort(FrameByFrame):
     def _accept(self, message: can.Message) -> bool:
         """Queue a data frame; False where the bus is of no use any more."""
         if message.is_error_frame:
-            for kind in can_health.kinds_of(self._interface, message.arbitration_id):
+            for kind in error_kinds(self._interface, message.arbitration_id):
                 self.errors[kind] = self.errors.get(kind, 0) + 1
-            return not message.arbitration_id & can_health.BUS_OFF
+            return not message.arbitration_id & BUS_OFF
         if message.is_extended_id or message.is_remote_frame or message.is_fd:
             self.ignored += 1
             return True
@@ -202,3 +212,21 @@ def open_can(interface: str, channel: str, bitrate: int, clock: Callable[[], flo
     socketcand.tune(bus)
     slcan.tune(bus)
     return PythonCanPort(bus, clock, on_urgent, f"{interface} {channel}")
+
+
+def error_kinds(interface: str, can_id: int) -> tuple[str, ...]:
+    """Return what an error frame with this identifier says."""
+    found = tuple(text for bit, text in _CLASSES.items() if can_id & bit) if interface in _BY_CLASS else ()
+    return found or ("error",)
+
+
+def adapter_state(bus: can.BusABC) -> str:
+    """Return an adapter's state, in small letters: active, passive or error; "" where its interface tells none."""
+    import can
+
+    if type(bus).state is can.BusABC.state:  # it says ACTIVE whatever the bus does
+        return ""
+    try:
+        return bus.state.name.lower()
+    except (can.CanError, OSError, NotImplementedError, ValueError, AttributeError):
+        return ""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from bisect import insort
 from typing import Final
 
-from drivers.canopen import emcy
 from drivers.canopen import objects as o
+from drivers.canopen.messages import encode_emergency
 from sim.faults.scene import Effect, Scene
 from sim.wires.can_traffic import Listener, SyncFollower
 from sim.wires.can_wire import CanWire
@@ -366,4 +366,4 @@ class EmergencyStorm(Effect):
         node_id = scene.rig.axes[self.axis].node_id
         if now >= self._at_s:
             self._at_s = now + self.PERIOD_S
-            scene.rig.can.transmit(o.EMERGENCY_BASE + node_id, emcy.encode(self.code, 1), now, True)
+            scene.rig.can.transmit(o.EMERGENCY_BASE + node_id, encode_emergency(self.code, 1), now, True)

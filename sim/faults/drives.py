@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from drivers.canopen import emcy
 from drivers.canopen import objects as o
+from drivers.canopen.messages import encode_emergency
 from sim.faults.scene import Effect, Scene
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.drive_state import ENERGISED
+from sim.nodes.drive_power import ENERGISED
 from sim.nodes.motion import VelocityAxis
 
 MOTOR_BLOCKED = 0x7121
@@ -79,7 +79,7 @@ class ShortEmergency(EmcyReport):
     def begin(self, scene: Scene, now: float) -> None:
         """Report it, once."""
         drive = self.drive(scene)
-        drive.wire.transmit(o.EMERGENCY_BASE + drive.node_id, emcy.encode(self.code, 1)[: self.length], now, True)
+        drive.wire.transmit(o.EMERGENCY_BASE + drive.node_id, encode_emergency(self.code, 1)[: self.length], now, True)
 
     def end(self, scene: Scene, now: float) -> None:
         """Say nothing: the drive never took note of it."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from sim.rig import SimRig
+
+Machine = TypeVar("Machine", bound=SimRig)
 
 
 class Computer(Protocol):
@@ -37,6 +39,12 @@ class Scene:
 
     rig: SimRig
     computer: Computer
+
+    def machine(self, kind: type[Machine]) -> Machine:
+        """Return the rig as that of a kind of machine. Raises TypeError where it is another one."""
+        if not isinstance(self.rig, kind):
+            raise TypeError(f"a fault of a {kind.__name__} cannot act on a {type(self.rig).__name__}")
+        return self.rig
 
 
 class Effect:

@@ -20,8 +20,7 @@ from sim.nodes import drive_objects
 from sim.nodes.drive_modes import ProfileVelocity
 from sim.nodes.drive_objects import clamped_i16, wrapped_i32
 from sim.nodes.drive_positioning import Homing, ProfilePosition
-from sim.nodes.drive_power import Axis, DrivePower
-from sim.nodes.drive_state import ENERGISED, FAULTY, STATUS_BITS
+from sim.nodes.drive_power import ENERGISED, FAULTY, STATUS_BITS, Axis, DrivePower
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo

@@ -1,6 +1,6 @@
 """The power side of a simulated CiA 402 drive: state machine, ramps to standstill, faults, lost connections.
 
-The states and what leads from one to the next are in ``drive_state``; this is what the transitions do to the axis.
+``commanded`` says what leads from one state to the next; the class does to the axis what the transitions do.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from drivers.cia402 import State
 from sim.nodes.canopen_device import CanopenDevice
 from sim.nodes.drive_modes import ProfileVelocity, Ramps
 from sim.nodes.drive_positioning import Homing, ProfilePosition
-from sim.nodes.drive_state import ENERGISED, FAULTY, commanded
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.safety_io import SafetyIo
@@ -28,6 +27,23 @@ CONNECTION_ERROR: Final = 0x8100
 _OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
 _HOLDING: Final = 5
 """Quick stop options from this one on stay in QUICK_STOP_ACTIVE at standstill."""
+
+STATUS_BITS: dict[State, int] = {
+    State.NOT_READY: 0x00,
+    State.SWITCH_ON_DISABLED: 0x40,
+    State.READY_TO_SWITCH_ON: 0x21,
+    State.SWITCHED_ON: 0x23,
+    State.OPERATION_ENABLED: 0x27,
+    State.QUICK_STOP_ACTIVE: 0x07,
+    State.FAULT_REACTION: 0x0F,
+    State.FAULT: 0x08,
+}
+"""Bits 0-3, 5 and 6 of the statusword."""
+
+ENERGISED = frozenset((State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION))
+"""States in which the power stage drives the motor."""
+
+FAULTY = frozenset((State.FAULT_REACTION, State.FAULT))
 
 
 class DrivePower(CanopenDevice):
@@ -297,3 +313,29 @@ class DrivePower(CanopenDevice):
             return
         super().recovered(code, t)
         self.update(t)
+
+
+def commanded(state: State, controlword: int, stop_may_end: bool = False) -> State:
+    """Return the state a controlword (0..0xFFFF) leads to next, ``state`` itself when it commands nothing there.
+
+    ``stop_may_end``: quick stop option 5-8, from which operation may be enabled again (transition 16). Fault states
+    are left by the rising edge of bit 7 only, which is not a matter of levels.
+    """
+    if state in FAULTY or state is State.NOT_READY:
+        return state
+    if not controlword & 0x02:  # disable voltage
+        return State.SWITCH_ON_DISABLED
+    if not controlword & 0x04:  # quick stop
+        if state is State.OPERATION_ENABLED or state is State.QUICK_STOP_ACTIVE:
+            return State.QUICK_STOP_ACTIVE
+        return State.SWITCH_ON_DISABLED
+    command = controlword & 0x0F
+    if state is State.QUICK_STOP_ACTIVE:
+        return State.OPERATION_ENABLED if stop_may_end and command == 0x0F else state
+    if not command & 0x01:  # shutdown
+        return State.READY_TO_SWITCH_ON
+    if state is State.SWITCH_ON_DISABLED:
+        return state
+    if state is State.READY_TO_SWITCH_ON:
+        return State.SWITCHED_ON
+    return State.OPERATION_ENABLED if command == 0x0F else State.SWITCHED_ON

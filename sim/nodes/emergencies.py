@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import inf
 
-from drivers.canopen import emcy
 from drivers.canopen import objects as o
+from drivers.canopen.messages import encode_emergency
 from sim.nodes import sdo_server as sdo
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.sdo_server import SdoAbortError
@@ -104,7 +104,7 @@ class Emergencies:
         # Held back by the inhibit time, a message goes as soon as that has passed.
         t = max(t, self._last_s + values[(o.EMERGENCY_INHIBIT, 0)] * 1e-4)
         self._last_s = t
-        self._wire.transmit(cob_id & o.COB_ID_MASK, emcy.encode(code, register), t, True)
+        self._wire.transmit(cob_id & o.COB_ID_MASK, encode_emergency(code, register), t, True)
 
     def _register(self) -> int:
         register = 0

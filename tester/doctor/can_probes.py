@@ -7,9 +7,9 @@ from itertools import pairwise
 
 from drivers import cia402
 from drivers.axis import AxisConfig
-from drivers.canopen import nmt
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import describe
+from drivers.canopen.messages import state_name
 from drivers.cia402 import State
 from drivers.drive_settings import RATED_TORQUE_SHARE
 from sim.wires.can_traffic import frame_bits
@@ -105,7 +105,7 @@ def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
     state = e.can.heard.states.get(config.node_id)
     if state is not None:
         return fault(
-            name, f"node {config.node_id} sends heartbeats ({nmt.state_name(state)}) and answers no SDO request",
+            name, f"node {config.node_id} sends heartbeats ({state_name(state)}) and answers no SDO request",
             "switch the drive off and on",
         )  # fmt: skip
     return fault(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
 
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
@@ -12,7 +11,7 @@ from drivers.modbus import Device, ModbusLink
 from drivers.ports import LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
-from drivers.temperature_controller import TemperatureController
+from drivers.temperature_controller import ControllerKind, TemperatureController
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 from tester.inputs.rig.sensors import further_sensors, parts_of, title_of
@@ -46,7 +45,7 @@ class RigDrivers:
         sensor = self.devices[name] = sensor_of(config, self.links, channels)
         return sensor
 
-    def controller(self, kind: Literal["jacket", "chamber"]) -> TemperatureController:
+    def controller(self, kind: ControllerKind) -> TemperatureController:
         """Add the driver of the rig's temperature controller of this kind, which is also its name, and return it."""
         config = self.rig.devices[kind]
         controller = self.devices[kind] = TemperatureController(

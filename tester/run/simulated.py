@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from sim import machines
-from sim.made_of_materials import MadeOfMaterials
 from sim.nodes.sensor_slave import UnknownQuantityError
 from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
 from sim.wires.can_wire import CanWire
@@ -41,7 +40,7 @@ def simulated_ports(
         world = machines.find(run_parts(rig).plant).world(spec_of(rig), rig.plant, seed, can_wire)
     except UnknownQuantityError as error:
         raise InvalidSource([Problem("rig file", 1, 1, f"devices: {error}")]) from error
-    if isinstance(world, MadeOfMaterials) and world.of_materials:
+    if world.of_materials:
         world.take(law_setting(surface, recipe))
     if log is not None:
         log.watch(world.can, world.lines)

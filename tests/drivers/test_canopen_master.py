@@ -7,9 +7,9 @@ import math
 
 import pytest
 
-from drivers.canopen import emcy
 from drivers.canopen.conversation import Conversation, Pause, SdoRead, SdoWrite, SendNmt
 from drivers.canopen.master import CanMaster
+from drivers.canopen.messages import encode_emergency
 from drivers.canopen.objects import DataType, NmtCommand
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost, CanFrame, FrameByFrame
@@ -146,7 +146,7 @@ def test_a_withheld_heartbeat_is_not_sent_and_returns_at_once() -> None:
 def test_each_frame_goes_to_its_drive() -> None:
     master, drive, belt = bus()
     master.feed([(0.01, 0x181, tpdo1(0x0240, 100, 0)), (0.011, 0x182, tpdo1(0x0240, 200, 0)),
-                 (0.012, 0x282, b"\x01\0\0\0"), (0.013, 0x082, emcy.encode(0x4310, 9))], 0.02)
+                 (0.012, 0x282, b"\x01\0\0\0"), (0.013, 0x082, encode_emergency(0x4310, 9))], 0.02)
     assert (drive.actual, belt.actual, belt.inputs) == (0.1, 0.2, 1)
     assert belt.emergency is not None
     assert drive.emergency is None

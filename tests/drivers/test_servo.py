@@ -8,7 +8,7 @@ import struct
 
 import pytest
 
-from drivers.canopen import emcy
+from drivers.canopen.messages import encode_emergency
 from drivers.cia402 import Goal, State
 from drivers.servo import ServoDrive
 from tests.drivers.can_bench import joined, tpdo1, wheel, yaw
@@ -455,10 +455,10 @@ def test_a_drive_that_left_operational_is_not_online() -> None:
 
 def test_an_emergency_stays_until_the_device_resets_it() -> None:
     drive = enabled_wheel()
-    drive.on_emergency(0.5, emcy.encode(0x4310, 0x09))
+    drive.on_emergency(0.5, encode_emergency(0x4310, 0x09))
     assert drive.emergency is not None
     assert drive.emergency.text == "0x4310 drive over-temperature"
-    drive.on_emergency(0.6, emcy.encode(0, 0))
+    drive.on_emergency(0.6, encode_emergency(0, 0))
     assert drive.emergency is None
     assert [e.code for e in drive.take_emergencies()] == [0x4310, 0]
     assert drive.take_emergencies() == []
@@ -467,13 +467,13 @@ def test_an_emergency_stays_until_the_device_resets_it() -> None:
 def test_an_emergency_storm_is_bounded_and_counted() -> None:
     drive = enabled_wheel()
     for _ in range(100):
-        drive.on_emergency(0.5, emcy.encode(0x8110, 0x11))
+        drive.on_emergency(0.5, encode_emergency(0x8110, 0x11))
     assert (len(drive.take_emergencies()), drive.emergencies_dropped) == (64, 36)
 
 
 def test_an_acknowledgement_forgets_the_emergency() -> None:
     drive = enabled_wheel()
-    drive.on_emergency(0.5, emcy.encode(0x4310, 0x09))
+    drive.on_emergency(0.5, encode_emergency(0x4310, 0x09))
     drive.reset_fault()
     assert drive.emergency is None
 

@@ -6,9 +6,10 @@ import struct
 
 import pytest
 
+from drivers.axis import AxisConfig
 from drivers.canopen.master import CanMaster
 from drivers.cia402 import Goal, State
-from drivers.servo import AxisConfig, ServoDrive
+from drivers.servo import ServoDrive
 from tests.drivers.can_bench import NODE, BenchDrive, converse, tpdo1, wheel, yaw
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from drivers import cia402
 from drivers.cia402 import State
-from sim.nodes.drive_state import FAULTY, STATUS_BITS, commanded
+from sim.nodes.drive_power import FAULTY, STATUS_BITS, commanded
 
 S = State
 

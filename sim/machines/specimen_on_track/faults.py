@@ -40,13 +40,6 @@ class Onset(Enum):
     NEAR_THE_END = "where the track comes to the end of its travel"
 
 
-def track_rig(scene: Scene) -> TrackRig:
-    """Return the rig of a scene. Raises TypeError where it is another kind of machine."""
-    if not isinstance(scene.rig, TrackRig):
-        raise TypeError(f"a fault of a specimen on a track cannot act on {type(scene.rig).__name__}")
-    return scene.rig
-
-
 class TrackOverspeeds(drives.Runaway):
     """The track moves by itself whenever its power stage is on, whatever is commanded."""
 
@@ -58,7 +51,7 @@ class TrackOverspeeds(drives.Runaway):
 
     def renew(self, scene: Scene, now: float) -> None:
         """Override what was commanded, in the track's own unit."""
-        rig = track_rig(scene)
+        rig = scene.machine(TrackRig)
         axis = rig.axes["track"].axis
         if rig.axes["track"].energised and isinstance(axis, VelocityAxis):
             axis.aim(1e-3 * self.speed / rig.metres)
@@ -75,11 +68,11 @@ class TrackRubsOtherwise(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Change."""
-        track_rig(scene).plant.grip = self.share
+        scene.machine(TrackRig).plant.grip = self.share
 
     def end(self, scene: Scene, now: float) -> None:
         """Rub as at first."""
-        track_rig(scene).plant.grip = 1.0
+        scene.machine(TrackRig).plant.grip = 1.0
 
 
 class EndSwitchDead(Effect):
@@ -89,11 +82,11 @@ class EndSwitchDead(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Die."""
-        track_rig(scene).switches_work = False
+        scene.machine(TrackRig).switches_work = False
 
     def end(self, scene: Scene, now: float) -> None:
         """Work again."""
-        track_rig(scene).switches_work = True
+        scene.machine(TrackRig).switches_work = True
 
 
 def _drive_rows() -> Iterator[FaultKind]:

@@ -5,11 +5,27 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sim.machines import SimulatedMachine
+from sim.machines.wheel_on_belt.harm import heat_flowing_w
 from sim.machines.wheel_on_belt.rig import WheelRig
-from sim.machines.wheel_on_belt.state_log import LOG_COLUMNS, LOG_DECIMALS, log_row
 
 if TYPE_CHECKING:
     from sim.faults.language import FaultLanguage
+
+LOG_COLUMNS = (
+    "wheel_m_s", "belt_m_s", "slip_m_s", "force_z_n", "press_mm", "heater_w", "hub_c", "surface_c",
+)  # fmt: skip
+"""The plant's true values (``heater_w`` behind the contactor)."""
+LOG_DECIMALS = (5, 5, 5, 3, 4, 3, 3, 3)
+
+
+def log_row(rig: WheelRig) -> tuple[float, ...]:
+    """Return a value for each of LOG_COLUMNS."""
+    plant, axes = rig.plant, rig.axes
+    wheel_m_s = axes["wheel"].axis.value * 0.5e-3 * plant.diameter_mm
+    return (
+        wheel_m_s, axes["belt"].axis.value, plant.slip_m_s, plant.force_z_n, axes["press"].axis.position,
+        heat_flowing_w(rig), plant.heat.hub_c, plant.surface_c,
+    )  # fmt: skip
 
 
 def _language() -> FaultLanguage:

@@ -13,7 +13,7 @@ from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import FaultKind
 from sim.machines.wheel_on_belt.harm import HarmObserver, Truth
 from sim.machines.wheel_on_belt.rig import WheelRig
-from sim.nodes.drive_state import ENERGISED
+from sim.nodes.drive_power import ENERGISED
 from tester.analysis.results import Burst, RepeatResult, RepeatStatus
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan

@@ -25,7 +25,6 @@ from sim.faults.sensors import CROSSED, ControllerOutput, SensorFault
 from sim.machines.wheel_on_belt.faults import heat as h
 from sim.machines.wheel_on_belt.faults import mechanics as k
 from sim.machines.wheel_on_belt.faults.exposure import Exposure
-from sim.machines.wheel_on_belt.faults.slip_ring import WornSector
 from sim.machines.wheel_on_belt.rig import FORCES
 
 AXES = ("wheel", "belt", "press", "sideslip", "camber")
@@ -162,7 +161,7 @@ def _modbus_rows() -> Iterator[FaultKind]:
                     note="the order of the words of its 32-bit values was changed at the device")
     yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.0,
                     note="a value of 32 bits is read while the device writes it: off by 3277 N where its sign changes")
-    yield FaultKind("slip ring worn", WornSector, ALWAYS, MAY, 0.0, "", 90.0,
+    yield FaultKind("slip ring worn", h.WornSector, ALWAYS, MAY, 0.0, "", 90.0,
                     note="requests fail within 20 degrees of this angle of the wheel: one in nine, asked for again")
     yield FaultKind("jacket memory worn out", partial(m.MemoryWorn, "jacket"), ALWAYS, MAY, 0.0,
                     note="what it keeps without supply, standby among it, cannot be changed any more (exception 04):"

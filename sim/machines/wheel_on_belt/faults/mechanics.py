@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sim.faults.scene import Effect, Scene
-from sim.machines.wheel_on_belt.faults.place import wheel_rig
+from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.machines.wheel_on_belt.torque import ShaftTorque
 from sim.sensors import SpeedSensor
 
@@ -22,12 +22,12 @@ class _OnShaft(Effect):
 
     def sensor(self, scene: Scene) -> SpeedSensor:
         """Return what stands between the shaft and its drive's speed."""
-        plant = wheel_rig(scene).plant
+        plant = scene.machine(WheelRig).plant
         return plant.wheel_speed if self.axis == "wheel" else plant.belt_speed
 
     def shaft(self, scene: Scene) -> ShaftTorque:
         """Return what stands between the shaft and its drive's torque."""
-        return wheel_rig(scene).wheel_shaft if self.axis == "wheel" else wheel_rig(scene).belt_shaft
+        return scene.machine(WheelRig).wheel_shaft if self.axis == "wheel" else scene.machine(WheelRig).belt_shaft
 
 
 class Reversed(_OnShaft):
@@ -74,11 +74,11 @@ class DrivesSwapped(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Swap them."""
-        wheel_rig(scene).swapped = True
+        scene.machine(WheelRig).swapped = True
 
     def end(self, scene: Scene, now: float) -> None:
         """Connect them as they should be."""
-        wheel_rig(scene).swapped = False
+        scene.machine(WheelRig).swapped = False
 
 
 class DiameterOff(Effect):
@@ -94,14 +94,14 @@ class DiameterOff(Effect):
 
     def renew(self, scene: Scene, now: float) -> None:
         """Put it on once nothing is in its way."""
-        plant = wheel_rig(scene).plant
+        plant = scene.machine(WheelRig).plant
         if plant.size != self.share and plant.force_z_n == 0.0:
             plant.set_size(self.share)
 
     def end(self, scene: Scene, now: float) -> None:
         """Have a wheel of the right size on, if it is free."""
-        if wheel_rig(scene).plant.force_z_n == 0.0:
-            wheel_rig(scene).plant.set_size(1.0)
+        if scene.machine(WheelRig).plant.force_z_n == 0.0:
+            scene.machine(WheelRig).plant.set_size(1.0)
 
 
 class RubberDetached(Effect):
@@ -115,12 +115,12 @@ class RubberDetached(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Come off."""
-        plant = wheel_rig(scene).plant
+        plant = scene.machine(WheelRig).plant
         plant.set_runout(plant.parameters.contact.runout + self.swing_mm)
 
     def end(self, scene: Scene, now: float) -> None:
         """Be bonded again."""
-        plant = wheel_rig(scene).plant
+        plant = scene.machine(WheelRig).plant
         plant.set_runout(plant.parameters.contact.runout)
 
 
@@ -135,12 +135,12 @@ class RubberRelaxes(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Begin to give way."""
-        wheel_rig(scene).plant.set_relaxation(self.share)
+        scene.machine(WheelRig).plant.set_relaxation(self.share)
 
     def end(self, scene: Scene, now: float) -> None:
         """Behave as sound rubber does."""
-        p = wheel_rig(scene).plant.parameters
-        wheel_rig(scene).plant.set_relaxation(p.relaxation * p.contact.relaxation)
+        p = scene.machine(WheelRig).plant.parameters
+        scene.machine(WheelRig).plant.set_relaxation(p.relaxation * p.contact.relaxation)
 
 
 class BeltSlips(Effect):
@@ -158,7 +158,7 @@ class BeltSlips(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Begin to slip."""
-        rig = wheel_rig(scene)
+        rig = scene.machine(WheelRig)
         rig.belt_slip = self.share
         sensor = rig.plant.belt_speed
         self._factor = sensor.factor
@@ -166,8 +166,8 @@ class BeltSlips(Effect):
 
     def end(self, scene: Scene, now: float) -> None:
         """Grip again."""
-        wheel_rig(scene).belt_slip = 0.0
-        wheel_rig(scene).plant.belt_speed.factor = self._factor
+        scene.machine(WheelRig).belt_slip = 0.0
+        scene.machine(WheelRig).plant.belt_speed.factor = self._factor
 
 
 class BeltTorn(Effect):
@@ -186,19 +186,19 @@ class BeltTorn(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Tear."""
-        plant = wheel_rig(scene).plant
+        plant = scene.machine(WheelRig).plant
         self._factor = plant.belt_speed.factor
         plant.set_grip(0.0)
 
     def end(self, scene: Scene, now: float) -> None:
         """Have a new belt."""
-        plant = wheel_rig(scene).plant
+        plant = scene.machine(WheelRig).plant
         plant.belt_speed.factor = self._factor
         plant.set_grip(1.0)
 
     def renew(self, scene: Scene, now: float) -> None:
         """Let the belt go with the wheel where it is touched, through the encoder's scale: no other place is needed."""
-        rig = wheel_rig(scene)
+        rig = scene.machine(WheelRig)
         plant, roller_m_s = rig.plant, rig.axes["belt"].axis.value
         rim_m_s = 0.0005 * plant.diameter_mm * rig.axes["wheel"].axis.value / plant.wheel_speed.factor
         carried_m_s = rim_m_s if plant.force_z_n > 0.0 else 0.0
@@ -218,15 +218,15 @@ class WheelSlipsOnShaft(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Come loose."""
-        self._factor = wheel_rig(scene).plant.wheel_speed.factor
+        self._factor = scene.machine(WheelRig).plant.wheel_speed.factor
 
     def end(self, scene: Scene, now: float) -> None:
         """Be clamped again."""
-        wheel_rig(scene).plant.wheel_speed.factor = self._factor
+        scene.machine(WheelRig).plant.wheel_speed.factor = self._factor
 
     def renew(self, scene: Scene, now: float) -> None:
         """Let the wheel roll on the belt in contact, and go with its shaft out of it."""
-        rig = wheel_rig(scene)
+        rig = scene.machine(WheelRig)
         plant, shaft = rig.plant, rig.axes["wheel"].axis.value
         belt_m_s = rig.axes["belt"].axis.value / plant.belt_speed.factor
         rolling = belt_m_s / (0.0005 * plant.diameter_mm)
@@ -245,8 +245,8 @@ class BeltRubsOtherwise(Effect):
 
     def begin(self, scene: Scene, now: float) -> None:
         """Change."""
-        wheel_rig(scene).plant.set_grip(self.share)
+        scene.machine(WheelRig).plant.set_grip(self.share)
 
     def end(self, scene: Scene, now: float) -> None:
         """Rub as at first."""
-        wheel_rig(scene).plant.set_grip(1.0)
+        scene.machine(WheelRig).plant.set_grip(1.0)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sim.faults.parametric import Parametric
+from sim.faults.kinds import Parametric
 from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
 
 _LAGS = {"load cell": 4.0, "thermometer": 6.0, "hub sensor": 40.0}

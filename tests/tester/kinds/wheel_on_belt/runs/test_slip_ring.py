@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from sim.faults.scene import Scene
 from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
-from sim.machines.wheel_on_belt.faults.slip_ring import WornSector
+from sim.machines.wheel_on_belt.faults.heat import WornSector
 from tester.analysis.ring_errors import sector_of
 from tester.cli.slip_ring_command import slip_ring
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch

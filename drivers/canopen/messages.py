@@ -1,10 +1,24 @@
-"""Emergency messages (CiA 301, 7.2.7)."""
+"""Network management frames (CiA 301, 7.2.8.2) and emergency messages (7.2.7)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from drivers.canopen import objects as o
+from drivers.canopen.objects import NmtCommand, NmtState
+
+
+def encode_nmt(command: NmtCommand, node_id: int) -> bytes:
+    """Return the data of an NMT frame for one node (1..127; 0: all)."""
+    return bytes((command, node_id))
+
+
+def state_name(state: int) -> str:
+    """Return the name of a heartbeat's state byte."""
+    try:
+        return NmtState(state).name.replace("_", "-")
+    except ValueError:
+        return f"unknown state {state}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +40,12 @@ class Emergency:
         return self.code >> 8 == 0
 
 
-def encode(code: int, register: int, vendor: bytes = b"") -> bytes:
+def encode_emergency(code: int, register: int, vendor: bytes = b"") -> bytes:
     """Return the eight bytes of an EMCY frame; ``vendor`` is cut or padded to five."""
     return code.to_bytes(2, "little") + bytes((register,)) + vendor[:5].ljust(5, b"\0")
 
 
-def decode(data: bytes, t: float) -> Emergency:
+def decode_emergency(data: bytes, t: float) -> Emergency:
     """Return the emergency in a frame that arrived at ``t``.
 
     A frame shorter than eight bytes is not refused: what is missing counts as an unknown error of that
