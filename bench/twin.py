@@ -16,6 +16,7 @@ from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from drivers.temperature_controller import TemperatureController
 from sim.machines.wheel_on_belt.plant import Plant
+from sim.machines.wheel_on_belt.scatter import WheelSetting
 from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.sensor_slave import CellSlave, IrSlave
 from sim.physics.contact import ContactModel
@@ -61,7 +62,7 @@ def _timed(name: str, work: Work, count: int, runs: int, share: float) -> Figure
 def _plant() -> Plant:
     plant = Plant(SimParameters(), 1)
     plant.install(0, 0, "1#", True)
-    plant.begin_repeat(0, 0, 0)
+    plant.begin_repeat(0, 0, 0, WheelSetting(0.1, 200.0, (0.0,), 25.0))
     return plant
 
 
@@ -123,6 +124,6 @@ def _plant_ticks(dt: float, load_n: float, belt_m_s: float, wheel_rad_s: float) 
     def work(count: int) -> None:
         for _ in range(count):
             worn_mm = 0.5 * (plant.parameters.wheel.outer_diameter - plant.diameter_mm)
-            plant.advance(dt, wheel_rad_s, belt_m_s, press_mm + worn_mm, 0.0, 0.0, 0.0, HEATER_W)
+            plant.advance(dt, wheel_rad_s, belt_m_s, press_mm + worn_mm, 0.0, 0.0, HEATER_W)
 
     return work
