@@ -101,5 +101,6 @@ HOT = (
     "tester/machine/state.py",
     "tester/machine/tickers.py",
     "tester/machine/wires.py",
+    "tester/machine/zero.py",
 )
 """Patterns of files; what runs in every scan, and nothing that reads its own annotations."""

@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import Final
 
 from tester.kinds.specimen_on_track.context import TrackContext
 from tester.machine.motions import Ask, Move, Power, Sequence
+from tester.machine.zero import ZeroOfCell
 
 TARE_S: Final = 1.0
 """Averaging time of the cell's zero, s [A]."""
-TARE_LEAST: Final = 10
-"""Readings that a tare averages at least."""
-CELL_SILENT_S: Final = 5.0
-"""A tare that has not got its readings this long after its time is given up, s [A]."""
 NEAR_MM: Final = 0.5
 """A track that was sent to a place is there within this, mm [A]."""
 
@@ -158,39 +154,25 @@ def arm(ctx: TrackContext, *, lowered: bool) -> tuple[MoveArm, ...] | tuple[ArmB
     return ArmByHand(lowered=lowered), Power(True)
 
 
-class TakeTrackTare:
+class TakeTrackTare(ZeroOfCell):
     """Average the cell with the arm raised and make that its zero; ``failed``: why it is not to be trusted."""
 
     def __init__(self, kind: str) -> None:
         """``kind``: "reference" for a specimen's first, else "repeat"."""
+        super().__init__(TARE_S)
         self.kind = kind
-        self.began_s = float("nan")
-        self.stamp_s = float("-inf")
-        self.total_n = 0.0
-        self.count = 0
-        self.failed = ""
 
     def step(self, ctx: TrackContext) -> bool:
         """Done when the average is taken."""
-        r = ctx.readings
-        ctx.moving = True
-        if not isfinite(self.began_s):
-            self.began_s = ctx.now
-        if r.cell_valid and r.cell_at_s > self.stamp_s and r.cell_at_s > self.began_s:
-            self.stamp_s = r.cell_at_s
-            self.total_n += r.force_n
-            self.count += 1
-        late_s = ctx.now - self.began_s - TARE_S
-        if late_s < 0.0 or self.count < TARE_LEAST:
-            if late_s > CELL_SILENT_S:
-                self.failed = f"the load cell gave {self.count} valid readings in {ctx.now - self.began_s:.0f} s"
+        r, cell = ctx.readings, ctx.devices.cell
+        if not self.averaged(ctx, r.cell_at_s, (r.force_n,), valid=r.cell_valid):
             return bool(self.failed)
-        zero_n = ctx.devices.cell.tare[0] + self.total_n / self.count
+        zero = self.zero(cell.tare)
         most_n = ctx.rig.interlocks.zero_stop_n
-        if not abs(zero_n) <= most_n:
-            self.failed = f"the load cell's zero is {zero_n:.1f} N, allowed are {most_n:g} N: does something touch?"
+        if not abs(zero[0]) <= most_n:
+            self.failed = f"the load cell's zero is {zero[0]:.1f} N, allowed are {most_n:g} N: does something touch?"
             return True
-        ctx.devices.cell.set_tare((zero_n,))
-        ctx.journal.tare(ctx.now, self.kind, {"friction_n": zero_n}, ctx.repeat_key)
+        cell.set_tare(zero)
+        ctx.journal.tare(ctx.now, self.kind, {"friction_n": zero[0]}, ctx.repeat_key)
         ctx.demand.tared = True
         return True

@@ -14,12 +14,11 @@ from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import CELL, Press, Readings
 from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
 from tester.machine.motions import Move
+from tester.machine.zero import ZeroOfCell
 
 SPEED_SHARE: Final = 0.01
 SPEED_FLOOR_M_S: Final = 0.003
 """A speed counts as reached within 1 % or 3 mm/s, whichever is more [A]."""
-Zero = tuple[float, float, float, float]
-"""Offsets of the load cell: Fx, Fy, Fz in N, Mz in N m."""
 
 NEAR: Final = 0.05
 """A positioned axis is where it is to be within this, in its unit (deg) [A]."""
@@ -27,10 +26,6 @@ LIFTED_N: Final = 5.0
 """Below this force the wheel counts as lifted [A]."""
 LIFTED_MM: Final = 0.3
 """... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
-TARE_LEAST: Final = 10
-"""Readings that a tare averages at least."""
-CELL_SILENT_S: Final = 5.0
-"""A tare that has not got its readings this long after its time is given up, s [A]."""
 
 
 class Lift(Move):
@@ -132,7 +127,7 @@ class Yaw(Move):
         return near(ctx.readings, wanted) and ctx.readings.yaw_reached
 
 
-class TakeTare:
+class TakeTare(ZeroOfCell):
     """Average the unloaded load cell over whole turns and make that its zero.
 
     The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than ``stop_n``
@@ -148,38 +143,20 @@ class TakeTare:
         ``ends_run``: a zero that has wandered too far ends the run, which comes to its standstill with that zero: with
         the one before, its stop would take the cell's drift for a load. Where work goes on, such a zero is not taken.
         """
-        self.seconds = seconds
+        super().__init__(seconds)
         self.reference = reference
         self.warn_n = warn_n
         self.stop_n = stop_n
         self.ends_run = ends_run
-        self.began_s = float("nan")
-        self.stamp_s = float("-inf")
-        self.sums = [0.0, 0.0, 0.0, 0.0]
-        self.count = 0
         self.drift_n = 0.0
         """How far off the reference the zero is, N: of the three forces the one that has moved most."""
-        self.failed = ""
 
     def step(self, ctx: Context) -> bool:
         """Done when the average is taken; ``failed`` says why the zero is not to be trusted."""
         r = ctx.readings
-        ctx.moving = True
-        if self.began_s != self.began_s:
-            self.began_s = ctx.now
-        if r.cell_valid and r.cell_at_s > self.stamp_s and r.cell_at_s > self.began_s:
-            self.stamp_s = r.cell_at_s
-            for i, value in enumerate(r.cell):
-                self.sums[i] += value
-            self.count += 1
-        late_s = ctx.now - self.began_s - self.seconds
-        if late_s < 0.0 or self.count < TARE_LEAST:
-            if late_s > CELL_SILENT_S:
-                self.failed = f"the load cell gave {self.count} valid readings in {ctx.now - self.began_s:.0f} s"
+        if not self.averaged(ctx, r.cell_at_s, r.cell, valid=r.cell_valid):
             return bool(self.failed)
-        ox, oy, oz, om = ctx.cell.tare
-        sx, sy, sz, sm = self.sums
-        new = (ox + sx / self.count, oy + sy / self.count, oz + sz / self.count, om + sm / self.count)
+        new = self.zero(ctx.cell.tare)
         if not self.reference:
             # A tare has nothing to be compared with yet: what it may take off is bounded, or it hides a load.
             self.failed = loaded(new, ctx.rig)
@@ -192,11 +169,11 @@ class TakeTare:
             self._take(ctx, "repeat", new)
         return True
 
-    def _take(self, ctx: Context, kind: str, new: Zero) -> None:
+    def _take(self, ctx: Context, kind: str, new: tuple[float, ...]) -> None:
         ctx.cell.set_tare(new)
         ctx.journal.tare(ctx.now, kind, dict(zip(CELL, new, strict=True)), ctx.repeat_key)
 
-    def _wandered(self, ctx: Context, new: Zero) -> str:
+    def _wandered(self, ctx: Context, new: tuple[float, ...]) -> str:
         """Return "" or how far a zero is off the reference; one that is worth a warning is written down."""
         self.drift_n = drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
         text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"
