@@ -1,6 +1,6 @@
-"""Compounds and surfaces as files: read strictly, looked up by name, imported from what instruments write.
+"""Compounds and surfaces as files: read strictly, looked up by name, imported from instruments' files.
 
-``schema`` says what a file may hold; ``compound`` and ``surface`` read one, with every problem and every doubt at its
-line; ``dma`` and ``scan`` read what instruments write; ``library`` finds a name, and alone makes of a file what laws of
-friction are told (``sim.physics.materials``).
+``schema`` defines the content of a file; ``compound`` and ``surface`` read one, with every problem and every doubt at
+its line; ``dma`` and ``scan`` read instruments' files; ``library`` finds a name, and alone turns a file into the input
+of friction laws (``sim.physics.materials``).
 """

@@ -25,21 +25,21 @@ from tester.inputs.materials.moduli import ModuliRow, ModuliTable, judge, shift_
 from tester.inputs.materials.schema import CompoundModel, TableFileModel, TableModel
 
 FORMULATED_PHR = (90.0, 500.0)
-"""A formulation adds up to within [A]: the rubber alone is 100."""
+"""Limits of the sum of a formulation [A]: the rubber alone is 100."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoadedCompound:
-    """A compound with the file it came from; ``table`` where its moduli were measured."""
+    """A compound with its file; ``table`` where its moduli were measured."""
 
     model: CompoundModel
     file: MaterialFile
     table: ModuliTable | None = None
     notes: tuple[str, ...] = ()
-    """What was converted or taken for what in the file of moduli."""
+    """Conversions and assumptions in reading the file of moduli."""
 
     def holds(self) -> str:
-        """Return what is known of its modulus, in words."""
+        """Return the source of its modulus, in words."""
         moduli = self.model.moduli
         if moduli is None:
             return "no moduli"
@@ -54,110 +54,114 @@ class LoadedCompound:
 
 
 def load_compound(path: Path, name: str | None = None) -> LoadedCompound:
-    """Read a compound's file; ``name`` is what messages call it. Raises InvalidSource with every problem."""
+    """Read a compound's file; ``name`` names it in messages. Raises InvalidSource with every problem."""
     tree, problems = read_tree(path, name)
-    model, found = _validated(tree, problems)
+    model, findings = _validated(tree, problems)
     data: tuple[DataFile, ...] = ()
     table: ModuliTable | None = None
     if model is not None and model.moduli is not None and model.moduli.table is not None:
-        table = _inline(model.moduli.table, tree, found)
+        table = _inline(model.moduli.table, tree, findings)
     elif model is not None and model.moduli is not None and model.moduli.file is not None:
-        table, data = _beside(model, model.moduli.file, path, tree, found)
-    found.end()
+        table, data = _beside(model, model.moduli.file, path, tree, findings)
+    findings.end()
     assert model is not None
     for doubt in _doubts(model, table):
-        found.doubt(tree.key_position(("moduli",)), doubt)
-    _formulation(model, tree, found)
+        findings.doubt(tree.key_position(("moduli",)), doubt)
+    _formulation(model, tree, findings)
     for number, doubt in enumerate(model.doubts):
-        found.doubt(tree.position(("doubts", number)), doubt)
-    file = MaterialFile("compound", model.name, path, tree.text, data, tuple(sorted(found.doubts)))
-    return LoadedCompound(model, file, table, tuple(found.notes))
+        findings.doubt(tree.position(("doubts", number)), doubt)
+    file = MaterialFile("compound", model.name, path, tree.text, data, tuple(sorted(findings.doubts)))
+    return LoadedCompound(model, file, table, tuple(findings.notes))
 
 
 def compound_model(text: str, name: str) -> CompoundModel:
-    """Return what a compound's file says, without what it refers to. Raises InvalidSource."""
+    """Return the content of a compound's file, without the files that it refers to. Raises InvalidSource."""
     tree, problems = read_tree(text, name)
-    model, found = _validated(tree, problems)
-    found.end()
+    model, findings = _validated(tree, problems)
+    findings.end()
     assert model is not None
     return model
 
 
 def _validated(tree: Tree, problems: Sequence[Problem]) -> tuple[CompoundModel | None, Findings]:
-    found = Findings(tree.name, list(problems))
+    findings = Findings(tree.name, list(problems))
     if not isinstance(tree.data, dict):
-        found.refuse((1, 1), "a compound is a list of keys: name, formulation, Tg, moduli and others")
-        return None, found
+        findings.refuse((1, 1), "a compound is a list of keys: name, formulation, Tg, moduli and others")
+        return None, findings
     try:
-        return CompoundModel.model_validate(tree.data), found
+        return CompoundModel.model_validate(tree.data), findings
     except ValidationError as error:
-        found.problems += problems_from_validation(error, tree, CompoundModel)
-        return None, found
+        findings.problems += problems_from_validation(error, tree, CompoundModel)
+        return None, findings
 
 
-def _inline(model: TableModel, tree: Tree, found: Findings) -> ModuliTable | None:
+def _inline(model: TableModel, tree: Tree, findings: Findings) -> ModuliTable | None:
     """Return the moduli of a table in the file itself."""
     at = ("moduli", "table")
     wrong = [*heading_problems(model.columns)]
     for problem in wrong:
-        found.refuse(tree.position((*at, "columns")), f"columns: {problem}")
+        findings.refuse(tree.position((*at, "columns")), f"columns: {problem}")
     columns = [] if wrong else [*map(heading, model.columns)]
-    names = {one.quantity for one in columns}
+    names = {column.quantity for column in columns}
     due = {"temperature", "frequency", "E'", 'E"'}
     if not wrong and names != due:
-        said = ", ".join(model.columns)
-        told = f"columns: {shown(said)} (expected temperature, frequency, E' and E'', each once; "
-        found.refuse(tree.position((*at, "columns")), f"{told}`tester materials import dma` converts others)")
+        headings = ", ".join(model.columns)
+        problem_words = f"columns: {shown(headings)} (expected temperature, frequency, E' and E'', each once; "
+        findings.refuse(
+            tree.position((*at, "columns")), f"{problem_words}`tester materials import dma` converts others)"
+        )
         return None
     for number, row in enumerate(model.rows):
         if len(row) != len(model.columns):
-            told = f"rows: {len(row)} numbers (expected {len(model.columns)}, one for each of columns)"
-            found.refuse(tree.position((*at, "rows", number)), told)
-    if found.problems:
+            problem_words = f"rows: {len(row)} numbers (expected {len(model.columns)}, one for each of columns)"
+            findings.refuse(tree.position((*at, "rows", number)), problem_words)
+    if findings.problems:
         return None
-    turn = [conversion(one.quantity, one.unit) for one in columns]
-    order = [[one.quantity for one in columns].index(name) for name in ("temperature", "frequency", "E'", 'E"')]
+    turn = [conversion(column.quantity, column.unit) for column in columns]
+    order = [[column.quantity for column in columns].index(name) for name in ("temperature", "frequency", "E'", 'E"')]
     values = [[change(float(cell)) for change, cell in zip(turn, row, strict=True)] for row in model.rows]
-    rows = [*starmap(ModuliRow, ([one[index] for index in order] for one in values))]
-    judge(rows, lambda number: tree.position((*at, "rows", number)), found)
+    rows = [*starmap(ModuliRow, ([value[index] for index in order] for value in values))]
+    judge(rows, lambda number: tree.position((*at, "rows", number)), findings)
     return ModuliTable(tuple(rows))
 
 
 def _beside(
-    model: CompoundModel, said: TableFileModel, path: Path, tree: Tree, found: Findings
+    model: CompoundModel, link: TableFileModel, path: Path, tree: Tree, findings: Findings
 ) -> tuple[ModuliTable | None, tuple[DataFile, ...]]:
-    """Return the moduli of a file beside this one, and that file; its problems are told at its own lines."""
+    """Return the moduli of a file beside this one, and that file; its problems are reported at its own lines."""
     at = ("moduli", "file")
-    for name in said.columns:
+    for name in link.columns:
         if not quantity_named(name):
             place = tree.key_position((*at, "columns", name))
             known = ", ".join(QUANTITIES)
-            found.refuse(place, f"columns: {shown(name)} is no quantity of a table of moduli (expected one of {known})")
+            findings.refuse(
+                place, f"columns: {shown(name)} is no quantity of a table of moduli (expected one of {known})"
+            )
     try:
-        data = read_beside(path, said.name, MAX_BYTES)
+        data = read_beside(path, link.name, MAX_BYTES)
     except DataFileError as error:
-        found.refuse(tree.position((*at, "name")), f"name: {error}")
+        findings.refuse(tree.position((*at, "name")), f"name: {error}")
         return None, ()
-    if found.problems:
+    if findings.problems:
         return None, ()
     options = DmaOptions(
-        {quantity_named(name): text for name, text in said.columns.items()},
-        said.units,
-        said.frequency,
-        said.temperature,
+        {quantity_named(name): text for name, text in link.columns.items()},
+        link.units,
+        link.frequency,
+        link.temperature,
         model.poisson,
         ask_column='columns: {{"{quantity}": HEADING}}',
         ask_unit='units: {{"{heading}": {unit}}}',
         ask_value="{quantity}: {example}",
     )
-    own = Findings(str(Path(tree.name).parent / said.name) if path.parent != Path() else said.name)
+    inner = Findings(str(Path(tree.name).parent / link.name) if path.parent != Path() else link.name)
     try:
-        table = read_dma(decoded(data.content), options, own)
+        table = read_dma(decoded(data.content), options, inner)
     except InvalidSource as error:
-        found.problems += error.problems
+        findings.problems += error.problems
         return None, ()
-    found.doubts += own.doubts
-    found.notes += own.notes
+    findings.doubts += inner.doubts
+    findings.notes += inner.notes
     return table, (data,)
 
 
@@ -178,9 +182,9 @@ def _doubts(model: CompoundModel, table: ModuliTable | None) -> list[str]:
     return doubts
 
 
-def _formulation(model: CompoundModel, tree: Tree, found: Findings) -> None:
+def _formulation(model: CompoundModel, tree: Tree, findings: Findings) -> None:
     total = sum(model.formulation.values())
     low, high = FORMULATED_PHR
     if model.formulation and not low <= total <= high:
-        told = f"formulation adds up to {total:g} phr (expected {low:g} to {high:g}): the rubber alone is 100"
-        found.doubt(tree.key_position(("formulation",)), told)
+        summary = f"formulation adds up to {total:g} phr (expected {low:g} to {high:g}): the rubber alone is 100"
+        findings.doubt(tree.key_position(("formulation",)), summary)

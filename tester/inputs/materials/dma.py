@@ -1,8 +1,8 @@
-"""Moduli out of a file as an instrument of dynamic mechanical analysis writes it: columns under headings.
+"""Reads moduli from an instrument's file of dynamic mechanical analysis: columns under headings.
 
-Lines above the headings are passed over. Cells stand apart by a tab, a semicolon or a comma; numbers have a point or a
-comma. Units stand in the headings or in a row below them. What is not recognised is asked for, never guessed; what was
-converted is noted, what is doubtful is kept.
+Lines above the headings are skipped. Cells are separated by a tab, a semicolon or a comma; numbers have a point or a
+comma. Units are in the headings or in a row below them. Unrecognised columns and units raise a question, never a guess;
+conversions are noted, doubts are kept.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _PERCENT: Final = re.compile(r"%|per\s?cent", re.I)
 
 
 def tell_unused(layout: DmaLayout, used: Set[int], result: Findings) -> None:
-    """Note the columns that are not used; note a strain's range, and doubt a table of several strains."""
+    """Note the unused columns and a strain's range, and doubt a table of several strains."""
     unused = [(at, text) for at, text in enumerate(layout.headings) if text and at not in used]
     if unused:
         result.notes.append("columns not used: " + ", ".join(f'"{text}"' for _, text in unused))
@@ -74,7 +74,7 @@ def _values(layout: DmaLayout, at: int) -> Iterator[float]:
 
 MAX_BYTES = 16 * 1024 * 1024
 TAN_PERCENT, TAN_LEAST = 2.0, 5e-4
-"""A loss factor in a column of its own is that of the moduli within this share, or this difference [A]."""
+"""A column of loss factors agrees with the moduli within this share, or this difference [A]."""
 
 _WITH_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
@@ -82,7 +82,7 @@ _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 
 @dataclass(frozen=True, slots=True)
 class DmaColumn:
-    """A column that is used."""
+    """A used column."""
 
     index: int
     heading: str
@@ -90,68 +90,68 @@ class DmaColumn:
     unit: str
 
 
-def read_dma(text: str, options: DmaOptions, found: Findings) -> ModuliTable:
-    """Return the moduli of a file's text; adds to ``found``. Raises InvalidSource with every problem."""
+def read_dma(text: str, options: DmaOptions, findings: Findings) -> ModuliTable:
+    """Return the moduli of a file's text; adds to ``findings``. Raises InvalidSource with every problem."""
     layout = layout_of(text.splitlines(), options.columns.values())
     if layout is None:
         asked = options.ask_column.format(quantity="E'")
-        found.refuse((1, 1), f"no row of headings is recognised (expected temperature, frequency, E', E''; {asked})")
-        found.end()
+        findings.refuse((1, 1), f"no row of headings is recognised (expected temperature, frequency, E', E''; {asked})")
+        findings.end()
         raise AssertionError
-    return _Reading(layout, options, found).table()
+    return _Reading(layout, options, findings).table()
 
 
 class _Reading:
-    """One file, from its headings to its points."""
+    """Reader of one file, from its headings to its points."""
 
-    def __init__(self, layout: DmaLayout, options: DmaOptions, found: Findings) -> None:
+    def __init__(self, layout: DmaLayout, options: DmaOptions, findings: Findings) -> None:
         self.layout = layout
         self.options = options
-        self.found = found
+        self.findings = findings
         self.place = (layout.at + 1, 1)
         self.columns: dict[str, DmaColumn] = {}
 
     def table(self) -> ModuliTable:
         self._choose()
         self._complete()
-        self.found.end()
+        self.findings.end()
         values, lines = self._numbers()
-        self.found.end()
+        self.findings.end()
         self._said_frequency(values, lines)
-        self.found.end()
-        rows = [self._row(one) for one in values]
-        judge(rows, lambda number: (lines[number] + 1 if lines else self.place[0], 1), self.found)
-        self.found.end()
+        self.findings.end()
+        rows = [self._row(value) for value in values]
+        judge(rows, lambda number: (lines[number] + 1 if lines else self.place[0], 1), self.findings)
+        self.findings.end()
         self._cross_check(values, lines)
-        tell_unused(self.layout, {one.index for one in self.columns.values()}, self.found)
+        tell_unused(self.layout, {column.index for column in self.columns.values()}, self.findings)
         return ModuliTable(tuple(rows))
 
     # -- columns ----------------------------------------------------------------------------------------------
 
     def _choose(self) -> None:
-        """Find out which column is which quantity, by what a person says, else by its heading."""
-        said: dict[int, str] = {}
+        """Assign columns to quantities, by a person's options, else by their headings."""
+        named_columns: dict[int, str] = {}
         for quantity, name in self.options.columns.items():
             index = self._index(name)
             if index is None:
                 near = get_close_matches(name, self.layout.headings, 1, 0.5)
                 meant = f', did you mean "{near[0]}"?' if near else ""
-                there = ", ".join(f'"{one}"' for one in self.layout.headings if one)
-                self.found.refuse(self.place, f'no heading "{name}"{meant} (there are {there})')
+                there = ", ".join(f'"{heading}"' for heading in self.layout.headings if heading)
+                self.findings.refuse(self.place, f'no heading "{name}"{meant} (there are {there})')
             else:
-                said[index] = quantity
+                named_columns[index] = quantity
         several: dict[str, list[str]] = {}
         for index, text in enumerate(self.layout.headings):
-            one = self._heading(index, text, said.get(index))
-            if one is None or (index not in said and one.quantity in said.values()):
+            column = self._heading(index, text, named_columns.get(index))
+            if column is None or (index not in named_columns and column.quantity in named_columns.values()):
                 continue
-            several.setdefault(one.quantity, []).append(text)
-            self.columns[one.quantity] = DmaColumn(index, text, one.quantity, one.unit)
+            several.setdefault(column.quantity, []).append(text)
+            self.columns[column.quantity] = DmaColumn(index, text, column.quantity, column.unit)
         for quantity, texts in several.items():
             if len(texts) > 1:
                 asked = self.options.ask_column.format(quantity=quantity)
-                listed = ", ".join(f'"{one}"' for one in texts)
-                self.found.refuse(self.place, f"{listed}: which of them is {quantity}? ({asked})")
+                listed = ", ".join(f'"{column}"' for column in texts)
+                self.findings.refuse(self.place, f"{listed}: which of them is {quantity}? ({asked})")
 
     def _index(self, name: str) -> int | None:
         folded = [text.casefold() for text in self.layout.headings]
@@ -162,30 +162,30 @@ class _Reading:
         return bare[0] if len(bare) == 1 else None
 
     def _heading(self, index: int, text: str, quantity: str | None) -> Heading | None:
-        """Return a column's heading with its unit; None where it is none of ours, or its unit is asked for."""
+        """Return a column's heading with its unit; None for an unknown quantity, or a missing unit."""
         refused = ""
         try:
-            one = heading(text)
+            known = heading(text)
         except UnitRefusedError as error:
-            one, refused = Heading(text, quantity_of(re.split(r"[\[(/{,]", text)[0])), str(error)
-        unit = one.unit
-        if quantity is not None and quantity != one.quantity:
-            one, unit = Heading(text, quantity), self._bracketed(text, quantity)
-        if not one.quantity:
+            known, refused = Heading(text, quantity_of(re.split(r"[\[(/{,]", text)[0])), str(error)
+        unit = known.unit
+        if quantity is not None and quantity != known.quantity:
+            known, unit = Heading(text, quantity), self._bracketed(text, quantity)
+        if not known.quantity:
             return None
         if self.layout.units is not None and index < len(self.layout.units) and self.layout.units[index]:
-            unit, refused = self._unit(one.quantity, self.layout.units[index], text) or unit, ""
-        for name, given in self.options.units.items():
+            unit, refused = self._unit(known.quantity, self.layout.units[index], text) or unit, ""
+        for name, option in self.options.units.items():
             if self._index(name) == index:
-                unit, refused = self._unit(one.quantity, given, text), ""
-        if not unit and one.quantity != "tan":
-            asked = self.options.ask_unit.format(heading=text, unit=first_unit(one.quantity))
-            told = f'"{text}" has no unit (expected {accepted(one.quantity)}; {asked})'
-            self.found.refuse(self.place, refused or told)
-        return Heading(text, one.quantity, unit or "1")
+                unit, refused = self._unit(known.quantity, option, text), ""
+        if not unit and known.quantity != "tan":
+            asked = self.options.ask_unit.format(heading=text, unit=first_unit(known.quantity))
+            missing = f'"{text}" has no unit (expected {accepted(known.quantity)}; {asked})'
+            self.findings.refuse(self.place, refused or missing)
+        return Heading(text, known.quantity, unit or "1")
 
     def _bracketed(self, text: str, quantity: str) -> str:
-        """Return the unit in the heading of a column whose quantity a person says; "" where there is none."""
+        """Return the unit in the heading of a column whose quantity a person has set; "" where there is none."""
         match = re.search(r"[\[({/,]\s*([^\[\](){}/,]+(?:/s)?)\s*[\])}]?\s*$", text)
         if match is None or not is_unit(match[1]):
             return ""
@@ -195,15 +195,17 @@ class _Reading:
         try:
             return unit_of(quantity, without_brackets(text), where)
         except UnitRefusedError as error:
-            self.found.refuse(self.place, str(error))
+            self.findings.refuse(self.place, str(error))
             return "1"
 
     def _complete(self) -> None:
-        """Ask for what is missing; say what is taken for what."""
+        """Refuse missing columns; note the assumptions."""
         has, options = self.columns, self.options
         if ("E'" in has or 'E"' in has) and ("G'" in has or 'G"' in has):
             asked = options.ask_column.format(quantity="E'")
-            self.found.refuse(self.place, f"moduli of tension (E) and of shear (G) are there: which count? ({asked})")
+            self.findings.refuse(
+                self.place, f"moduli of tension (E) and of shear (G) are there: which count? ({asked})"
+            )
         letter = "G" if "G'" in has else "E"
         if f"{letter}'" not in has:
             self._missing("E'", "storage modulus")
@@ -217,101 +219,105 @@ class _Reading:
         by_name = storage is not None and quantity_of(storage.heading[:2]) == "" and "'" not in storage.heading
         if storage is not None and letter == "E" and "E'" not in options.columns:
             if storage.heading.upper().startswith("M"):
-                told = f'"{storage.heading}" is taken for the modulus of tension, E\''
-                self.found.doubt(self.place, told, lasting=True)
+                assumption = f'"{storage.heading}" is taken for the modulus of tension, E\''
+                self.findings.doubt(self.place, assumption, lasting=True)
             elif by_name and "tensile" not in storage.heading.casefold():
                 asked = options.ask_column.format(quantity="G'")
-                told = f'"{storage.heading}" does not say of which deformation: taken for tension, E\''
-                self.found.doubt(self.place, f"{told} ({asked} for shear)", lasting=True)
+                assumption = f'"{storage.heading}" does not say of which deformation: taken for tension, E\''
+                self.findings.doubt(self.place, f"{assumption} ({asked} for shear)", lasting=True)
 
     def _missing(self, quantity: str, words: str, example: str = "") -> None:
-        there = ", ".join(f'"{one}"' for one in self.layout.headings if one)
+        there = ", ".join(f'"{heading}"' for heading in self.layout.headings if heading)
         asked = self.options.ask_column.format(quantity=quantity)
         value = f", or {self.options.ask_value.format(quantity=quantity, example=example)}" if example else ""
-        self.found.refuse(self.place, f"no column is recognised as {words} (there are {there}; {asked}{value})")
+        self.findings.refuse(self.place, f"no column is recognised as {words} (there are {there}; {asked}{value})")
 
     # -- numbers ----------------------------------------------------------------------------------------------
 
     def _numbers(self) -> tuple[list[dict[str, float]], list[int]]:
-        """Return the columns' numbers as they stand in the file, a mapping by quantity for each row, and its line."""
+        """Return the columns' numbers as in the file, a mapping by quantity for each row, and its line."""
         comma = self._comma()
         values: list[dict[str, float]] = []
         lines: list[int] = []
         for line, cells in self.layout.rows():
             row: dict[str, float] = {}
-            for one in self.columns.values():
-                cell = cells[one.index] if one.index < len(cells) else ""
-                row[one.quantity] = self._number(cell, one, line, comma)
+            for column in self.columns.values():
+                cell = cells[column.index] if column.index < len(cells) else ""
+                row[column.quantity] = self._number(cell, column, line, comma)
             values.append(row)
             lines.append(line)
         return values, lines
 
     def _comma(self) -> bool:
-        """Tell whether numbers have a decimal comma; refuse a file in which some have one and others a point."""
+        """Return whether numbers have a decimal comma; refuse a file that mixes commas and points."""
         if self.layout.delimiter == ",":
             return False
         cells = [
-            (line, cells[one.index])
+            (line, cells[column.index])
             for line, cells in self.layout.rows()
-            for one in self.columns.values()
-            if one.index < len(cells)
+            for column in self.columns.values()
+            if column.index < len(cells)
         ]
         with_comma = [(line, cell) for line, cell in cells if "," in cell]
         with_point = [(line, cell) for line, cell in cells if "." in cell]
         if with_comma and with_point:
             line, cell = with_comma[0]
             other = with_point[0]
-            told = f'"{cell}" has a comma, "{other[1]}" in line {other[0] + 1} a point: which of them is decimal?'
-            self.found.refuse((line + 1, 1), told)
+            conflict = f'"{cell}" has a comma, "{other[1]}" in line {other[0] + 1} a point: which of them is decimal?'
+            self.findings.refuse((line + 1, 1), conflict)
         elif with_comma and all(_THOUSANDS.fullmatch(cell) for _, cell in with_comma):
             line, cell = with_comma[0]
-            told = f'"{cell}" is read as {cell.replace(",", ".")}: its comma may mean thousands'
-            self.found.doubt((line + 1, 1), told, lasting=True)
+            conflict = f'"{cell}" is read as {cell.replace(",", ".")}: its comma may mean thousands'
+            self.findings.doubt((line + 1, 1), conflict, lasting=True)
         if with_comma:
-            self.found.notes.append("numbers have a decimal comma")
+            self.findings.notes.append("numbers have a decimal comma")
         return bool(with_comma)
 
     def _number(self, cell: str, column: DmaColumn, line: int, comma: bool) -> float:
         text = cell.replace(",", ".") if comma and _WITH_COMMA.fullmatch(cell) else cell
         try:
-            value = nan if "_" in text else float(text)  # Python's own digits in groups are no file's
+            value = nan if "_" in text else float(text)  # Python's digit groups are not valid in such a file
         except ValueError:
             value = nan
         if not isfinite(value):
-            said = f'"{cell}" is not a number' if cell else "nothing is there"
-            self.found.refuse((line + 1, 1), f"{column.heading}: {said}")
+            fault = f'"{cell}" is not a number' if cell else "nothing is there"
+            self.findings.refuse((line + 1, 1), f"{column.heading}: {fault}")
         return value
 
     def _row(self, values: Mapping[str, float]) -> ModuliRow:
         """Return one point in degC, Hz and Pa of tension."""
-        own = {name: conversion(name, self.columns[name].unit)(value) for name, value in values.items()}
-        temperature = own.get("temperature", self.options.temperature_c)
-        frequency = own.get("frequency", own.get("omega", self.options.frequency_hz))
+        converted = {name: conversion(name, self.columns[name].unit)(value) for name, value in values.items()}
+        temperature = converted.get("temperature", self.options.temperature_c)
+        frequency = converted.get("frequency", converted.get("omega", self.options.frequency_hz))
         if self.options.frequency_hz is not None:
             frequency = self.options.frequency_hz
         assert temperature is not None and frequency is not None
-        letter, factor = ("G", 2.0 * (1.0 + self.options.poisson)) if "G'" in own else ("E", 1.0)
-        storage = own[f"{letter}'"]
-        loss = own[f'{letter}"'] if f'{letter}"' in own else storage * own["tan"]
+        letter, factor = ("G", 2.0 * (1.0 + self.options.poisson)) if "G'" in converted else ("E", 1.0)
+        storage = converted[f"{letter}'"]
+        loss = converted[f'{letter}"'] if f'{letter}"' in converted else storage * converted["tan"]
         return ModuliRow(temperature, frequency, factor * storage, factor * loss)
 
     def _said_frequency(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
-        """Hold the frequency that a person says for every point against the file's own, if it has one."""
-        said = self.options.frequency_hz
+        """Compare the frequency that a person has set for every point with the file's own, if it has any."""
+        stated = self.options.frequency_hz
         name = "frequency" if "frequency" in self.columns else "omega"
-        if said is None or name not in self.columns:
+        if stated is None or name not in self.columns:
             return
         to_hz = conversion(name, self.columns[name].unit)
-        for one, line in zip(values, lines, strict=True):
-            here = to_hz(one[name])
-            if not said / ALIKE < here < said * ALIKE:
-                self.found.refuse((line + 1, 1), f"frequency: {here:g} Hz is not the {said:g} Hz that is said for all")
-        self.found.notes.append(f"frequency: {said:g} Hz, as said, for what the file has within {ALIKE:g} times of it")
+        for value, line in zip(values, lines, strict=True):
+            here = to_hz(value[name])
+            if not stated / ALIKE < here < stated * ALIKE:
+                self.findings.refuse(
+                    (line + 1, 1), f"frequency: {here:g} Hz is not the {stated:g} Hz that is said for all"
+                )
+        self.findings.notes.append(
+            f"frequency: {stated:g} Hz, as said, for what the file has within {ALIKE:g} times of it"
+        )
 
     def _cross_check(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
-        """Hold a column of tan delta against E'' over E', and note what was made of what."""
-        note = self.found.notes.append
-        used = ", ".join(f'{name} from "{one.heading}"' for name, one in self.columns.items())
+        """Compare a column of tan delta with E'' over E', and note the conversions."""
+        note = self.findings.notes.append
+        used = ", ".join(f'{name} from "{column.heading}"' for name, column in self.columns.items())
         note(f"columns: {used}")
         if "G'" in self.columns:
             factor = 2.0 * (1.0 + self.options.poisson)
@@ -326,16 +332,16 @@ class _Reading:
             return
         storage, loss = (self.columns[name] for name in (f"{letter}'", f'{letter}"'))
         off: list[tuple[float, int, float, float]] = []
-        for one, line in zip(values, lines, strict=True):
-            here = conversion(loss.quantity, loss.unit)(one[loss.quantity])
-            ratio = here / conversion(storage.quantity, storage.unit)(one[storage.quantity])
-            apart = abs(ratio - one["tan"])
+        for value, line in zip(values, lines, strict=True):
+            here = conversion(loss.quantity, loss.unit)(value[loss.quantity])
+            ratio = here / conversion(storage.quantity, storage.unit)(value[storage.quantity])
+            apart = abs(ratio - value["tan"])
             if apart > max(TAN_PERCENT / 100.0 * abs(ratio), TAN_LEAST):
-                off.append((apart, line, one["tan"], ratio))
+                off.append((apart, line, value["tan"], ratio))
         if off:
             _, line, tan, ratio = max(off)
-            told = f"tan delta {tan:g} is not {letter}''/{letter}' = {ratio:.4g}"
+            difference = f"tan delta {tan:g} is not {letter}''/{letter}' = {ratio:.4g}"
             more = f" (the worst of {len(off)} of {len(values)} points)"
-            self.found.doubt((line + 1, 1), f"{told}{more}: the moduli count", lasting=True)
+            self.findings.doubt((line + 1, 1), f"{difference}{more}: the moduli count", lasting=True)
         else:
             note(f"tan delta agrees with {letter}''/{letter}' within {TAN_PERCENT:g} %")

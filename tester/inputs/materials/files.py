@@ -1,4 +1,4 @@
-"""A file of a material in its folder: its text with its hash, the files it refers to, and the problems found in it."""
+"""A material's file in its folder: its text with its hash, the files it refers to, and its problems."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tester.base.trouble import in_words
 
 Role = Literal["compound", "surface"]
 FOLDERS: dict[Role, str] = {"compound": "compounds", "surface": "surfaces"}
-"""Where files of each lie, beside a recipe and in the package."""
+"""Folders of each role, beside a recipe and in the package."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +31,11 @@ class DataFile:
 
 @dataclass(frozen=True, slots=True)
 class MaterialFile:
-    """A material's file as it was read."""
+    """A material's file as read."""
 
     role: Role
     name: str
-    """As recipes say it."""
+    """Name in recipes."""
     path: Path
     text: str
     data: tuple[DataFile, ...] = ()
@@ -48,7 +48,7 @@ class MaterialFile:
 
 
 class DataFileError(ValueError):
-    """A file that a material's file refers to and that cannot be used; the message says why."""
+    """A file referred to by a material's file cannot be used; the message gives the reason."""
 
 
 def read_beside(path: Path, name: str, at_most: int) -> DataFile:
@@ -56,19 +56,19 @@ def read_beside(path: Path, name: str, at_most: int) -> DataFile:
     relative = PurePosixPath(name)
     if relative.is_absolute() or ".." in relative.parts or "\\" in name or ":" in name:
         raise DataFileError(f'"{name}" is not beside this file (expected a name such as dma.csv)')
-    found = path.parent / relative
+    place = path.parent / relative
     try:
-        if not found.is_file():
+        if not place.is_file():
             raise DataFileError(f'there is no file "{name}" beside this one')
-        if found.stat().st_size > at_most:
+        if place.stat().st_size > at_most:
             raise DataFileError(f'"{name}" is larger than {at_most // 1024**2} MB')
-        return DataFile(relative.as_posix(), found.read_bytes())
+        return DataFile(relative.as_posix(), place.read_bytes())
     except OSError as error:
         raise DataFileError(f'"{name}" cannot be read: {in_words(error)}') from error
 
 
 def decoded(content: bytes) -> str:
-    """Return the text of what an instrument wrote: UTF-8, UTF-16 with its mark, else Windows-1252."""
+    """Return the text of an instrument's file: UTF-8, UTF-16 with its mark, else Windows-1252."""
     for mark, coding in ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16"), (b"\xef\xbb\xbf", "utf-8-sig")):
         if content.startswith(mark):
             return content.decode(coding, errors="replace")
@@ -79,19 +79,19 @@ def decoded(content: bytes) -> str:
 
 
 Place = Callable[[int], tuple[int, int]]
-"""Line and column, from 1, of a row of a table, which counts from 0."""
+"""Returns line and column, from 1, of a row of a table, counted from 0."""
 
 
 @dataclass(slots=True)
 class Findings:
-    """Problems, for which a file is refused; doubts, which stay with it; notes of what was converted."""
+    """Problems, for which a file is refused; doubts, which stay with it; notes on conversions."""
 
     file: str
     problems: list[Problem] = field(default_factory=list[Problem])
     doubts: list[Problem] = field(default_factory=list[Problem])
     notes: list[str] = field(default_factory=list[str])
     lasting: list[str] = field(default_factory=list[str])
-    """Doubts that nobody can see again in what is made of the file: an import writes them down."""
+    """Doubts that the imported file no longer shows: an import writes them down."""
 
     def refuse(self, place: tuple[int, int], message: str) -> None:
         """Add a problem."""
@@ -104,6 +104,6 @@ class Findings:
             self.lasting.append(f"line {place[0]} of what was imported: {message}")
 
     def end(self) -> None:
-        """Raise InvalidSource where there are problems."""
+        """Raise InvalidSource if there are problems."""
         if self.problems:
             raise InvalidSource(self.problems)

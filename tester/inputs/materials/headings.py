@@ -1,4 +1,4 @@
-"""Headings of a table of moduli in the words of their makers: which quantity, in which unit.
+"""Headings of a table of moduli in the words of instrument makers: quantity and unit.
 
 ``Storage Modulus [MPa]``, ``E' / MPa``, ``Temp./degC``, ``omega (rad/s)``, ``Tan Delta``.
 """
@@ -17,7 +17,7 @@ from tester.base.words import listed
 ZERO_C = 273.15
 
 QUANTITIES: Final = ("temperature", "frequency", "omega", "E'", 'E"', "G'", 'G"', "tan")
-"""What a column can be; ``E"`` may be written as ``E''``, too."""
+"""Quantities of columns; ``E"`` may also be written as ``E''``."""
 
 _NAMES: Final[Mapping[str, frozenset[str]]] = MappingProxyType({
     "temperature": frozenset({"temperature", "temp", "ts", "sampletemperature", "sampletemp"}),
@@ -31,7 +31,7 @@ _NAMES: Final[Mapping[str, frozenset[str]]] = MappingProxyType({
 })
 
 _LETTERS: Final = {"T": "temperature", "f": "frequency", "w": "omega", "ω": "omega"}
-"""Names of one letter, in their own case: t is a time, F a force."""
+"""Names of one letter, case-sensitive: t is a time, F a force."""
 _MODULUS_UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
 _UNITS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "temperature": ("degC", "K"),
@@ -48,7 +48,7 @@ _SPELLINGS: Final = {
     "rad·s⁻¹": "rad/s", "pa": "Pa", "kpa": "kPa", "n/mm2": "MPa", "n/mm²": "MPa", "gpa": "GPa",
     "-": "1", "1": "1", "": "1", "--": "1", "%": "%",
 }  # fmt: skip
-"""Units as makers write them, in small letters; MPa stands apart, for mPa is none of ours."""
+"""Makers' spellings of units, in small letters; MPa is handled apart, because mPa is not accepted."""
 _BRACKETED = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")
 _SLASHED = re.compile(r"^(?P<name>.*?)\s*(?:/|,)\s*(?P<unit>\S.*?)\s*$")
 _LAST_WORD = re.compile(r"^(?P<name>.+?)\s+(?P<unit>\S+)\s*$")
@@ -56,21 +56,21 @@ _QUOTES = str.maketrans({"′": "'", "’": "'", "‘": "'", "´": "'", "`": "'"
 
 
 class UnitRefusedError(ValueError):
-    """A unit that its quantity cannot have; the message names those it can."""
+    """A unit that does not fit its quantity; the message lists those that do."""
 
 
 @dataclass(frozen=True, slots=True)
 class Heading:
-    """A column's heading: ``text`` as the file has it, the quantity that it is ("" for none of ours), its unit."""
+    """A column's heading: ``text`` as in the file, its quantity ("" if unknown), its unit."""
 
     text: str
     quantity: str
     unit: str = ""
-    """Of the table of units; "" where the heading says none."""
+    """From the table of units; "" where the heading has none."""
 
 
 def heading(text: str) -> Heading:
-    """Return what a heading says. Raises UnitRefusedError where its unit is none of the quantity's."""
+    """Return quantity and unit of a heading. Raises UnitRefusedError for a unit that does not fit the quantity."""
     clean = text.strip()
     for form in (_BRACKETED, _SLASHED, _LAST_WORD):
         match = form.match(clean)
@@ -85,7 +85,7 @@ def heading(text: str) -> Heading:
 
 
 def quantity_of(name: str) -> str:
-    """Return which quantity a name means, "" for none."""
+    """Return the quantity of a name, "" for none."""
     if name.strip() in _LETTERS:
         return _LETTERS[name.strip()]
     tidy = re.sub(r"[\s._:\-*|]+", "", name.translate(_QUOTES).casefold()).replace("''", '"')
@@ -93,18 +93,18 @@ def quantity_of(name: str) -> str:
 
 
 def quantity_named(text: str) -> str:
-    """Return a quantity by its own name, as an option or a file gives it; "" where it is none."""
+    """Return a quantity by its own name, from an option or a file; "" for an unknown one."""
     tidy = text.strip().translate(_QUOTES).replace("''", '"')
     return tidy if tidy in QUANTITIES else ""
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a text is a unit that some quantity here can have."""
+    """Return whether a text is a unit of some quantity here."""
     return text.strip() in ("MPa", "Mpa") or text.strip().casefold() in _SPELLINGS
 
 
 def unit_of(quantity: str, text: str, where: str = "") -> str:
-    """Return the table's unit that a text means for a quantity. Raises UnitRefusedError."""
+    """Return the table's unit for a text and a quantity. Raises UnitRefusedError."""
     tidy = text.strip()
     unit = "MPa" if tidy in ("MPa", "Mpa") else _SPELLINGS.get(tidy.casefold(), "")
     if quantity and unit not in _UNITS[quantity]:
@@ -124,27 +124,27 @@ def first_unit(quantity: str) -> str:
 
 
 def heading_problems(texts: Sequence[str]) -> Iterator[str]:
-    """Yield what is wrong with the headings of a table that a file of ours holds itself."""
+    """Yield the faults of the headings in a compound's own table."""
     seen: set[str] = set()
     for text in texts:
         try:
-            one = heading(text)
+            parsed = heading(text)
         except UnitRefusedError as error:
             yield str(error)
             continue
-        if not one.quantity:
+        if not parsed.quantity:
             known = ", ".join(QUANTITIES)
             yield f'"{text}" is no heading of a table of moduli (expected one of {known}, with its unit)'
-        elif not one.unit:
-            such = f"{text} {first_unit(one.quantity)}"
-            yield f'"{text}" has no unit (expected {accepted(one.quantity)}, such as "{such}")'
-        elif one.quantity in seen:
-            yield f"{one.quantity} is there twice"
-        seen.add(one.quantity)
+        elif not parsed.unit:
+            such = f"{text} {first_unit(parsed.quantity)}"
+            yield f'"{text}" has no unit (expected {accepted(parsed.quantity)}, such as "{such}")'
+        elif parsed.quantity in seen:
+            yield f"{parsed.quantity} is there twice"
+        seen.add(parsed.quantity)
 
 
 def conversion(quantity: str, unit: str) -> Callable[[float], float]:
-    """Return what turns a number in a unit into degC, Hz, Pa or a plain number."""
+    """Return the conversion of a number in a unit into degC, Hz, Pa or a plain number."""
     if unit == "K":
         return lambda value: value - ZERO_C
     if quantity in ("frequency", "omega"):
@@ -156,7 +156,7 @@ def conversion(quantity: str, unit: str) -> Callable[[float], float]:
 
 @dataclass(frozen=True, slots=True)
 class DmaOptions:
-    """What a person says of a file beside what is in it. ``columns``: heading by quantity; ``units``: by heading."""
+    """A person's options for a file, beside its content. ``columns``: heading by quantity; ``units``: by heading."""
 
     columns: Mapping[str, str] = field(default_factory=dict[str, str])
     units: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -166,4 +166,4 @@ class DmaOptions:
     ask_column: str = '--columns "{quantity}=HEADING"'
     ask_unit: str = '--unit "{heading}={unit}"'
     ask_value: str = '--{quantity} "{example}"'
-    """How it is said, for messages."""
+    """Templates of the options, for messages."""

@@ -1,4 +1,4 @@
-"""Where a table lies in what an instrument wrote: its delimiter, its row of headings, its row of units."""
+"""Finds the table in an instrument's file: its delimiter, its row of headings, its row of units."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from tester.inputs.materials.headings import UnitRefusedError, heading, is_unit
 
 LOOKED_AT = 400
-"""Lines at the beginning among which the headings are looked for."""
+"""Lines at the beginning that are searched for the headings."""
 
 _DELIMITERS = ("\t", ";", ",")
 _IN_BRACKETS = re.compile(r"^[\[({](.*)[\])}]$")
@@ -18,7 +18,7 @@ _IN_BRACKETS = re.compile(r"^[\[({](.*)[\])}]$")
 
 @dataclass(frozen=True, slots=True)
 class DmaLayout:
-    """Where headings, units and rows are; lines count from 0."""
+    """Places of headings, units and rows; lines count from 0."""
 
     lines: Sequence[str]
     delimiter: str
@@ -49,7 +49,7 @@ def _cells(line: str, delimiter: str) -> list[str]:
 
 
 def layout_of(lines: Sequence[str], said: Iterable[str]) -> DmaLayout | None:
-    """Return the row in which most quantities are recognised, two at least; None where there is none.
+    """Return the row with the most recognised quantities, at least two; None where there is none.
 
     ``said``: headings that a person has named.
     """
@@ -84,5 +84,5 @@ def _named(cell: str) -> str:
 
 
 def without_brackets(text: str) -> str:
-    """Return a unit as it stands in brackets."""
+    """Return a unit without its brackets."""
     return _IN_BRACKETS.sub(r"\1", text.strip())

@@ -1,7 +1,7 @@
 """Compounds and surfaces by their names: beside the recipe, then in the laboratory's folder, then as packaged.
 
-A name that stands in two places is the nearer one's. A name that stands twice in one folder is refused: nobody could
-say which of the two was meant. This module alone makes of a file what laws of friction are told.
+Of a name in two places, the nearer has precedence. A name that occurs twice in one folder is refused as ambiguous. This
+module alone turns a file into the input of friction laws.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 VARIABLE = "TESTER_MATERIALS"
 """Environment variable: the laboratory's folder, with ``compounds`` and ``surfaces`` in it."""
 DECADE_K = 8.0
-"""Kelvin that stand for a decade of frequency, where a file does not say it [A] (paper G, Eq 9)."""
+"""Kelvin equivalent to a decade of frequency, where a file has none [A] (paper G, Eq 9)."""
 _NAME = re.compile(r"^(?:name|\"name\"|'name')[ \t]*:.*$", re.MULTILINE)
 
 
 class MissingModuliError(ValueError):
-    """A compound whose file holds no moduli, or none that a law could use; the message says what is missing."""
+    """A compound's file without moduli, or without usable ones; the message gives what is missing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,41 +45,43 @@ class LibraryEntry:
     name: str
     path: Path
     place: Path
-    """The folder in which ``compounds`` and ``surfaces`` lie."""
+    """The folder of ``compounds`` and ``surfaces``."""
     hidden: bool = False
 
 
 class Library:
     """Finds compounds and surfaces in folders, the nearest first (``sim.physics.materials.Materials``).
 
-    Every look reads the folders anew; what was read is not kept.
+    Every lookup reads the folders anew; nothing is cached.
     """
 
     def __init__(self, folders: Sequence[Path]) -> None:
-        """``folders``: with ``compounds`` and ``surfaces`` in each; one that is not there holds nothing."""
+        """``folders``: each with ``compounds`` and ``surfaces``; a missing one is empty."""
         self.folders = tuple(dict.fromkeys(folders))
 
     @classmethod
     def beside(cls, recipe: Path | None = None) -> Library:
-        """Return what a recipe sees: its own folder, that of ``TESTER_MATERIALS``, the packaged one.
+        """Return the library of a recipe: its own folder, that of ``TESTER_MATERIALS``, the packaged one.
 
-        Raises InvalidSource where the variable names no folder: another compound of a name would be taken.
+        Raises InvalidSource where the variable names no folder: another compound of the same name would be used.
         """
-        own = [recipe.parent] if recipe is not None else []
-        said = os.environ.get(VARIABLE, "")
-        if said and not Path(said).is_dir():
-            raise InvalidSource([Problem(VARIABLE, 1, 1, f"{shown(said)} is no folder (expected the laboratory's)")])
-        return cls([*own, *([Path(said)] if said else []), recipes.FOLDER])
+        recipe_folder = [recipe.parent] if recipe is not None else []
+        laboratory = os.environ.get(VARIABLE, "")
+        if laboratory and not Path(laboratory).is_dir():
+            raise InvalidSource(
+                [Problem(VARIABLE, 1, 1, f"{shown(laboratory)} is no folder (expected the laboratory's)")]
+            )
+        return cls([*recipe_folder, *([Path(laboratory)] if laboratory else []), recipes.FOLDER])
 
     def entries(self, role: Role) -> list[LibraryEntry]:
         """Return every file of a role, nearest first and sorted in a folder. Raises InvalidSource for doubled names."""
-        found: list[LibraryEntry] = []
+        listed: list[LibraryEntry] = []
         for folder in self.folders:
             here = [LibraryEntry(role, name, path, folder) for path, name in _named(folder / FOLDERS[role])]
             _refuse_doubled(here)
-            nearer = {one.name for one in found}
-            found += [LibraryEntry(role, e.name, e.path, folder, hidden=e.name in nearer) for e in here]
-        return found
+            nearer = {one.name for one in listed}
+            listed += [LibraryEntry(role, e.name, e.path, folder, hidden=e.name in nearer) for e in here]
+        return listed
 
     def path(self, role: Role, name: str) -> Path | None:
         """Return the file of a name, None where none has it. Raises InvalidSource where two of a folder have it."""
@@ -101,14 +103,14 @@ class Library:
         return load_surface(self._found("surface", name))
 
     def rubber(self, name: str) -> Rubber:
-        """Return a compound as laws see it.
+        """Return a compound as input of friction laws.
 
         Raises UnknownMaterialError, InvalidSource, and MissingModuliError (a ValueError) where its file has no moduli.
         """
         return rubber_of(self.compound(name))
 
     def surface(self, name: str) -> Surface:
-        """Return a surface as laws see it. Raises UnknownMaterialError, InvalidSource."""
+        """Return a surface as input of friction laws. Raises UnknownMaterialError, InvalidSource."""
         return surface_of(self.surface_file(name))
 
     def _found(self, role: Role, name: str) -> Path:
@@ -123,7 +125,7 @@ class Library:
 
 
 def rubber_of(loaded: LoadedCompound) -> Rubber:
-    """Return a compound as laws see it. Raises MissingModuliError."""
+    """Return a compound as input of friction laws. Raises MissingModuliError."""
     model, moduli = loaded.model, loaded.model.moduli
     if moduli is None:
         raise MissingModuliError(f"compound {shown(model.name)}: {loaded.file.path} holds no moduli")
@@ -161,7 +163,7 @@ def _modulus(model: CompoundModel, moduli: ModuliModel, table: ModuliTable | Non
 
 
 def surface_of(loaded: LoadedSurface) -> Surface:
-    """Return a surface as laws see it."""
+    """Return a surface as input of friction laws."""
     from sim.physics.roughness import SelfAffine, TabulatedSpectrum  # needs numpy
 
     model = loaded.model
@@ -185,13 +187,13 @@ def _sinusoid(wave: WaveModel) -> Sinusoid:
 
 
 def _named(folder: Path) -> Iterator[tuple[Path, str]]:
-    """Yield the YAML files of a folder with the name that each says; by that line alone, for a list is to be quick."""
+    """Yield the YAML files of a folder with their names, read from that line alone, to keep lists fast."""
     for path in _files(folder):
         try:
             line = _NAME.search(path.read_text(encoding="utf-8", errors="replace"))
             data = load_tree(line[0].rstrip("\r")).data if line else None
         except (OSError, InvalidSource):
-            continue  # whoever opens it by its path is told what is wrong with it
+            continue  # opening the file by its path reports its faults
         if isinstance(data, dict) and isinstance(data.get("name"), str):
             yield path, str(data["name"])
 
@@ -202,7 +204,7 @@ def _files(folder: Path) -> list[Path]:
 
 
 def nameless(library: Library) -> Iterator[Path]:
-    """Yield the YAML files of a library's folders that say no name."""
+    """Yield the YAML files of a library's folders without a name."""
     for folder in library.folders:
         for below in FOLDERS.values():
             named = {path for path, _ in _named(folder / below)}
@@ -213,10 +215,10 @@ def _refuse_doubled(entries: Sequence[LibraryEntry]) -> None:
     """Raise InvalidSource where two files of a folder have one name."""
     first: dict[str, Path] = {}
     problems: list[Problem] = []
-    for one in entries:
-        if one.name in first:
-            told = f"name: {shown(one.name)} is the name of {first[one.name].name} in this folder already"
-            problems.append(Problem(str(one.path), 1, 1, told))
-        first.setdefault(one.name, one.path)
+    for entry in entries:
+        if entry.name in first:
+            duplicate = f"name: {shown(entry.name)} is the name of {first[entry.name].name} in this folder already"
+            problems.append(Problem(str(entry.path), 1, 1, duplicate))
+        first.setdefault(entry.name, entry.path)
     if problems:
         raise InvalidSource(problems)

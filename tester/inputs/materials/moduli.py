@@ -1,6 +1,6 @@
-"""Moduli as measured: points of temperature, frequency, E' and E'', and what cannot be so or is doubtful in them.
+"""Measured moduli: points of temperature, frequency, E' and E'', with their faults and doubts.
 
-Nothing is repaired: a table is used as it stands, refused, or used with its doubts on record.
+Nothing is repaired: a table is used unchanged, refused, or used with its doubts on record.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ from math import isfinite, log10
 from tester.inputs.materials.files import Findings, Place
 
 LEAST_ROWS = 4
-"""With fewer there is nothing to go between [A]."""
+"""With fewer there is nothing to interpolate [A]."""
 FEW_ROWS = 12
 """With fewer a table is doubted [A]."""
 COLDEST_C, HOTTEST_C = -150.0, 400.0
 SLOWEST_HZ, FASTEST_HZ = 1e-4, 1e4
-"""What instruments reach by themselves [A]: beyond, a frequency is another quantity or was shifted already."""
+"""Range of instruments themselves [A]: beyond, a frequency is another quantity or was shifted already."""
 SOFTEST_PA, STIFFEST_PA = 1e4, 2e10
-"""Storage moduli of rubber and its glass lie within [A]."""
+"""Range of storage moduli of rubber and its glass [A]."""
 NOISE_K = 1.0
 """Temperatures of a sweep go back by less than this [A]."""
 ALIKE = 1.05
-"""Frequencies within this ratio are told apart by an instrument's noise alone [A]."""
+"""Frequencies within this ratio differ by an instrument's noise alone [A]."""
 WLF_SPAN_K = 100.0
-"""From the glass transition on, over which the WLF shift holds (Williams, Landel, Ferry 1955)."""
+"""Range above the glass transition in which the WLF shift holds (Williams, Landel, Ferry 1955)."""
 POLE_K = 51.5
-"""So far below the glass transition the shift has its pole: 50 K - 101.5 K."""
+"""Distance of the shift's pole below the glass transition: 50 K - 101.5 K."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,42 +50,42 @@ class ModuliTable:
     @property
     def frequencies_hz(self) -> tuple[float, ...]:
         """Return the frequencies, rising, each once."""
-        return tuple(sorted({one.frequency_hz for one in self.rows}))
+        return tuple(sorted({row.frequency_hz for row in self.rows}))
 
     @property
     def temperatures_c(self) -> tuple[float, float]:
         """Return the lowest and the highest temperature."""
-        return min(one.temperature_c for one in self.rows), max(one.temperature_c for one in self.rows)
+        return min(row.temperature_c for row in self.rows), max(row.temperature_c for row in self.rows)
 
     def describe(self) -> str:
-        """Return what it spans, in words."""
+        """Return its ranges, in words."""
         low, high = self.temperatures_c
         frequencies = self.frequencies_hz
         at = f"{frequencies[0]:g} Hz" if len(frequencies) == 1 else f"{frequencies[0]:g} to {frequencies[-1]:g} Hz"
-        storage = sorted(one.storage_pa for one in self.rows)
+        storage = sorted(row.storage_pa for row in self.rows)
         return (
             f"{len(self.rows)} points, {low:g} to {high:g} degC, {at}, "
             f"E' {storage[0] / 1e6:.3g} to {storage[-1] / 1e6:.3g} MPa"
         )
 
 
-def judge(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
-    """Add to ``found`` what cannot be so in points, and what is doubtful."""
+def judge(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
+    """Add to ``findings`` the faults of points, and the doubts."""
     if not rows:
-        found.refuse(place(0), f"no points (expected {LEAST_ROWS} or more)")
+        findings.refuse(place(0), f"no points (expected {LEAST_ROWS} or more)")
         return
-    before = len(found.problems)
+    before = len(findings.problems)
     for number, row in enumerate(rows):
         for problem in _impossible(row, rows):
-            found.refuse(place(number), problem)
-    _duplicates(rows, place, found)
+            findings.refuse(place(number), problem)
+    _duplicates(rows, place, findings)
     if len(rows) < LEAST_ROWS:
-        found.refuse(place(0), f"{len(rows)} points are too few (expected {LEAST_ROWS} or more)")
+        findings.refuse(place(0), f"{len(rows)} points are too few (expected {LEAST_ROWS} or more)")
     above = [number for number, row in enumerate(rows) if row.loss_pa > row.storage_pa]
     if len(above) == len(rows) >= LEAST_ROWS:
-        found.refuse(place(0), "E'' is above E' at every point: are the columns E' and E'' swapped?")
-    if len(found.problems) == before:
-        _doubts(rows, above, place, found)
+        findings.refuse(place(0), "E'' is above E' at every point: are the columns E' and E'' swapped?")
+    if len(findings.problems) == before:
+        _doubts(rows, above, place, findings)
 
 
 def _impossible(row: ModuliRow, rows: Sequence[ModuliRow]) -> Iterator[str]:
@@ -94,7 +94,7 @@ def _impossible(row: ModuliRow, rows: Sequence[ModuliRow]) -> Iterator[str]:
         yield "a number is missing or not finite"
         return
     if row.frequency_hz <= 0.0:
-        swapped = all(one.temperature_c > 0.0 for one in rows)
+        swapped = all(each.temperature_c > 0.0 for each in rows)
         asked = ": are temperature and frequency swapped?" if swapped else ""
         yield f"frequency: {row.frequency_hz:g} Hz is not above 0{asked}"
     if not COLDEST_C <= row.temperature_c <= HOTTEST_C:
@@ -105,43 +105,43 @@ def _impossible(row: ModuliRow, rows: Sequence[ModuliRow]) -> Iterator[str]:
         yield f"E'': {row.loss_pa:g} Pa is not above 0"
 
 
-def _duplicates(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
+def _duplicates(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
     seen: dict[tuple[float, float], int] = {}
     for number, row in enumerate(rows):
         point = (row.temperature_c, row.frequency_hz)
         if point in seen:
             line = place(seen[point])[0]
-            told = f"{row.temperature_c:g} degC and {row.frequency_hz:g} Hz stand in line {line} already"
-            found.refuse(place(number), told)
+            duplicate = f"{row.temperature_c:g} degC and {row.frequency_hz:g} Hz stand in line {line} already"
+            findings.refuse(place(number), duplicate)
         seen.setdefault(point, number)
 
 
-def _doubts(rows: Sequence[ModuliRow], above: Sequence[int], place: Place, found: Findings) -> None:
+def _doubts(rows: Sequence[ModuliRow], above: Sequence[int], place: Place, findings: Findings) -> None:
     if above:
         first = rows[above[0]]
         ratio = first.loss_pa / first.storage_pa
-        told = f"E'' is above E' at {len(above)} of {len(rows)} points, first tan delta {ratio:.2f}"
-        found.doubt(place(above[0]), told)
+        doubt = f"E'' is above E' at {len(above)} of {len(rows)} points, first tan delta {ratio:.2f}"
+        findings.doubt(place(above[0]), doubt)
     if len(rows) < FEW_ROWS:
-        found.doubt(place(0), f"{len(rows)} points only (expected {FEW_ROWS} or more): much lies between them")
-    _swapped_doubt(rows, place, found)
-    _order_doubt(rows, place, found)
+        findings.doubt(place(0), f"{len(rows)} points only (expected {FEW_ROWS} or more): much lies between them")
+    _swapped_doubt(rows, place, findings)
+    _order_doubt(rows, place, findings)
     for number, row in enumerate(rows):
         if not SLOWEST_HZ <= row.frequency_hz <= FASTEST_HZ:
-            told = f"frequency: {row.frequency_hz:g} Hz is beyond {SLOWEST_HZ:g} to {FASTEST_HZ:g} Hz of instruments"
-            found.doubt(place(number), f"{told}: was it shifted, or is its unit another?")
+            doubt = f"frequency: {row.frequency_hz:g} Hz is beyond {SLOWEST_HZ:g} to {FASTEST_HZ:g} Hz of instruments"
+            findings.doubt(place(number), f"{doubt}: was it shifted, or is its unit another?")
             break
     for number, row in enumerate(rows):
         if not SOFTEST_PA <= row.storage_pa <= STIFFEST_PA:
-            told = f"E': {row.storage_pa:g} Pa is not that of a rubber ({SOFTEST_PA:g} to {STIFFEST_PA:g} Pa)"
-            found.doubt(place(number), f"{told}: is the unit right?")
+            doubt = f"E': {row.storage_pa:g} Pa is not that of a rubber ({SOFTEST_PA:g} to {STIFFEST_PA:g} Pa)"
+            findings.doubt(place(number), f"{doubt}: is the unit right?")
             break
 
 
-def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
+def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
     """Doubt temperatures that go in decades beside frequencies that go in even steps."""
-    temperatures = sorted({one.temperature_c for one in rows})
-    frequencies = sorted({one.frequency_hz for one in rows})
+    temperatures = sorted({row.temperature_c for row in rows})
+    frequencies = sorted({row.frequency_hz for row in rows})
     if len(temperatures) < 3 or len(frequencies) < 3 or temperatures[0] <= 0.0:
         return
     ratios = [log10(b / a) for a, b in pairwise(temperatures)]
@@ -149,26 +149,28 @@ def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> 
     in_decades = max(ratios) - min(ratios) < 0.05 and sum(ratios) >= 1.0
     in_steps = max(steps) - min(steps) < 0.05 * max(steps)
     if in_decades and in_steps:
-        told = f"temperature goes in decades ({temperatures[0]:g} to {temperatures[-1]:g} degC)"
-        found.doubt(place(0), f"{told}, frequency in even steps: are temperature and frequency swapped?")
+        doubt = f"temperature goes in decades ({temperatures[0]:g} to {temperatures[-1]:g} degC)"
+        findings.doubt(place(0), f"{doubt}, frequency in even steps: are temperature and frequency swapped?")
 
 
-def _order_doubt(rows: Sequence[ModuliRow], place: Place, found: Findings) -> None:
+def _order_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
     """Doubt a grid that goes up and down again: temperatures at a frequency, as of heating and then cooling."""
     sweeps: dict[int, list[int]] = {}
     for number, row in enumerate(rows):
         sweeps.setdefault(round(log10(row.frequency_hz) / log10(ALIKE)), []).append(number)
-    for own in sweeps.values():
-        turn = _turn([rows[number].temperature_c for number in own])
+    for numbers in sweeps.values():
+        turn = _turn([rows[number].temperature_c for number in numbers])
         if turn is not None:
-            at = rows[own[turn]]
-            told = f"the grid is not monotone: at {at.frequency_hz:g} Hz temperatures turn at {at.temperature_c:g} degC"
-            found.doubt(place(own[turn]), f"{told}: are two sweeps in one table?")
+            at = rows[numbers[turn]]
+            doubt = (
+                f"the grid is not monotone: at {at.frequency_hz:g} Hz temperatures turn at {at.temperature_c:g} degC"
+            )
+            findings.doubt(place(numbers[turn]), f"{doubt}: are two sweeps in one table?")
             return
 
 
 def _turn(temperatures_c: Sequence[float]) -> int | None:
-    """Return where temperatures have gone back by more than a chamber's noise; None where they do not."""
+    """Return the place at which temperatures have gone back by more than a chamber's noise; None where they do not."""
     lowest = highest = temperatures_c[0]
     for number, here in enumerate(temperatures_c):
         lowest, highest = min(lowest, here), max(highest, here)
@@ -178,9 +180,9 @@ def _turn(temperatures_c: Sequence[float]) -> int | None:
 
 
 def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | None) -> Iterator[str]:
-    """Yield what is doubtful in how a table reaches frequencies that were not measured.
+    """Yield doubts on the extrapolation of a table to frequencies that were not measured.
 
-    At one frequency a temperature stands for others by ``decade_k`` (paper G, Eq 9); at several the WLF shift of
+    At one frequency a temperature is equivalent to others by ``decade_k`` (paper G, Eq 9); at several the WLF shift of
     Tg + 50 K puts them on one curve.
     """
     low, high = table.temperatures_c

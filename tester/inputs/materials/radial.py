@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 Detrend = Literal["mean", "plane"]
 PER_DECADE = 20
-"""Rings of one point of the table each: so many in a decade of q, but none thinner than the map resolves [A]."""
+"""Rings for the points of the table: this many in a decade of q, but none thinner than the map resolves [A]."""
 LEAST_POINTS = 16
-"""Points along each side of a map, at least [A]: with fewer there are no decades of waves."""
+"""Least number of points along each side of a map [A]: with fewer there are no decades of waves."""
 
 
 @dataclass(frozen=True, slots=True)
 class RadialSpectrum:
-    """C at wave numbers that rise: 1/m and m^4."""
+    """C at ascending wave numbers: 1/m and m^4."""
 
     q_1_m: Array
     power_m4: Array
@@ -54,7 +54,7 @@ def detrended(heights_m: Array, pixel_m: tuple[float, float], detrend: Detrend) 
     flat = heights_m - heights_m.mean()
     if detrend == "mean":
         return flat
-    # Even grids about their middle: the two slopes do not depend on each other.
+    # Even grids about their middle: the two slopes are independent.
     for axis in (0, 1):
         x = _places(flat.shape[axis], pixel_m[axis])
         slope = float(np.mean(flat, axis=1 - axis) @ x / (x @ x))
@@ -69,8 +69,8 @@ def _places(points: int, apart_m: float) -> Array:
 def radial_spectrum(heights_m: Array, pixel_m: tuple[float, float]) -> RadialSpectrum:
     """Return the spectrum of detrended heights (rows, columns) in m; ``pixel_m``: from row to row, column to column.
 
-    From the longest wave that the shorter side holds to the shortest that two points show, rings of wave numbers are
-    averaged. The table is scaled to the mean square in its rings, a few per cent for a rough surface. Raises ValueError
+    Rings of wave numbers are averaged, from the longest wave that fits the shorter side to the shortest that two points
+    resolve. The table is scaled to the mean square in its rings, a few per cent for a rough surface. Raises ValueError
     for a map that is too small, or flat.
     """
     rows, columns = heights_m.shape
@@ -78,13 +78,13 @@ def radial_spectrum(heights_m: Array, pixel_m: tuple[float, float]) -> RadialSpe
         raise ValueError(f"{rows} x {columns} heights are too few (expected {LEAST_POINTS} x {LEAST_POINTS} or more)")
     window = np.outer(_hann(rows), _hann(columns))
     weighted = heights_m * window
-    # The window would turn a mean that is left over into a long wave.
+    # The window would turn a remaining mean into a long wave.
     weighted -= window * (weighted.sum() / window.sum())
     amplitude = np.fft.rfft2(weighted) / (rows * columns)
     area_m2 = rows * pixel_m[0] * columns * pixel_m[1]
     power = area_m2 / (4.0 * np.pi**2) * np.abs(amplitude) ** 2 / np.mean(window**2)
     q = 2.0 * np.pi * np.hypot(np.fft.fftfreq(rows, pixel_m[0])[:, None], np.fft.rfftfreq(columns, pixel_m[1])[None, :])
-    # A real map's transform has each wave twice; the half that is here counts double but at its two edges.
+    # A real map's transform has each wave twice; this half counts double except at its two edges.
     counted = np.full(q.shape, 2.0)
     counted[:, 0] = 1.0
     if columns % 2 == 0:
@@ -98,7 +98,7 @@ def radial_spectrum(heights_m: Array, pixel_m: tuple[float, float]) -> RadialSpe
     if np.count_nonzero(kept) < 2:
         raise ValueError("the heights are all alike: there is no spectrum")
     spectrum = RadialSpectrum(mean_q[kept] / total[kept], mean_power[kept] / total[kept])
-    # Lines between the points miss some of a narrow ring's power; the table is to have the mean square of the rings.
+    # Lines between the points miss part of a narrow ring's power; the table must have the mean square of the rings.
     mean_square = mean_power.sum() * 4.0 * np.pi**2 / area_m2
     return RadialSpectrum(spectrum.q_1_m, spectrum.power_m4 * mean_square / spectrum.rms_height_m**2)
 
@@ -109,7 +109,7 @@ def _hann(points: int) -> Array:
 
 
 def _edges(step_1_m: float, last_1_m: float) -> Array:
-    """Return the edges of the rings: a step wide, and further out even in logarithms; from half a step on."""
+    """Return the edges of the rings, from half a step on: one step wide, and further out even in logarithms."""
     edges = [0.5 * step_1_m]
     while edges[-1] < last_1_m:
         edges.append(max(edges[-1] + step_1_m, edges[-1] * 10.0 ** (1.0 / PER_DECADE)))

@@ -1,7 +1,7 @@
-"""Heights of a surface out of a file: a matrix as text, read here; formats of instruments by SurfaceTopography.
+"""Reads heights of a surface from a file: a matrix as text, read here; formats of instruments by SurfaceTopography.
 
-A matrix has a row of heights in each line, cells apart by a comma, a semicolon, a tab or spaces; lines that begin with
-# are passed over. A hole (an empty cell, nan) is refused: what lies in it nobody has measured.
+A matrix has a row of heights in each line, cells separated by a comma, a semicolon, a tab or spaces; lines that begin
+with # are skipped. A hole (an empty cell, nan) is refused: its height was not measured.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 512 * 1024 * 1024
 TEXT_SUFFIXES = frozenset({"", ".csv", ".txt", ".tsv", ".dat", ".asc"})
-"""Files that are read as a matrix of text; others are an instrument's."""
+"""Suffixes of files read as a matrix of text; others are an instrument's."""
 UNITS_M: Final = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "mm": 1e-3, "m": 1.0}
 BLUNT_SHARE = 0.05
-"""The table's <h^2> is that of the heights within this share, or it is doubted [A]."""
+"""The table is doubted if its <h^2> differs from that of the heights by more than this share [A]."""
 
 _HOLES = frozenset({"", "nan", "-", "--", "***", "bad", "na"})
 _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
@@ -38,7 +38,7 @@ _DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 
 @dataclass(frozen=True, slots=True)
 class ScanOptions:
-    """What a person says of a scan beside what is in it."""
+    """A person's options for a scan, beside its content."""
 
     pixel_m: float | None = None
     unit: str | None = None
@@ -61,79 +61,82 @@ class HeightMap:
         return rows * self.pixel_m[0], columns * self.pixel_m[1]
 
 
-def read_scan(path: Path, content: bytes, options: ScanOptions, found: Findings) -> HeightMap:
+def read_scan(path: Path, content: bytes, options: ScanOptions, findings: Findings) -> HeightMap:
     """Return the heights of a file. Raises InvalidSource with every problem, MissingExtraError."""
     if path.suffix.casefold() in TEXT_SUFFIXES:
-        matrix, pixel, unit = _matrix(decoded(content), found), None, None
+        matrix, pixel, unit = _matrix(decoded(content), findings), None, None
     else:
-        matrix, pixel, unit = _instrument(path, found)
+        matrix, pixel, unit = _instrument(path, findings)
     if options.unit is not None:
         if unit is not None and unit != options.unit:
-            found.doubt((1, 1), f"the file says heights in {unit}; taken in {options.unit}, as asked", lasting=True)
+            findings.doubt((1, 1), f"the file says heights in {unit}; taken in {options.unit}, as asked", lasting=True)
         unit = options.unit
     if unit is None:
-        found.refuse((1, 1), f"the heights have no unit (expected nm, um, mm or m; {options.ask_unit})")
+        findings.refuse((1, 1), f"the heights have no unit (expected nm, um, mm or m; {options.ask_unit})")
     if options.pixel_m is not None:
         if pixel is not None and not np.allclose(pixel, options.pixel_m, rtol=1e-3):
-            told = f"the file says points {pixel[0]:.4g} m apart; taken {options.pixel_m:.4g} m, as asked"
-            found.doubt((1, 1), told, lasting=True)
+            hint = f"the file says points {pixel[0]:.4g} m apart; taken {options.pixel_m:.4g} m, as asked"
+            findings.doubt((1, 1), hint, lasting=True)
         pixel = (options.pixel_m, options.pixel_m)
     if pixel is None:
-        found.refuse((1, 1), f"the distance from point to point is not said (expected such as {options.ask_pixel})")
+        findings.refuse((1, 1), f"the distance from point to point is not said (expected such as {options.ask_pixel})")
     holes = np.argwhere(~np.isfinite(matrix))
     if len(holes):
         row, column = holes[0] + 1
-        told = f"{len(holes)} of {matrix.size} heights are holes, the first in row {row}, column {column}"
-        found.refuse((1, 1), f"{told}: fill them where the scan was made, or cut a piece without any")
-    found.end()
+        hint = f"{len(holes)} of {matrix.size} heights are holes, the first in row {row}, column {column}"
+        findings.refuse((1, 1), f"{hint}: fill them where the scan was made, or cut a piece without any")
+    findings.end()
     assert unit is not None and pixel is not None
     return HeightMap(matrix * UNITS_M[unit], pixel)
 
 
-def spectrum_of(scan: HeightMap, detrend: Detrend, found: Findings) -> RadialSpectrum:
-    """Return a scan's spectrum; notes what was taken off. Raises InvalidSource."""
+def spectrum_of(scan: HeightMap, detrend: Detrend, findings: Findings) -> RadialSpectrum:
+    """Return a scan's spectrum; notes the detrending. Raises InvalidSource."""
     flat = detrended(scan.heights_m, scan.pixel_m, detrend)
     try:
         spectrum = radial_spectrum(flat, scan.pixel_m)
     except ValueError as error:
-        raise InvalidSource([Problem(found.file, 1, 1, str(error))]) from error
+        raise InvalidSource([Problem(findings.file, 1, 1, str(error))]) from error
     rows, columns = flat.shape
     rms = float(np.sqrt(np.mean(flat**2)))
     what = "their mean" if detrend == "mean" else "the plane of least squares"
-    found.notes.append(
+    findings.notes.append(
         f"{rows} x {columns} heights, {scan.pixel_m[0] * 1e6:.4g} x {scan.pixel_m[1] * 1e6:.4g} um apart, "
         f"without {what}; rms {rms * 1e6:.4g} um"
     )
-    found.notes.append("radial average of the transform under a Hann window, <h^2> = 2 pi int q C dq")
+    findings.notes.append("radial average of the transform under a Hann window, <h^2> = 2 pi int q C dq")
     share = (spectrum.rms_height_m / rms) ** 2 - 1.0
     if abs(share) > BLUNT_SHARE:
-        told = f"the spectrum's <h^2> is {100.0 * share:+.0f} % off that of the heights"
-        found.doubt((1, 1), f"{told}: the map has waves as long as itself, or is not alike in all places", lasting=True)
+        difference = f"the spectrum's <h^2> is {100.0 * share:+.0f} % off that of the heights"
+        findings.doubt(
+            (1, 1), f"{difference}: the map has waves as long as itself, or is not alike in all places", lasting=True
+        )
     return spectrum
 
 
-def _matrix(text: str, found: Findings) -> Array:
-    """Return the heights of a text; holes are nan. Refuses lines of another length, and what is no number."""
+def _matrix(text: str, findings: Findings) -> Array:
+    """Return the heights of a text; holes are nan. Refuses lines of another length, and cells that are no number."""
     lines = [
-        (number, line) for number, line in enumerate(text.splitlines(), start=1)
+        (number, line)
+        for number, line in enumerate(text.splitlines(), start=1)
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if not lines:
-        found.refuse((1, 1), "no heights (expected a matrix, a row of numbers in each line)")
-        found.end()
-    delimiter = next((one for one in ("\t", ";") if one in lines[0][1]), "," if "," in lines[0][1] else None)
+        findings.refuse((1, 1), "no heights (expected a matrix, a row of numbers in each line)")
+        findings.end()
+    delimiter = next((mark for mark in ("\t", ";") if mark in lines[0][1]), "," if "," in lines[0][1] else None)
     rows: list[Array] = []
     width = len(_cells(lines[0][1], delimiter))
     for number, line in lines:
         cells = _cells(line, delimiter)
         if len(cells) != width:
-            found.refuse((number, 1), f"{len(cells)} heights (expected {width}, as in the first row)")
+            findings.refuse((number, 1), f"{len(cells)} heights (expected {width}, as in the first row)")
             continue
         try:
             rows.append(np.array([_number(cell, delimiter) for cell in cells]))
         except ValueError as error:
-            found.refuse((number, 1), str(error))
-    found.end()
+            findings.refuse((number, 1), str(error))
+    findings.end()
     return np.array(rows)
 
 
@@ -149,15 +152,15 @@ def _number(cell: str, delimiter: str | None) -> float:
     if delimiter != "," and _DECIMAL_COMMA.fullmatch(cell):
         cell = cell.replace(",", ".")
     try:
-        if "_" not in cell:  # Python's own digits in groups are no file's
+        if "_" not in cell:  # Python's digit groups are not valid in such a file
             return float(cell)
     except ValueError:
         pass
     raise ValueError(f'"{cell[:40]}" is not a height (expected a number)')
 
 
-def _instrument(path: Path, found: Findings) -> tuple[Array, tuple[float, float] | None, str | None]:
-    """Return heights, distances in m and unit out of an instrument's format. Raises MissingExtraError."""
+def _instrument(path: Path, findings: Findings) -> tuple[Array, tuple[float, float] | None, str | None]:
+    """Return heights, distances in m and unit from an instrument's format. Raises MissingExtraError."""
     try:
         library = import_module("SurfaceTopography")
     except ImportError as error:
@@ -167,17 +170,17 @@ def _instrument(path: Path, found: Findings) -> tuple[Array, tuple[float, float]
         topography = reading.read_topography(str(path))
         heights = np.ma.asarray(topography.heights())
         sizes, unit = topography.physical_sizes, topography.unit
-    except Exception as error:  # each of its readers raises its own
-        found.refuse((1, 1), f"SurfaceTopography cannot read it: {type(error).__name__}: {error}")
-        found.end()
+    except Exception as error:  # each of its readers raises its own error
+        findings.refuse((1, 1), f"SurfaceTopography cannot read it: {type(error).__name__}: {error}")
+        findings.end()
         raise AssertionError from error
     if heights.ndim != 2:
-        found.refuse((1, 1), f"a line of {heights.size} heights (expected a map)")
-        found.end()
+        findings.refuse((1, 1), f"a line of {heights.size} heights (expected a map)")
+        findings.end()
     values = np.asarray(heights.filled(np.nan), dtype=np.float64)
     known = unit if unit in UNITS_M else None
     if unit and known is None:
-        found.doubt((1, 1), f'the file says heights in "{unit}", which is not known here', lasting=True)
+        findings.doubt((1, 1), f'the file says heights in "{unit}", which is not known here', lasting=True)
     if sizes is None or known is None:
         return values, None, known
     pixel = tuple(float(size) / points * UNITS_M[known] for size, points in zip(sizes, values.shape, strict=True))

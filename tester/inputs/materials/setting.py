@@ -1,4 +1,4 @@
-"""What laws that are made of materials are told here: files of compounds and surfaces, and where tables are kept."""
+"""Input of friction laws based on materials: files of compounds and surfaces, and the folder of cached tables."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from sim.physics.laws import LawSetting
 
 VARIABLE = "TESTER_CACHE_DIR"
-"""Environment variable: the folder of what can be made again at any time."""
+"""Environment variable: the folder of files that can be made again at any time."""
 
 
 def law_setting(surface: str, recipe: Path | None = None) -> LawSetting:
@@ -20,14 +20,14 @@ def law_setting(surface: str, recipe: Path | None = None) -> LawSetting:
 
 
 def cache_folder() -> Path:
-    """Return the folder of what can be made again, which need not be there.
+    """Return the folder of cached files, which need not exist.
 
     ``TESTER_CACHE_DIR``, else ``friction-tester`` in the user's caches: ``XDG_CACHE_HOME`` or ``~/.cache``, on macOS
     ``~/Library/Caches``, on Windows ``LOCALAPPDATA``.
     """
-    own = os.environ.get(VARIABLE)
-    if own:
-        return Path(own)
+    override = os.environ.get(VARIABLE)
+    if override:
+        return Path(override)
     if sys.platform == "win32":
         base, below = os.environ.get("LOCALAPPDATA"), "AppData/Local"
     elif sys.platform == "darwin":

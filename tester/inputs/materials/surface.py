@@ -20,27 +20,27 @@ from tester.inputs.materials.schema import RadialModel, ScanModel, SurfaceModel
 
 @dataclass(frozen=True, slots=True)
 class LoadedSurface:
-    """A surface with the file it came from; ``radial`` where its spectrum is a table or a scan's."""
+    """A surface with its file; ``radial`` where its spectrum is a table or a scan's."""
 
     model: SurfaceModel
     file: MaterialFile
     radial: RadialSpectrum | None = None
     notes: tuple[str, ...] = ()
-    """What was made of a scan."""
+    """Notes on the reading of a scan."""
 
     def holds(self) -> str:
-        """Return what is known of its heights, in words."""
-        said: list[str] = []
+        """Return the source of its heights, in words."""
+        parts: list[str] = []
         if self.model.spectrum is not None:
             s = self.model.spectrum
-            said.append(f"self-affine, H {s.H:g}, waves of {_length(s.q1)} to {_length(s.q0)}")
+            parts.append(f"self-affine, H {s.H:g}, waves of {_length(s.q1)} to {_length(s.q0)}")
         if self.radial is not None:
             q, origin = self.radial.q_1_m, "of a scan" if self.model.scan is not None else "as a table"
-            said.append(f"spectrum {origin}, {len(q)} points, waves of {_length(q[-1])} to {_length(q[0])}")
+            parts.append(f"spectrum {origin}, {len(q)} points, waves of {_length(q[-1])} to {_length(q[0])}")
         if self.model.waves is not None:
             w = self.model.waves.coarse
-            said.append(f"waves, coarse {w.wavelength * 1e3:g} mm, Ra {w.Ra * 1e3:g} mm")
-        return "; ".join(said)
+            parts.append(f"waves, coarse {w.wavelength * 1e3:g} mm, Ra {w.Ra * 1e3:g} mm")
+        return "; ".join(parts)
 
 
 def _length(q_1_m: float) -> str:
@@ -48,80 +48,80 @@ def _length(q_1_m: float) -> str:
 
 
 def load_surface(path: Path, name: str | None = None) -> LoadedSurface:
-    """Read a surface's file; ``name`` is what messages call it. Raises InvalidSource, MissingExtraError."""
+    """Read a surface's file; ``name`` names it in messages. Raises InvalidSource, MissingExtraError."""
     tree, problems = read_tree(path, name)
-    model, found = _validated(tree, problems)
+    model, findings = _validated(tree, problems)
     data: tuple[DataFile, ...] = ()
     radial: RadialSpectrum | None = None
     if model is not None and model.radial is not None:
-        radial = _table(model.radial, tree, found)
+        radial = _table(model.radial, tree, findings)
     elif model is not None and model.scan is not None:
-        radial, data = _scanned(model.scan, path, tree, found)
-    found.end()
+        radial, data = _scanned(model.scan, path, tree, findings)
+    findings.end()
     assert model is not None
     for number, doubt in enumerate(model.doubts):
-        found.doubt(tree.position(("doubts", number)), doubt)
-    file = MaterialFile("surface", model.name, path, tree.text, data, tuple(sorted(found.doubts)))
-    return LoadedSurface(model, file, radial, tuple(found.notes))
+        findings.doubt(tree.position(("doubts", number)), doubt)
+    file = MaterialFile("surface", model.name, path, tree.text, data, tuple(sorted(findings.doubts)))
+    return LoadedSurface(model, file, radial, tuple(findings.notes))
 
 
 def surface_model(text: str, name: str) -> SurfaceModel:
-    """Return what a surface's file says, without what it refers to. Raises InvalidSource."""
+    """Return the content of a surface's file, without the files that it refers to. Raises InvalidSource."""
     tree, problems = read_tree(text, name)
-    model, found = _validated(tree, problems)
-    found.end()
+    model, findings = _validated(tree, problems)
+    findings.end()
     assert model is not None
     return model
 
 
 def _validated(tree: Tree, problems: Sequence[Problem]) -> tuple[SurfaceModel | None, Findings]:
-    found = Findings(tree.name, list(problems))
+    findings = Findings(tree.name, list(problems))
     if not isinstance(tree.data, dict):
-        found.refuse((1, 1), "a surface is a list of keys: name, and one of spectrum, radial, scan, waves")
-        return None, found
+        findings.refuse((1, 1), "a surface is a list of keys: name, and one of spectrum, radial, scan, waves")
+        return None, findings
     try:
-        return SurfaceModel.model_validate(tree.data), found
+        return SurfaceModel.model_validate(tree.data), findings
     except ValidationError as error:
-        found.problems += problems_from_validation(error, tree, SurfaceModel)
-        return None, found
+        findings.problems += problems_from_validation(error, tree, SurfaceModel)
+        return None, findings
 
 
-def _table(model: RadialModel, tree: Tree, found: Findings) -> RadialSpectrum | None:
+def _table(model: RadialModel, tree: Tree, findings: Findings) -> RadialSpectrum | None:
     at = ("radial", "rows")
     for number, (q, power) in enumerate(model.rows):
         if not q > 0.0 or not power > 0.0:
-            found.refuse(tree.position((*at, number)), f"q {q:g} 1/m, C {power:g} m4: both are to be above 0")
+            findings.refuse(tree.position((*at, number)), f"q {q:g} 1/m, C {power:g} m4: both are to be above 0")
     for number, (before, here) in enumerate(pairwise(model.rows), start=1):
         if not here[0] > before[0]:
-            told = f"q {here[0]:g} 1/m does not rise above {before[0]:g} 1/m: a point twice, or out of order"
-            found.refuse(tree.position((*at, number)), told)
+            disorder = f"q {here[0]:g} 1/m does not rise above {before[0]:g} 1/m: a point twice, or out of order"
+            findings.refuse(tree.position((*at, number)), disorder)
     if len(model.rows) < 2:
-        found.refuse(tree.position(at), f"{len(model.rows)} points are too few (expected 2 or more)")
-    if found.problems:
+        findings.refuse(tree.position(at), f"{len(model.rows)} points are too few (expected 2 or more)")
+    if findings.problems:
         return None
     q, power = np.array(model.rows, dtype=np.float64).T
     return RadialSpectrum(q, power)
 
 
 def _scanned(
-    model: ScanModel, path: Path, tree: Tree, found: Findings
+    model: ScanModel, path: Path, tree: Tree, findings: Findings
 ) -> tuple[RadialSpectrum | None, tuple[DataFile, ...]]:
     try:
         data = read_beside(path, model.file, MAX_BYTES)
     except DataFileError as error:
-        found.refuse(tree.position(("scan", "file")), f"file: {error}")
+        findings.refuse(tree.position(("scan", "file")), f"file: {error}")
         return None, ()
     options = ScanOptions(model.pixel, model.unit, model.detrend, "pixel: 1 um", "unit: um")
-    own = Findings(str(path.parent / data.name))
+    inner = Findings(str(path.parent / data.name))
     try:
-        scan = read_scan(path.parent / data.name, data.content, options, own)
-        radial = spectrum_of(scan, model.detrend, own)
+        scan = read_scan(path.parent / data.name, data.content, options, inner)
+        radial = spectrum_of(scan, model.detrend, inner)
     except InvalidSource as error:
-        found.problems += error.problems
+        findings.problems += error.problems
         return None, ()
     except MissingExtraError as error:
-        found.refuse(tree.position(("scan", "file")), str(error))
+        findings.refuse(tree.position(("scan", "file")), str(error))
         return None, ()
-    found.doubts += own.doubts
-    found.notes += own.notes
+    findings.doubts += inner.doubts
+    findings.notes += inner.notes
     return radial, (data,)
