@@ -1,1 +1,1 @@
-"""What people write: rig files, recipes, materials."""
+"""Files that people write: rig files, recipes, materials."""

@@ -52,7 +52,7 @@ def _tell_strain(layout: DmaLayout, at: int, text: str, result: Findings) -> Non
     unit = " %" if _PERCENT.search(text + below) else ""
     low, high = values[0], values[-1]
     phrase = f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
-    result.notes.append(f'strain: {phrase}, from "{text}"' + ("" if unit else ", whose unit is not said"))
+    result.notes.append(f'strain: {phrase}, from "{text}"' + ("" if unit else ", without a unit"))
     if high > ALIKE * low:
         result.doubt(
             (layout.at + 1, 1),
@@ -308,10 +308,10 @@ class _Reading:
             here = to_hz(value[name])
             if not stated / ALIKE < here < stated * ALIKE:
                 self.findings.refuse(
-                    (line + 1, 1), f"frequency: {here:g} Hz is not the {stated:g} Hz that is said for all"
+                    (line + 1, 1), f"frequency: {here:g} Hz is not the {stated:g} Hz that is set for all"
                 )
         self.findings.notes.append(
-            f"frequency: {stated:g} Hz, as said, for what the file has within {ALIKE:g} times of it"
+            f"frequency: {stated:g} Hz, as set, for rows of the file within {ALIKE:g} times of it"
         )
 
     def _cross_check(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:

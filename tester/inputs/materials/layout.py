@@ -48,12 +48,12 @@ def _cells(line: str, delimiter: str) -> list[str]:
     return []
 
 
-def layout_of(lines: Sequence[str], said: Iterable[str]) -> DmaLayout | None:
+def layout_of(lines: Sequence[str], headings: Iterable[str]) -> DmaLayout | None:
     """Return the row with the most recognised quantities, at least two; None where there is none.
 
-    ``said``: headings that a person has named.
+    ``headings``: headings that a person has named.
     """
-    named = {text.casefold() for text in said}
+    named = {text.casefold() for text in headings}
     best: tuple[int, int, str] | None = None
     for delimiter in _DELIMITERS:
         for at, line in enumerate(lines[:LOOKED_AT]):

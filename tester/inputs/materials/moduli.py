@@ -189,7 +189,7 @@ def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | No
     frequencies = table.frequencies_hz
     if len(frequencies) == 1:
         if decade_k is None:
-            yield f"measured at {frequencies[0]:g} Hz alone, and decade_k is not said: 8 K a decade (paper G) counts"
+            yield f"measured at {frequencies[0]:g} Hz alone, and decade_k is missing: 8 K a decade (paper G) counts"
         if high - low < 2.0 * (decade_k or 8.0):
             yield f"{high - low:g} K at one frequency stand for less than two decades"
         return
@@ -197,7 +197,7 @@ def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | No
         span = f"{frequencies[0]:g} to {frequencies[-1]:g} Hz"
         yield f"frequencies of {span} are taken for several: say the one that they stand for, if it is one sweep"
     if glass_c is None:
-        yield "Tg is not said: without it several frequencies are not put on one curve, and no law can use them"
+        yield "Tg is missing: without it several frequencies are not put on one curve, and no law can use them"
     elif low <= glass_c - POLE_K:
         ends = f"{glass_c - POLE_K:g} degC, where the WLF shift of Tg + 50 K ends"
         yield f"{low:g} degC is not above {ends}: no law can use it"

@@ -79,7 +79,7 @@ def read_scan(path: Path, content: bytes, options: ScanOptions, findings: Findin
             findings.doubt((1, 1), hint, lasting=True)
         pixel = (options.pixel_m, options.pixel_m)
     if pixel is None:
-        findings.refuse((1, 1), f"the distance from point to point is not said (expected such as {options.ask_pixel})")
+        findings.refuse((1, 1), f"the distance from point to point is missing (expected such as {options.ask_pixel})")
     holes = np.argwhere(~np.isfinite(matrix))
     if len(holes):
         row, column = holes[0] + 1

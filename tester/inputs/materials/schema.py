@@ -104,9 +104,11 @@ class ModuliModel(Section, frozen=True):
     @model_validator(mode="after")
     def _one(self) -> ModuliModel:
         ways = ("table", "file", "fractional_zener", "constant")
-        said = [name for name in ways if getattr(self, name) is not None]
-        if len(said) != 1:
-            raise ValueError(f"{' and '.join(said) or 'nothing'} is said (expected exactly one of {', '.join(ways)})")
+        given_keys = [name for name in ways if getattr(self, name) is not None]
+        if len(given_keys) != 1:
+            raise ValueError(
+                f"{' and '.join(given_keys) or 'nothing'} is given (expected exactly one of {', '.join(ways)})"
+            )
         return self
 
 
@@ -263,9 +265,9 @@ class SurfaceModel(Section, frozen=True):
 
     @model_validator(mode="after")
     def _one(self) -> SurfaceModel:
-        said = [name for name in ("spectrum", "radial", "scan") if getattr(self, name) is not None]
-        if len(said) > 1:
-            raise ValueError(f"{' and '.join(said)} are said (expected at most one of spectrum, radial, scan)")
-        if not said and self.waves is None:
-            raise ValueError("nothing is said of its heights (expected one of spectrum, radial, scan, waves)")
+        given_keys = [name for name in ("spectrum", "radial", "scan") if getattr(self, name) is not None]
+        if len(given_keys) > 1:
+            raise ValueError(f"{' and '.join(given_keys)} are given (expected at most one of spectrum, radial, scan)")
+        if not given_keys and self.waves is None:
+            raise ValueError("nothing is given of its heights (expected one of spectrum, radial, scan, waves)")
         return self

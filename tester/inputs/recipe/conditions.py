@@ -1,7 +1,7 @@
-"""Grids to conditions: what a specimen is measured at, in which order, and what is said of the experiment.
+"""Grids to conditions: the setpoints of a specimen, their order, and the metadata of the experiment.
 
-A condition that several grids share is measured once, unless a grid is to measure its conditions again. Blocks of one
-temperature ascend, because cooling takes far longer than heating.
+A condition that several grids share is measured once, unless a grid has ``measure_again``. Blocks of one temperature
+ascend, because cooling takes far longer than heating.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ from tester.inputs.recipe.semantics import axis_values
 from tester.inputs.recipe.settings import Settings
 
 MERGED_SHOWN: Final = 3
-"""MergedConditions conditions of two grids that a sentence lists; it counts the rest."""
+"""Most conditions that a sentence about two grids lists; it counts the rest."""
 Procedure = TypeVar("Procedure", bound=Settings)
-"""How a condition is measured, as a kind says it."""
+"""A kind's description of how a condition is measured."""
 BlockValue: TypeAlias = Callable[[tuple[AxisValue, ...]], float]
-"""Takes what the axis of blocks is held at out of a condition's values."""
+"""Returns the value of the axis of blocks among a condition's values."""
 
 
 class Condition(NamedTuple, Generic[Procedure]):
-    """One condition of a specimen: what is held, its row in the recipe's order (from 1) and its first grid."""
+    """One condition of a specimen: its values, its row in the recipe's order (from 1) and its first grid."""
 
     values: tuple[AxisValue, ...]
-    """Of a setpoint: what tells conditions of a specimen apart."""
+    """Values of a setpoint, which distinguish the conditions of a specimen."""
     row: int
     grid: str
     settings: Procedure
@@ -40,38 +40,38 @@ def conditions_of(
 ) -> list[Condition[Procedure]]:
     """Return a specimen's conditions in the recipe's order: grid after grid, the axis of blocks innermost.
 
-    Each setpoint once, but for those of a grid with ``measure_again``. ``settings``: of the recipe's kind
-    (``RecipePart.settings``), how a grid is measured.
+    Each setpoint occurs once, except in a grid with ``measure_again``. ``settings`` is that of the recipe's kind
+    (``RecipePart.settings``): how a grid is measured.
     """
     measure = recipe.measure
     if measure is None:
         return []
-    found: list[Condition[Procedure]] = []
-    once: set[tuple[AxisValue, ...]] = set()
+    conditions: list[Condition[Procedure]] = []
+    seen: set[tuple[AxisValue, ...]] = set()
     for grid in recipe.grids:
         how = settings(measure, grid)
         for values in product(*axis_values(measure, grid).values()):
             if not grid.measure_again:
-                if values in once:
+                if values in seen:
                     continue
-                once.add(values)
-            found.append(Condition(values, len(found) + 1, grid.name, how))
-    return found
+                seen.add(values)
+            conditions.append(Condition(values, len(conditions) + 1, grid.name, how))
+    return conditions
 
 
 class MergedConditions(NamedTuple):
-    """Conditions of a grid that an earlier one, ``measured_in``, has too: they are measured there, and only there."""
+    """Conditions of a grid that an earlier one, ``measured_in``, has as well: they are measured only there."""
 
     grid: str
     measured_in: str
     conditions: tuple[Setpoint, ...]
-    """Of any compound."""
+    """Without a compound."""
 
     def sentence(self) -> str:
-        """Return what is merged and which key measures it again, for people."""
+        """Return the merged conditions, and the key that measures them again, for people."""
         count = len(self.conditions)
         what, them = ("1 condition", "it") if count == 1 else (f"{count} conditions", "them")
-        listed = [condition_words(one, compound=False) for one in self.conditions[:MERGED_SHOWN]]
+        listed = [condition_words(condition, compound=False) for condition in self.conditions[:MERGED_SHOWN]]
         more = [f"{count - MERGED_SHOWN} more"] if count > MERGED_SHOWN else []
         return (
             f"grid {self.grid} shares {what} with grid {self.measured_in}, which alone measures {them}: "
@@ -79,13 +79,15 @@ class MergedConditions(NamedTuple):
         )
 
     def as_data(self) -> dict[str, object]:
-        """Return the same as plain data: names of the grids, and what the axes are held at, by field."""
-        held = [{axis.field: one.value(axis.name) for axis in one.axes} for one in self.conditions]
-        return {"grid": self.grid, "measured_in": self.measured_in, "conditions": held}
+        """Return the same as plain data: names of the grids, and the setpoints by field."""
+        setpoints = [
+            {axis.field: condition.value(axis.name) for axis in condition.axes} for condition in self.conditions
+        ]
+        return {"grid": self.grid, "measured_in": self.measured_in, "conditions": setpoints}
 
 
 def merged_of(recipe: Recipe) -> Iterator[MergedConditions]:
-    """Yield which conditions of which grid are measured in an earlier one."""
+    """Yield the conditions of each grid that are measured in an earlier one."""
     measure, grids = recipe.measure, [grid for grid in recipe.grids if not grid.measure_again]
     if measure is None or len(grids) < 2:
         return
@@ -102,7 +104,7 @@ def merged_of(recipe: Recipe) -> Iterator[MergedConditions]:
 def ordered(
     conditions: Sequence[Condition[Procedure]], held: BlockValue, order: OrderModel, specimen: int, replicate: int
 ) -> list[list[Condition[Procedure]]]:
-    """Return the conditions grouped by the axis of blocks, ascending, each group in the order that is asked for."""
+    """Return the conditions grouped by the axis of blocks, ascending, each group in the order of the recipe."""
     groups: dict[float, list[Condition[Procedure]]] = {}
     for condition in conditions:
         groups.setdefault(held(condition.values), []).append(condition)
@@ -112,14 +114,14 @@ def ordered(
         return [block[::-1] if number % 2 else block for number, block in enumerate(blocks)]
     if order.within == "shuffled":
         for block in blocks:
-            # A stream of its own per block: another temperature in the recipe leaves this one's order alone.
+            # A random stream of its own for each block: another temperature in the recipe leaves this order unchanged.
             key = f"{order.seed}/{specimen}/{replicate}/{held(block[0].values)!r}"
             random.Random(key).shuffle(block)
     return blocks
 
 
 def metadata_of(recipe: Recipe) -> dict[str, str]:
-    """Return what the recipe says about the experiment, as text, in columns named with their units."""
+    """Return the recipe's metadata of the experiment, as text, in columns named with their units."""
     result: dict[str, str] = {}
     if recipe.abrasive is not None:
         result["abrasive"] = recipe.abrasive.name
@@ -134,6 +136,6 @@ def metadata_of(recipe: Recipe) -> dict[str, str]:
     if recipe.measure is not None and recipe.measure.combine != "mean":
         result[closest.KEY] = recipe.measure.combine
     for key, value in recipe.experiment.items():
-        # What replaces a bound of the budget keeps its name: the analysis looks for it.
+        # A key that replaces a bound of the budget keeps its name: the analysis looks for it.
         result[key if key.startswith(terms.PREFIX) else f"experiment.{key}"] = value
     return result

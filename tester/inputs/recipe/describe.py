@@ -1,4 +1,4 @@
-"""A plan in words: what is done, in which order, how long it takes and what it costs."""
+"""A plan in words: its steps in order, its duration and its wear."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ _WIDTH = 76
 def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
     """Yield the plan line by line: every step with its duration, then the totals."""
     yield plan.name
-    for step, one in zip(plan.steps, estimate.steps, strict=True):
+    for step, step_estimate in zip(plan.steps, estimate.steps, strict=True):
         heading = part.heading(plan, step)
         if heading:
             yield ""
             yield heading
-        text = f"{_indent(step)}{part.words(step, one)}"
-        yield f"{text:<{_WIDTH}} {rough_duration(one.seconds):>10}" if one.seconds else text
+        text = f"{_indent(step)}{part.words(step, step_estimate)}"
+        yield f"{text:<{_WIDTH}} {rough_duration(step_estimate.seconds):>10}" if step_estimate.seconds else text
     yield ""
     yield from totals(plan, estimate, part)
 
 
 def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
-    """Yield what the plan comes to, one figure a line."""
+    """Yield the totals of the plan, a figure in each line."""
     conditions = list(plan.conditions())
     repeats = sum(step.repeats * step.scheme.repeats_each for step in conditions)
     yield f"conditions        {len(conditions)}, {repeats} repeats"
@@ -39,7 +39,7 @@ def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
 
 
 def repeats_words(step: ConditionStep) -> str:
-    """Return how many repeats are to count, and until what precision where the recipe says so: 4 (until 2 %).
+    """Return the number of repeats that must count, and the precision if the recipe has one: 4 (until 2 %).
 
     In both directions they are pairs: 4 pairs.
     """
@@ -48,7 +48,7 @@ def repeats_words(step: ConditionStep) -> str:
 
 
 def window_words(window: Window) -> str:
-    """Return a window as a recipe writes it: 30 rev, or 60 s."""
+    """Return a window in a recipe's notation: 30 rev, or 60 s."""
     return f"{window.revolutions:g} rev" if window.revolutions is not None else f"{window.seconds or 0.0:g} s"
 
 

@@ -1,4 +1,4 @@
-"""How long a plan takes, what it rubs off and how warm it gets: sums of what a kind's estimator says of each step."""
+"""Duration, wear and temperature of a plan: sums of the estimates of its kind's estimator for each step."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 class StepEstimate(NamedTuple):
-    """What one step takes: rig time s, sliding m, rubber worn off mm, friction heat J, surface peak degC.
+    """Estimate of one step: rig time s, sliding m, rubber worn off mm, friction heat J, surface peak degC.
 
     ``bursts``: contacts a repeat; ``held`` is False where the temperature does not hold long enough to measure.
-    ``waiting_s``: what of the time waits for a temperature, and spreads with it. ``heat_w``: friction heat in the
-    rubber during a contact. ``repeats``: expected, with those made up for. A kind leaves out what it does not
+    ``waiting_s``: the part of the time that waits for a temperature, and scatters with it. ``heat_w``: friction heat in
+    the rubber during a contact. ``repeats``: expected number, with make-ups. A kind leaves out values that it does not
     know.
     """
 
@@ -38,9 +38,9 @@ class StepEstimate(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Outlook:
-    """What is expected of a condition's uncertainty beside its setpoint: what is worn off by then, mm; whether a check
-    of the diameter is made before and after it; what is known of its sensitivity to temperature; and whether it is
-    measured in both directions, None: as the step says."""
+    """Expectations for a condition's uncertainty beside its setpoint: wear by then, mm; whether a check of the diameter
+    is made before and after it; the known sensitivity to temperature; and whether it is measured in both directions,
+    None: as in the step."""
 
     loss_mm: float = 0.0
     checked: bool = False
@@ -49,11 +49,11 @@ class Outlook:
 
 
 NEW: Final = Outlook()
-"""A new piece, of which nothing is known."""
+"""For a new piece without prior knowledge."""
 
 
 class Estimator(Protocol):
-    """What a kind knows of the time that steps take on one rig."""
+    """A kind's estimates of the time that steps take on one rig."""
 
     def walk(self, plan: Plan) -> Sequence[StepEstimate]:
         """Return an estimate for every step of a plan."""
@@ -64,19 +64,19 @@ class Estimator(Protocol):
         ...
 
     def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        """Return the range of the rig time, s, that is to hold 95 % of runs; ``down_s``: ``shut_down_s``."""
+        """Return the range of the rig time, s, for 95 % of runs; ``down_s``: ``shut_down_s``."""
         ...
 
     def s_percent(self, compound: str) -> float:
-        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        """Return the expected standard deviation between repeats, per cent of the coefficient."""
         ...
 
     def mu(self, setpoint: Setpoint) -> float | None:
-        """Return the coefficient expected at a setpoint; None where there is none, such as where it does not slide."""
+        """Return the expected coefficient at a setpoint; None where there is none, such as without sliding."""
         ...
 
     def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterable[Outlook]:
-        """Return what is expected of each condition of a plan, in order, by the estimates of the plan's steps."""
+        """Return the expectations for each condition of a plan, in order, from the estimates of the plan's steps."""
         ...
 
     def reversible(self, step: ConditionStep) -> bool:
@@ -84,18 +84,18 @@ class Estimator(Protocol):
         ...
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
-        """Return the coefficient expected of a condition, and what the instruments add to its uncertainty.
+        """Return the expected coefficient of a condition, and the instruments' budget for it.
 
-        None for a condition without a coefficient, such as one that does not slide.
+        None for a condition without a coefficient, such as one without sliding.
         """
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What a plan takes; ``steps`` run parallel to the plan's. Units as in ``StepEstimate``.
+    """Totals of a plan; ``steps`` run parallel to the plan's. Units as in ``StepEstimate``.
 
-    ``rig_seconds`` includes the way from the last step to standstill.
+    ``rig_seconds`` includes the time from the last step to standstill.
     """
 
     steps: tuple[StepEstimate, ...]
@@ -113,24 +113,24 @@ class Estimate:
 
 
 def estimate(plan: Plan, estimator: Estimator) -> Estimate:
-    """Return what a plan takes, by its kind's estimator for the rig."""
+    """Return the totals of a plan, from its kind's estimator for the rig."""
     steps = estimator.walk(plan)
     not_held = [
         step.condition
-        for step, one in zip(plan.steps, steps, strict=True)
-        if not one.held and isinstance(step, ConditionStep)
+        for step, step_estimate in zip(plan.steps, steps, strict=True)
+        if not step_estimate.held and isinstance(step, ConditionStep)
     ]
     down_s = estimator.shut_down_s(plan)
-    seconds = math.fsum(one.seconds for one in steps) + down_s
+    seconds = math.fsum(step.seconds for step in steps) + down_s
     low, high = estimator.range_s(plan, steps, down_s)
     return Estimate(
         steps=tuple(steps),
         rig_seconds=seconds,
         rig_seconds_low=low,
         rig_seconds_high=high,
-        sliding_m=math.fsum(one.sliding_m for one in steps),
-        loss_mm=math.fsum(one.loss_mm for one in steps),
-        friction_j=math.fsum(one.friction_j for one in steps),
-        peak_c=max((one.peak_c for one in steps), default=-math.inf),
+        sliding_m=math.fsum(step.sliding_m for step in steps),
+        loss_mm=math.fsum(step.loss_mm for step in steps),
+        friction_j=math.fsum(step.friction_j for step in steps),
+        peak_c=max((step.peak_c for step in steps), default=-math.inf),
         not_held=tuple(not_held),
     )

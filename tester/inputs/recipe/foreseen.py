@@ -1,8 +1,8 @@
-"""What the uncertainty of a plan's conditions will be, what it will mostly come from, and what would halve that.
+"""Predicts the uncertainty of a plan's conditions, its largest source, and the changes that would halve that.
 
-By the budget that results are given: the machine's terms at the coefficient that is expected, the repeatability of as
-many repeats as the recipe asks for, and what the plan itself will know of the sensitivity to temperature and of the
-diameter. Drift is left out: nobody knows it beforehand.
+It uses the budget of the results: the machine's terms at the expected coefficient, the repeatability of the recipe's
+repeats, and the plan's own knowledge of the sensitivity to temperature and of the diameter. Drift is left out, as it is
+unknown beforehand.
 """
 
 from __future__ import annotations
@@ -22,18 +22,19 @@ from tester.inputs.recipe.estimate import Estimator, Outlook, StepEstimate
 from tester.inputs.recipe.plan import ConditionStep, Plan
 
 MOST: Final = 400
-"""Conditions of a plan that are looked at, evenly chosen of a longer one [A]: each takes a tenth of a millisecond."""
+"""Most conditions of a plan that are evaluated, evenly chosen of a longer one [A]: each takes a tenth of a millisecond.
+"""
 STEP_K: Final = 15.0
-"""Temperatures so far apart are proposed for a pair [A]: those of the paper's Table 2."""
+"""Proposed difference between the temperatures of a pair [A]: that of the paper's Table 2."""
 MORE_REPEATS: Final = 4
-"""So many times as many repeats halve what repeating leaves open."""
+"""Factor on the repeats that halves the uncertainty due to repeatability."""
 
 _Held = tuple[str, tuple[AxisValue, ...]]
 
 
 @dataclass(frozen=True, slots=True)
 class Foreseen:
-    """A condition's coefficient as it is expected, and its budget: of the instruments alone, and with repeating."""
+    """A condition's expected coefficient, and its budget: of the instruments alone, and with repeatability."""
 
     step: ConditionStep
     mu: float
@@ -44,22 +45,22 @@ class Foreseen:
     @property
     def largest(self) -> Contribution:
         """Return the largest contribution."""
-        return max(self.whole.contributions, key=lambda one: one.standard)
+        return max(self.whole.contributions, key=lambda term: term.standard)
 
     @property
     def percent(self) -> float:
         """Return the expanded uncertainty (95 %) of this piece, per cent of the coefficient."""
         return 100.0 * self.whole.expanded / self.mu
 
-    def percent_of(self, one: Contribution) -> float:
+    def percent_of(self, term: Contribution) -> float:
         """Return a contribution, expanded as the sum is, per cent of the coefficient."""
-        return 100.0 * self.whole.coverage * one.standard / self.mu
+        return 100.0 * self.whole.coverage * term.standard / self.mu
 
 
 @dataclass(frozen=True, slots=True)
 class Halved:
-    """What a recipe or a rig would have to say so that a contribution is half as large or less, and what it then is,
-    expanded, per cent of the coefficient."""
+    """A change of a recipe or a rig that halves a contribution at least, and the result, expanded, per cent of the
+    coefficient."""
 
     words: str
     percent: float
@@ -68,22 +69,22 @@ class Halved:
 def foreseen(
     plan: Plan, steps: Sequence[StepEstimate], estimator: Estimator, known: Iterable[KnownSlope] = ()
 ) -> list[Foreseen]:
-    """Return what is foreseen of a plan's conditions that slide; ``steps``: their estimates, ``known``: what files say.
+    """Return the predictions for a plan's sliding conditions; ``steps``: their estimates, ``known``: slopes from files.
 
     Of a plan with more than ``MOST`` conditions that many, evenly chosen.
     """
     outlooks = [*zip(plan.conditions(), estimator.outlooks(plan, steps), strict=True)]
     chosen = outlooks[:: max(1, ceil(len(outlooks) / MOST))]
     slopes = _Slopes(plan, estimator, known, {_held(step, plan.axes) for step, _ in chosen})
-    found = (_foreseen(step, replace(one, slope=slopes.of(step)), estimator) for step, one in chosen)
-    return [one for one in found if one is not None]
+    predicted = (_foreseen(step, replace(outlook, slope=slopes.of(step)), estimator) for step, outlook in chosen)
+    return [outlook for outlook in predicted if outlook is not None]
 
 
 def _foreseen(step: ConditionStep, outlook: Outlook, estimator: Estimator, more: int = 1) -> Foreseen | None:
-    found = estimator.budget(step, outlook)
-    if found is None:
+    expected_budget = estimator.budget(step, outlook)
+    if expected_budget is None:
         return None
-    mu, instruments = found
+    mu, instruments = expected_budget
     values = step.repeats * more
     each = 2 if (step.both_directions if outlook.both_directions is None else outlook.both_directions) else 1
     s = 0.01 * estimator.s_percent(step.setpoint.compound) / sqrt(each)
@@ -92,16 +93,16 @@ def _foreseen(step: ConditionStep, outlook: Outlook, estimator: Estimator, more:
 
 
 def halved(one: Foreseen, estimator: Estimator, terms: Sequence[Term]) -> Halved | None:
-    """Return the first thing that makes the largest contribution half as large or less; None where nothing does.
+    """Return the first change that makes the largest contribution half as large or less; None where none does.
 
     Each is tried with the budget itself. ``terms``: those of the rig.
     """
     name, limit = one.largest.name, 0.5 * one.largest.standard * (1.0 + 1e-9)
     for words, outlook, more in _changes(one, estimator):
         changed = _foreseen(one.step, outlook, estimator, more)
-        found = changed and next((c for c in changed.whole.contributions if c.name == name), None)
-        if changed and found and found.standard <= limit:
-            return Halved(words, changed.percent_of(found))
+        smaller = changed and next((c for c in changed.whole.contributions if c.name == name), None)
+        if changed and smaller and smaller.standard <= limit:
+            return Halved(words, changed.percent_of(smaller))
     term = next((each for each in terms if each.name == name and each.setting), None)
     if term is None:
         return None
@@ -111,7 +112,7 @@ def halved(one: Foreseen, estimator: Estimator, terms: Sequence[Term]) -> Halved
 
 
 def _changes(one: Foreseen, estimator: Estimator) -> Iterator[tuple[str, Outlook, int]]:
-    """Yield what may be changed: in words, the outlook that it leads to, and how many times the repeats."""
+    """Yield the possible changes: in words, the resulting outlook, and the factor on the repeats."""
     step, outlook = one.step, one.outlook
     if not outlook.checked and outlook.loss_mm > 0.0:
         yield "measure: {wear_check: each_condition}", replace(outlook, checked=True), 1
@@ -124,18 +125,20 @@ def _changes(one: Foreseen, estimator: Estimator) -> Iterator[tuple[str, Outlook
 
 
 class _Slopes:
-    """What a plan's own temperatures will say of a condition's sensitivity, else what is known of its compound."""
+    """Sensitivity of each condition from the plan's own temperatures, else the known one of its compound."""
 
     def __init__(self, plan: Plan, estimator: Estimator, known: Iterable[KnownSlope], wanted: set[_Held]) -> None:
         self._axes, self._axis = plan.axes, _temperature(plan.axes)
-        self._known: Mapping[tuple[str, float], KnownSlope] = {(one.compound, one.temperature_c): one for one in known}
+        self._known: Mapping[tuple[str, float], KnownSlope] = {
+            (known_slope.compound, known_slope.temperature_c): known_slope for known_slope in known
+        }
         self._points: dict[_Held, dict[float, float]] = {}
         for step in plan.conditions() if self._axis else ():
-            held = _held(step, self._axes)
-            if held in wanted:
+            setting = _held(step, self._axes)
+            if setting in wanted:
                 mu = estimator.mu(step.setpoint)
                 if mu is not None:
-                    self._points.setdefault(held, {})[step.setpoint.number(self._axis)] = mu
+                    self._points.setdefault(setting, {})[step.setpoint.number(self._axis)] = mu
 
     def of(self, step: ConditionStep) -> Slope:
         """Return the sensitivity that will be known."""
@@ -158,7 +161,8 @@ def _held(step: ConditionStep, axes: Axes | None) -> _Held:
 
 
 def foreseen_lines(found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> Iterator[str]:
-    """Yield what will be uncertain, for people: the range, the most, its largest term, and what halves that."""
+    """Yield the predicted uncertainty, for people: the range, the most, its largest term, and the change that halves
+    that."""
     if not found:
         return
     worst, least = max(found, key=_percent), min(found, key=_percent)
@@ -177,7 +181,7 @@ def _percent(one: Foreseen) -> float:
 
 
 def foreseen_fields(found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> dict[str, object]:
-    """Return the same as plain data, per cent of the coefficient; nothing where nothing slides."""
+    """Return the same as plain data, per cent of the coefficient; empty where no condition slides."""
     if not found:
         return {}
     worst, least = max(found, key=_percent), min(found, key=_percent)
@@ -197,26 +201,26 @@ SHARE: Final = 0.3
 """Standard uncertainty of a sensitivity from a file, as a share of it [A]: a law of another batch of rubber, fitted
 with residuals of 3 to 6 % over 60 K."""
 LEAST_PERCENT: Final = 0.2
-"""What is not known of it at least, %/K [A]."""
+"""Least uncertainty of a sensitivity from a file, %/K [A]."""
 
 
 def known_slopes(plan: Plan, compounds: Mapping[str, CompoundModel]) -> Iterator[KnownSlope]:
-    """Yield what the files say of the plan's compounds at its temperatures; nothing beyond what was measured for them.
+    """Yield the slopes in the compounds' files at the plan's temperatures; none beyond their measured range.
 
-    ``compounds``: what each file says, by the name that the recipe has for it.
+    ``compounds``: content of each file, by the name in the recipe.
     """
     axis = next((one.name for one in plan.axes or () if one.unit == "degC"), "")
     if not axis:
         return
     wanted = ((step.setpoint.compound, step.setpoint.number(axis)) for step in plan.conditions())
     for compound, at_c in dict.fromkeys(wanted):
-        found = known_slope(compounds[compound], at_c) if compound in compounds else None
-        if found is not None:
-            yield found
+        slope = known_slope(compounds[compound], at_c) if compound in compounds else None
+        if slope is not None:
+            yield slope
 
 
 def known_slope(compound: CompoundModel, at_c: float) -> KnownSlope | None:
-    """Return what a compound's file says at a temperature in degC; None where it says nothing, or holds no more."""
+    """Return the slope in a compound's file at a temperature in degC; None without one, or out of its range."""
     law = compound.over_temperature
     if law is None or not law.least <= at_c <= law.most:
         return None

@@ -20,9 +20,9 @@ from tester.inputs.rig import Rig
 
 @dataclass(frozen=True, slots=True)
 class LoadedRecipe:
-    """A recipe with the tree it came from: ``tree.text`` is its text, ``tree.position`` where something stands.
+    """A recipe with its tree: ``tree.text`` is its text, ``tree.position`` the position of a key.
 
-    ``doubts``: what a rig is not expected to bring to its end, where it was held against one.
+    ``doubts``: parts that a rig is not expected to complete, where the recipe was checked against one.
     """
 
     recipe: Recipe
@@ -33,9 +33,9 @@ class LoadedRecipe:
 def load_recipe(source: Path | str, part: RecipePart, name: str | None = None) -> LoadedRecipe:
     """Read a recipe file (Path) or text (str); raises InvalidSource with every problem.
 
-    ``part``: of the kind that it is for.
+    ``part``: of the recipe's kind.
 
-    The recipe makes sense by itself; whether a rig can do it is ``tester.inputs.recipe.loader``'s question.
+    This checks the recipe by itself; ``load_checked`` checks it against a rig.
     """
     tree, problems = read_tree(source, name)
     recipe, more = validated(tree, part)
@@ -57,7 +57,7 @@ def validated(tree: Tree, part: RecipePart) -> tuple[Recipe | None, list[Problem
 
 
 def check(source: Path | str, rig: Rig, part: RecipePart, name: str | None = None) -> list[Problem]:
-    """Return every problem of a recipe file (Path) or text (str) on a rig; an empty list: it can be run."""
+    """Return every problem of a recipe file (Path) or text (str) on a rig; an empty list: it can run."""
     try:
         load_checked(source, rig, part, name)
     except InvalidSource as error:
@@ -66,7 +66,7 @@ def check(source: Path | str, rig: Rig, part: RecipePart, name: str | None = Non
 
 
 def load_checked(source: Path | str, rig: Rig, part: RecipePart, name: str | None = None) -> LoadedRecipe:
-    """Read a recipe and hold it against a rig; raises InvalidSource with every problem.
+    """Read a recipe and check it against a rig; raises InvalidSource with every problem.
 
     ``part``: of the rig's kind.
     """
@@ -86,8 +86,8 @@ def load_checked(source: Path | str, rig: Rig, part: RecipePart, name: str | Non
 
 
 def _settings(recipe: Recipe, tree: Tree, terms: Sequence[Term]) -> Iterator[Problem]:
-    """Yield what is to replace a bound of the budget, and is the setting of none of the rig's terms."""
-    known = [f"{PREFIX}{name}" for one in terms for name in (one.setting, one.factor_setting) if name]
+    """Yield replacements of a bound of the budget that match no setting of the rig's terms."""
+    known = [f"{PREFIX}{name}" for term in terms for name in (term.setting, term.factor_setting) if name]
     for key in recipe.experiment:
         if key.startswith(PREFIX) and key not in known:
             yield tree.problem(("experiment", key), f"{key}: no term of this rig's budget has it{_meant(key, known)}")
@@ -99,9 +99,10 @@ def _meant(key: str, known: Sequence[str]) -> str:
 
 
 def _other_kind(tree: Tree, rig: Rig) -> list[Problem]:
-    """Return that a recipe is for a rig of another kind: then nothing else in it can be held against this one."""
-    said = tree.data.get("kind") if isinstance(tree.data, dict) else None
-    if not isinstance(said, str) or said == rig.kind:
+    """Return the problem of a recipe for another kind of rig: then nothing else in it can be checked against this one.
+    """
+    kind = tree.data.get("kind") if isinstance(tree.data, dict) else None
+    if not isinstance(kind, str) or kind == rig.kind:
         return []
-    message = f'kind: the recipe is for a rig of kind {shown(said)}, rig "{rig.name}" is of kind {rig.kind}'
+    message = f'kind: the recipe is for a rig of kind {shown(kind)}, rig "{rig.name}" is of kind {rig.kind}'
     return [tree.problem(("kind",), message)]

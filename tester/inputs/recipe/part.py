@@ -1,8 +1,8 @@
-"""What a kind of rig says about recipes: one object, which everything here that reads a recipe is handed.
+"""A kind's part of the recipe reader: one object, passed to every function here that reads a recipe.
 
-Generic is the way from a file to a plan: positions, specimens, grids over axes, repeats, conditions in their order. A
-kind adds its axes, sections of its own, what makes no sense, what its rig cannot do, which steps conditions become, how
-long they take, and the words for them.
+The way from a file to a plan is generic: positions, specimens, grids over axes, repeats, conditions in their order. A
+kind adds its axes, sections of its own, rules of sense, limits of its rig, the steps of its conditions, their durations
+and their wording.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ class RecipePart(ABC):
     """
 
     kind: ClassVar[str]
-    """As the rig file's key ``kind``, and the recipe's, say it."""
+    """Value of the key ``kind`` in rig files and recipes."""
     axes: ClassVar[Axes]
-    """Of its conditions."""
+    """Axes of its conditions."""
     recipe: ClassVar[type[Recipe]] = Recipe
     """The recipe's sections; ``grids`` is replaced by a list of ``grid`` with the axes."""
     measure: ClassVar[type[MeasureModel]] = MeasureModel
@@ -64,8 +64,8 @@ class RecipePart(ABC):
     grid: ClassVar[type[GridModel]] = GridModel
     """A grid without its axes."""
     begins: ClassVar[str] = "measure: {repeats: REPEATS}"
-    """Lines of YAML between the specimens and the grids of a new recipe (`tester new`), with REPEATS for their
-    number: ``measure``, and what a first recipe needs beside it."""
+    """Lines of YAML between the specimens and the grids of a new recipe (`tester new`), with REPEATS for their number:
+    ``measure``, and further sections of a first recipe."""
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other)
@@ -74,44 +74,44 @@ class RecipePart(ABC):
         return hash(type(self))
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> Settings:
-        """Return how the conditions of a grid are measured; hashable, equal where they are measured alike."""
+        """Return how the conditions of a grid are measured; hashable, equal for equal measurements."""
         return settings_of(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-        """Yield what makes no sense in the recipe as a whole; ``recipe`` is None where some of it is not valid."""
+        """Yield faults of the recipe as a whole; ``recipe`` is None where part of it is invalid."""
         if not (tree.data.get("grids") if isinstance(tree.data, dict) else None):
             yield tree.problem((), "there is nothing to do: no grids")
 
     def sense(self, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
-        """Yield what makes no sense in a grid whatever the rig; the grid stands at ``at``."""
+        """Yield faults of a grid that do not depend on the rig; the grid is at ``at``."""
         yield from ()
 
     def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield what is beyond the rig's limits, as far as the values of the file can be read."""
+        """Yield values beyond the rig's limits, as far as the values of the file can be read."""
         yield from ()
 
     def terms(self, rig: Rig) -> Sequence[Term]:
-        """Return what the rig's measuring chain may be off by: the machine's part of every budget."""
+        """Return the possible errors of the rig's measuring chain: the machine's part of every budget."""
         return ()
 
     def rubs_as_described(self, rig: Rig) -> bool:
-        """Return whether rubber on this rig follows temperature as its compound's file says.
+        """Return whether rubber on this rig follows temperature as in its compound's file.
 
-        A simulated rig may rub by any law: a file tells nothing of that.
+        A simulated rig may use any friction law, which the file does not describe.
         """
         return not rig.simulated
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield what a rig could do and a specimen would not outlast, of a recipe that is valid otherwise."""
+        """Yield parts that a rig could do and a specimen would not outlast, of an otherwise valid recipe."""
         yield from ()
 
     def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield what a rig can do and is not expected to bring to its end; a run goes on all the same."""
+        """Yield parts that a rig can do but is not expected to complete; a run continues all the same."""
         yield from ()
 
     @abstractmethod
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> Estimator:
-        """Return what tells how long steps take on a rig.
+        """Return the estimator of durations on a rig.
 
         ``repeatability``: standard deviation between repeats, per cent of the coefficient, by compound.
         """
@@ -121,21 +121,22 @@ class RecipePart(ABC):
         """Return the plan of a valid recipe on a rig; ``estimator``: this part's for the rig, None: make one."""
 
     def estimate(self, plan: Plan, rig: Rig) -> Estimate:
-        """Return what a plan takes on a rig, with what is assumed of the scatter between repeats."""
+        """Return the totals of a plan on a rig, with the assumed scatter between repeats."""
         from tester.inputs.recipe.estimate import estimate
 
         return estimate(plan, self.estimator(rig))
 
     @abstractmethod
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
-        """Return the plan of what is left to do after an interruption; without steps where nothing is."""
+        """Return the plan of the rest after an interruption; without steps where nothing is left."""
 
     @abstractmethod
     def words(self, step: Step, one: StepEstimate) -> str:
-        """Return what a step does, in a line."""
+        """Return the work of a step, as a line."""
 
     def heading(self, plan: Plan, step: Step) -> str:
-        """Return the heading of what begins with a step, such as a specimen with its compound; "" for none."""
+        """Return the heading of a section that begins with a step, such as a specimen with its compound; "" for none.
+        """
         return ""
 
     def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
@@ -147,11 +148,12 @@ class RecipePart(ABC):
         return {}
 
     def step_fields(self, step: Step, one: StepEstimate) -> dict[str, object]:
-        """Return what a plan's JSON says of a step that is no condition, beside kind, index and seconds."""
+        """Return a step's fields in a plan's JSON, for a step other than a condition, beside kind, index and seconds.
+        """
         return {}
 
     def condition_json(self) -> ConditionJson:
-        """Return what writes conditions as JSON."""
+        """Return the writer of conditions as JSON."""
         from tester.inputs.recipe.plan_json import ConditionJson
 
         return ConditionJson(self.axes)

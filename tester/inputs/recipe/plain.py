@@ -1,7 +1,6 @@
-"""Recipes of a plain machine: a grid of its axes, one step for each condition, each specimen put on once.
+"""Recipes of a plain machine: a grid of its axes, one step for each condition, each specimen mounted once.
 
-A kind says how fast a condition slides, and how much of its counted way goes by in a second; everything else that a
-recipe is asked for follows.
+A kind defines how fast a condition slides, and how many blocks it makes in a second; the rest of a recipe follows.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ class Mount(Step):
 
 
 class PlainEstimator:
-    """How long the steps of a plain machine take (``tester.inputs.recipe.estimate.Estimator``)."""
+    """Durations of the steps of a plain machine (``tester.inputs.recipe.estimate.Estimator``)."""
 
     def __init__(self, part: PlainPart, rig: Rig, repeatability: Mapping[str, float] | None = None) -> None:
         """``repeatability``: s between repeats, per cent of the coefficient, by compound."""
@@ -51,7 +50,6 @@ class PlainEstimator:
         self._s_percent = dict(repeatability or {})
 
     def walk(self, plan: Plan) -> list[StepEstimate]:
-        """Return an estimate for every step."""
         return [
             self._condition(step) if isinstance(step, ConditionStep) else StepEstimate(self.person_s)
             for step in plan.steps
@@ -66,27 +64,22 @@ class PlainEstimator:
         )
 
     def shut_down_s(self, plan: Plan) -> float:
-        """Return the seconds from the last step to standstill."""
         return self.part.between_s
 
     def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        """Return the range of the rig time, s."""
-        seconds = sum(one.seconds for one in steps) + down_s
+        seconds = sum(step.seconds for step in steps) + down_s
         return (1.0 - SPREAD) * seconds, (1.0 + SPREAD) * seconds
 
     def s_percent(self, compound: str) -> float:
-        """Return the standard deviation between repeats that is expected, per cent."""
         return self._s_percent.get(compound, HISTORIC_PERCENT)
 
     def mu(self, setpoint: Setpoint) -> None:
         """Return None: no coefficient is expected."""
 
     def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
-        """Yield that nothing is worn off."""
         return (NEW for _ in plan.conditions())
 
     def reversible(self, step: ConditionStep) -> bool:
-        """Return False: it slides one way."""
         return False
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> None:
@@ -94,33 +87,35 @@ class PlainEstimator:
 
 
 class PlainPart(RecipePart):
-    """A plain machine's part of the recipe reader. A kind sets ``kind`` and ``axes`` and says its ``pace``.
+    """A plain machine's part of the recipe reader. A kind sets ``kind`` and ``axes`` and defines its ``pace``.
 
-    An axis with a ``limit`` is held against the key of that name of the rig file, in the axis's ``recipe_unit``.
+    An axis with a ``limit`` is checked against the key of that name in the rig file, in the axis's ``recipe_unit``.
     """
 
     settle_s: ClassVar[float] = 2.0
-    """A condition is held this long before its samples count, s [A]."""
+    """Time at a condition before its samples count, s [A]."""
     between_s: ClassVar[float] = 2.0
-    """From one repeat to the next: standstill and commit, s [A]."""
+    """Time from one repeat to the next: standstill and commit, s [A]."""
     person_s: ClassVar[float] = 300.0
-    """A person takes this long to put a specimen on, s [A]."""
+    """Time that a person takes to mount a specimen, s [A]."""
 
     @abstractmethod
     def pace(self, setpoint: Setpoint) -> tuple[float, float]:
         """Return how many blocks (``Roles.block``) a condition makes in a second, and how many metres it slides."""
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> PlainEstimator:
-        """Return what tells how long steps take on a rig."""
         return PlainEstimator(self, rig, repeatability)
 
     def expand(self, recipe: Recipe, rig: Rig, estimator: object = None) -> Plan:
-        """Return the plan: each replicate of a specimen is put on and goes through its conditions."""
+        """Return the plan: each replicate of a specimen is mounted and goes through its conditions."""
         conditions = conditions_of(recipe, self.settings)
         held = self.axes.number_of(self.axes.blocks)
         steps: list[Step] = []
         condition = piece = 0
-        specimens = tuple(Specimen(i, one.compound, one.note) for i, one in enumerate(recipe.specimens, start=1))
+        specimens = tuple(
+            Specimen(i, specimen_model.compound, specimen_model.note)
+            for i, specimen_model in enumerate(recipe.specimens, start=1)
+        )
         for specimen in specimens:
             for replicate in range(1, recipe.replicates + 1):
                 piece += 1
@@ -134,33 +129,31 @@ class PlainPart(RecipePart):
                             how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most,
                             how.until_percent,
                         ))  # fmt: skip
-        least = min((one.settings.min_valid for one in conditions), default=1)
+        least = min((specimen_model.settings.min_valid for specimen_model in conditions), default=1)
         return Plan(recipe.recipe, tuple(steps), specimens, least, metadata_of(recipe), recipe.kind, self.axes)
 
     def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield every value of an axis that is beyond the rig's limit on it, of either sign."""
         top = tree.data if isinstance(tree.data, dict) else {}
         grids = top.get("grids")
         for index, grid in enumerate(grids if isinstance(grids, list) else []):
             for axis in self.axes:
-                given = grid.get(axis.name) if isinstance(grid, dict) and axis.limit else None
-                most = value_at(rig, tuple(axis.limit.split("."))) if given is not None else None
-                for place, value in enumerate(given if isinstance(given, list) else [given]):
+                listed = grid.get(axis.name) if isinstance(grid, dict) and axis.limit else None
+                most = value_at(rig, tuple(axis.limit.split("."))) if listed is not None else None
+                for place, value in enumerate(listed if isinstance(listed, list) else [listed]):
                     try:
                         asked = Quantity(axis.recipe_unit).read(value)
                     except UnitError:
                         continue
                     if most is not None and abs(asked) > most:
-                        at = ("grids", index, axis.name, *([place] if isinstance(given, list) else []))
+                        at = ("grids", index, axis.name, *([place] if isinstance(listed, list) else []))
                         source = f'(limit {show(most, axis.recipe_unit)}: {axis.limit} of rig "{rig.name}")'
-                        said = f"{axis.name}: {show(asked, axis.recipe_unit)} is more than the rig allows {source}"
-                        yield tree.problem(at, said)
+                        problem = f"{axis.name}: {show(asked, axis.recipe_unit)} is more than the rig allows {source}"
+                        yield tree.problem(at, problem)
 
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
-        """Return the plan of the conditions that are not over; each specimen that has some is put on again."""
         steps: list[Step] = []
         mount: Mount | None = None
-        last = max((one.number for one in stand.mounted), default=0)
+        last = max((mounted.number for mounted in stand.mounted), default=0)
         for step in plan.steps:
             if isinstance(step, Mount):
                 mount = step
@@ -175,17 +168,15 @@ class PlainPart(RecipePart):
         return Plan(plan.name, tuple(steps), plan.specimens, plan.min_valid, plan.metadata, plan.kind, plan.axes)
 
     def words(self, step: Step, one: StepEstimate) -> str:
-        """Return what a step does, in a line."""
         if isinstance(step, ConditionStep):
             return f"{self.title(step)}: {repeats_words(step)} x {window_words(step.window)}"
         return self.title(step)
 
     def title(self, step: Step) -> str:
-        """Return what a step does, for who watches it."""
+        """Return the work of a step, for an observer."""
         if isinstance(step, Mount):
             return f"put on specimen {step.specimen}: {step.compound}" + (f" ({step.note})" if step.note else "")
         return condition_words(step.setpoint) if isinstance(step, ConditionStep) else step.kind
 
     def heading(self, plan: Plan, step: Step) -> str:
-        """Return the specimen where it is put on."""
         return f"specimen {step.specimen}, replicate {step.replicate}" if isinstance(step, Mount) else ""

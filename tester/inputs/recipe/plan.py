@@ -1,8 +1,8 @@
-"""The plan: what a recipe becomes before anything moves. Data only.
+"""The plan: the steps of a recipe before anything moves. Data only.
 
-A plan is a flat tuple of frozen steps. Describing it, estimating it, checking it against a rig, executing it
-and resuming it are five readers of this one structure. Repeats and bursts are counts in a condition and no
-nodes of their own, so a plan of 100,000 conditions stays small.
+A plan is a flat tuple of frozen steps. Describing it, estimating it, checking it against a rig, executing it and
+resuming it are five readers of this structure. Repeats and bursts are counts in a condition and no nodes of their own,
+so a plan of 100,000 conditions stays small.
 
 Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature difference in K), _s, _deg.
 """
@@ -22,9 +22,9 @@ class Step:
     """One step of a plan. A kind has its own beside ``ConditionStep`` and ``PromptStep``. ``index``: place, from 0."""
 
     kind: ClassVar[str] = ""
-    """What sort of step it is, in a word: steps of one kind take alike of their estimates."""
+    """Sort of the step, in a word: steps of one kind take similar times relative to their estimates."""
     contact: ClassVar[bool] = False
-    """Rubber is in contact for most of it: then samples are recorded at the full rate."""
+    """Whether rubber is in contact for most of it: then samples are recorded at the full rate."""
     index: int
 
 
@@ -39,10 +39,10 @@ class Specimen:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """How much a repeat collects: revolutions or seconds, exactly one of the two is not None.
+    """Length of a repeat: revolutions or seconds, exactly one of the two is not None.
 
     Drift is per window; a repeat collects 1.5 of them. ``extend_to`` (same unit, at least the window): the most that it
-    collects, its transient included, and where it is judged alone.
+    collects, its transient included, if it is judged alone.
     """
 
     revolutions: float | None
@@ -58,7 +58,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Soak:
-    """When a temperature counts as reached: within ``within_k`` for ``for_s``; at most ``at_most_s``."""
+    """Criterion of a reached temperature: within ``within_k`` for ``for_s``; at most ``at_most_s``."""
 
     within_k: float
     for_s: float
@@ -69,11 +69,11 @@ class Soak:
 class ConditionStep(Step):
     """Measure one condition: ``repeats`` values that count, each a window or more.
 
-    Up to ``at_most`` repeats are made: what is refused is made up for, and with ``until_percent`` the condition goes on
-    until its expanded repeatability (95 %, per cent of the coefficient) is reached.
+    At most ``at_most`` repeats are made: refused ones are replaced, and with ``until_percent`` repeats are added until
+    the condition's expanded repeatability (95 %, per cent of the coefficient) is reached.
 
-    ``condition`` counts from 1 through the plan (a replicate's conditions have numbers of their own).
-    ``row`` counts from 1 in the recipe's order and is the same for all replicates: its row of the table.
+    ``condition`` counts from 1 through the plan (a replicate's conditions have numbers of their own). ``row`` counts
+    from 1 in the recipe's order and is the same for all replicates: its row of the table.
     """
 
     kind: ClassVar[str] = "condition"
@@ -92,8 +92,8 @@ class ConditionStep(Step):
     at_most: int
     until_percent: float | None
     both_directions: bool = field(default=False, kw_only=True)
-    """Repeats alternate between sliding as asked for and reversed; ``repeats``, ``at_most`` and ``min_valid`` count
-    pairs."""
+    """Repeats alternate between the requested direction and the reverse; ``repeats``, ``at_most`` and ``min_valid``
+    count pairs."""
 
     @property
     def scheme(self) -> Scheme:
@@ -103,7 +103,7 @@ class ConditionStep(Step):
 
 @dataclass(frozen=True, slots=True)
 class PromptStep(Step):
-    """Something a person does and acknowledges; ``text`` is shown as it is."""
+    """A task for a person, who acknowledges it; ``text`` is shown unchanged."""
 
     kind: ClassVar[str] = "prompt"
     text: str
@@ -111,7 +111,7 @@ class PromptStep(Step):
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A whole recipe as steps. A kind's subclass adds what its procedures need of the recipe beside the steps."""
+    """A whole recipe as steps. A kind's subclass adds the data that its procedures need beside the steps."""
 
     name: str
     steps: tuple[Step, ...]
@@ -119,12 +119,12 @@ class Plan:
     min_valid: int
     metadata: Mapping[str, str] = field(default_factory=dict[str, str])
     kind: str = ""
-    """Of the rig that it is for."""
+    """Kind of its rig."""
     axes: Axes | None = None
-    """Of its conditions; None of a plan that can have none."""
+    """Axes of its conditions; None for a plan that can have none."""
 
     def conditions(self) -> Iterator[ConditionStep]:
-        """Yield the condition steps in the order in which they are measured."""
+        """Yield the condition steps in the order of measurement."""
         for step in self.steps:
             if isinstance(step, ConditionStep):
                 yield step
@@ -138,27 +138,27 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Mounted:
-    """Rubber that was mounted before the interruption. Diameter in mm (NaN: it has none), sliding distance in m."""
+    """A piece mounted before the interruption. Diameter in mm (NaN: it has none), sliding distance in m."""
 
     number: int
-    """Of all that were mounted, from 1."""
+    """Number among all mounted pieces, from 1."""
     specimen: int
     replicate: int
     diameter_mm: float
     sliding_m: float
     ground: bool
-    """It was prepared: ground in, or run in, completely."""
+    """Whether it was prepared completely: ground in, or run in."""
     last_condition: int = 0
-    """The last condition it was used in; 0: none yet."""
+    """The last condition of its use; 0: none yet."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stand:
-    """How far a plan has come: conditions by their numbers, rubber in the order in which it was mounted."""
+    """Progress of a plan: conditions by their numbers, pieces in the order of mounting."""
 
     ended: frozenset[int] = frozenset()
     begun: frozenset[int] = frozenset()
-    """Conditions of which a repeat was begun, ended ones included."""
+    """Conditions with a repeat begun, ended ones included."""
     mounted: tuple[Mounted, ...] = ()
     travel_m: float = 0.0
-    """How far the counterface has travelled under load."""
+    """Travel of the counterface under load."""

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from tester.inputs.recipe.part import RecipePart
 
 encode = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
-"""Return plain data as JSON on one line; numbers that are not finite are refused."""
+"""Returns plain data as JSON on one line; numbers that are not finite are refused."""
 quoted = lru_cache(maxsize=1024)(encode)
-"""Names of grids and compounds come again and again."""
+"""Names of grids and compounds repeat many times."""
 
 
 def json_chunks(
@@ -31,8 +31,8 @@ def json_chunks(
 ) -> Iterator[str]:
     """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands.
 
-    ``merged``: conditions that are steps of the plan once, and stand in several grids of its recipe. ``uncertainty``:
-    what is foreseen of it (``tester.inputs.recipe.foreseen``).
+    ``merged``: conditions that are steps of the plan once, and occur in several grids of its recipe. ``uncertainty``:
+    the prediction for it (``tester.inputs.recipe.foreseen``).
     """
     head: dict[str, object] = {
         "recipe": plan.name,
@@ -44,8 +44,11 @@ def json_chunks(
         **part.plan_fields(plan, estimate),
         **({"uncertainty": dict(uncertainty)} if uncertainty else {}),
         "not_held": list(estimate.not_held),
-        "merged": [one.as_data() for one in merged],
-        "specimens": [{"index": one.index, "compound": one.compound, "note": one.note} for one in plan.specimens],
+        "merged": [conditions.as_data() for conditions in merged],
+        "specimens": [
+            {"index": specimen.index, "compound": specimen.compound, "note": specimen.note}
+            for specimen in plan.specimens
+        ],
         "metadata": dict(plan.metadata),
         "kind": plan.kind,
         "axes": plan.axes.as_data() if plan.axes is not None else [],
@@ -53,19 +56,19 @@ def json_chunks(
     yield encode(head)[:-1] + ', "steps": ['
     separator = "\n"
     conditions = part.condition_json()
-    for step, one in zip(plan.steps, estimate.steps, strict=True):
+    for step, step_estimate in zip(plan.steps, estimate.steps, strict=True):
         yield separator
         if isinstance(step, ConditionStep):
-            yield conditions.line(step, one)
+            yield conditions.line(step, step_estimate)
         else:
-            common = {"kind": step.kind, "index": step.index, "seconds": round(one.seconds, 1)}
-            yield encode(common | part.step_fields(step, one))
+            common = {"kind": step.kind, "index": step.index, "seconds": round(step_estimate.seconds, 1)}
+            yield encode(common | part.step_fields(step, step_estimate))
         separator = ",\n"
     yield "\n]}\n"
 
 
 class _Texts(dict[AxisValue, str]):
-    """Values as JSON has them, each written once: few different ones are held in a great many conditions."""
+    """Values as JSON, each encoded once: many conditions share few different ones."""
 
     def __missing__(self, value: AxisValue) -> str:
         text = self[value] = encode(value)
@@ -76,11 +79,11 @@ class ConditionJson:
     """Conditions with their estimates as JSON.
 
     A template and texts made once: a dictionary for each of 100,000 conditions, encoded, takes four times as long. A
-    kind that says more than this overrides ``keys`` and ``texts``, which go together.
+    kind with further keys overrides ``keys`` and ``texts``, which go together.
     """
 
     def __init__(self, axes: Axes) -> None:
-        """``axes``: the kind's; each is told under its ``field``."""
+        """``axes``: the kind's; each is written under its ``field``."""
         self.axes = axes
         self.number = _Texts()
         self._windows: dict[tuple[float | None, float | None], str] = {}
@@ -110,7 +113,7 @@ class ConditionJson:
         )
 
     def texts(self, step: ConditionStep, one: StepEstimate) -> tuple[object, ...]:
-        """Return what stands under each key; ``%s`` of an integer and of a finite float is what JSON has for it."""
+        """Return the text under each key; ``%s`` of an integer and of a finite float is its form in JSON."""
         setpoint, number = step.setpoint, self.number
         return (
             step.condition,
@@ -132,7 +135,7 @@ class ConditionJson:
         )
 
     def window(self, window: Window) -> str:
-        """Return a window as a recipe writes it, in quotes."""
+        """Return a window in a recipe's notation, in quotes."""
         extent = window.revolutions, window.seconds
         text = self._windows.get(extent)
         if text is None:

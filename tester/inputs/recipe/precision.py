@@ -1,7 +1,7 @@
-"""What a precision takes, and what no number of repeats can reach.
+"""Repeats needed for a precision, and the floor that repeats cannot lower.
 
-``until`` is type A alone: the expanded repeatability of a mean. What the instruments add does not average out; a total
-uncertainty below that floor is refused.
+``until`` is type A alone: the expanded repeatability of a mean. The instruments' contribution does not average out; a
+total uncertainty below that floor is refused.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ AnyRecipe = TypeVar("AnyRecipe", bound=Recipe)
 
 
 class PrecisionError(Exception):
-    """A total uncertainty that cannot be reached; the message names the floor and its largest term."""
+    """An unreachable total uncertainty; the message names the floor and its largest term."""
 
 
-def floor_percent(one: Foreseen) -> float:
+def floor_percent(foreseen: Foreseen) -> float:
     """Return the expanded uncertainty (95 %) that repeating does not lower, per cent of the coefficient."""
-    return 100.0 * one.instruments.expanded / one.mu
+    return 100.0 * foreseen.instruments.expanded / foreseen.mu
 
 
 def until_for_total(total_percent: float, found: Sequence[Foreseen]) -> float:
-    """Return the repeatability (expanded, per cent) with which every condition has this total uncertainty.
+    """Return the repeatability (expanded, per cent) that gives every condition this total uncertainty.
 
     Raises PrecisionError where the instruments alone have more.
     """
@@ -49,14 +49,14 @@ def until_for_total(total_percent: float, found: Sequence[Foreseen]) -> float:
     return sqrt(total_percent**2 - floor**2)
 
 
-def _largest(one: Foreseen) -> tuple[str, float]:
-    """Return the largest term of the instruments, and what it is expanded, per cent."""
-    worst = max(one.instruments.contributions, key=lambda term: term.standard)
-    return worst.name, 100.0 * one.instruments.coverage * worst.standard / one.mu
+def _largest(foreseen: Foreseen) -> tuple[str, float]:
+    """Return the largest term of the instruments, and its expanded value, per cent."""
+    worst = max(foreseen.instruments.contributions, key=lambda term: term.standard)
+    return worst.name, 100.0 * foreseen.instruments.coverage * worst.standard / foreseen.mu
 
 
 def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
-    """Return a recipe that repeats each condition until its expanded repeatability is this, however often it takes."""
+    """Return a recipe that repeats each condition until its expanded repeatability is reached, however often."""
 
     def unbounded(repeats: RepeatsModel) -> RepeatsModel:
         return repeats.model_copy(update={"at_most": MAX_REPEATS})
@@ -74,16 +74,17 @@ def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
 def precision_lines(
     plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool], found: Sequence[Foreseen]
 ) -> Iterator[str]:
-    """Yield what the precision takes, where a plan asks for one: repeats, where s is from, what stands beside it.
+    """Yield the cost of the requested precision: repeats, the origin of s, the instruments' part. Nothing without a
+    request.
 
-    ``found``: what is foreseen of the plan's conditions.
+    ``found``: the predictions for the plan's conditions.
     """
     asked = [step for step in plan.conditions() if step.until_percent is not None]
     if not asked:
         return
     made = [
-        one.repeats
-        for step, one in zip(plan.steps, estimate.steps, strict=True)
+        step_estimate.repeats
+        for step, step_estimate in zip(plan.steps, estimate.steps, strict=True)
         if isinstance(step, ConditionStep) and step.until_percent is not None
     ]
     wanted = sorted({step.until_percent for step in asked if step.until_percent is not None})
@@ -111,5 +112,5 @@ def _short(step: ConditionStep, estimator: Estimator) -> bool:
 
 
 def s_percents(pools: Mapping[str, Pool]) -> dict[str, float]:
-    """Return the standard deviation between repeats to be expected of each compound, per cent."""
+    """Return the expected standard deviation between repeats of each compound, per cent."""
     return {compound: pool.s_percent if pool.df else HISTORIC_PERCENT for compound, pool in pools.items()}

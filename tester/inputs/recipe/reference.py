@@ -1,7 +1,7 @@
-"""A reference condition: the same one again and again through a run, to see what the counterface does meanwhile.
+"""A reference condition: the same one again and again through a run, to observe the counterface.
 
-What a recipe of any kind may have of it: how often, how many repeats. A kind adds which axes it is held at. It becomes
-ordinary conditions of the plan, under the name of a grid that no recipe with references may give to its own.
+This section is common to recipes of any kind: how often, how many repeats. A kind adds the axes of its setpoint.
+References become ordinary conditions of the plan, under a grid's name that is reserved in recipes with references.
 """
 
 from __future__ import annotations
@@ -30,5 +30,5 @@ class ReferenceSection(Section, frozen=True):
 
 
 def reference_metadata(section: ReferenceSection | None) -> Mapping[str, str]:
-    """Return what a run's record says of its references: by this a reader knows that it has some."""
+    """Return the metadata of a run's references, by which a reader recognises them."""
     return {} if section is None else {EVERY: str(section.every)}

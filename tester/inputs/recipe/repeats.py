@@ -1,4 +1,4 @@
-"""How many repeats a condition is expected to take: refused ones are made up for, ``until`` goes on to a precision."""
+"""Expected number of repeats of a condition: refused ones are replaced, ``until`` adds repeats up to a precision."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ from tester.inputs.recipe.schema import MAX_REPEATS
 from tester.inputs.recipe.settings import LEAST_REPEATS
 
 MADE_UP: Final = 0.01
-"""Share of good repeats that is refused and made up for, where the coefficient stands still [A]; show it with
-`python -m tests.campaigns.repeats`."""
+"""Share of good repeats that is refused and replaced, for a steady coefficient [A]; show it with `python -m
+tests.campaigns.repeats`."""
 HISTORIC_PERCENT: Final = 100.0 * REPEATABILITY
-"""Standard deviation between repeats where nothing is stored, per cent of the coefficient [A]."""
+"""Standard deviation between repeats without stored runs, per cent of the coefficient [A]."""
 POOLED_DF: Final = 30
-"""Degrees of freedom from which on a run's pooled standard deviation counts as known: t is within 5 % of its limit."""
+"""Degrees of freedom above which a run's pooled standard deviation counts as known: t is within 5 % of its limit."""
 SURE: Final = (0.75, 1.3)
-"""A run's own standard deviation over the one expected, 95 % of runs: chi-square with the degrees of freedom above."""
+"""A run's own standard deviation over the expected one, 95 % of runs: chi-square with the degrees of freedom above."""
 
 
 class Counted(Protocol):
-    """How often a condition is measured: a ConditionStep, or a grid's Settings."""
+    """Counts of a condition's measurement: a ConditionStep, or a grid's Settings."""
 
     @property
     def repeats(self) -> int:
-        """Repeats."""
+        """Return the repeats that must count."""
         ...
 
     @property
     def at_most(self) -> int:
-        """Repeats made in all, at most."""
+        """Return the most repeats made in all."""
         ...
 
     @property
     def until_percent(self) -> float | None:
-        """Expanded repeatability to be reached, per cent; None where the number of repeats is what counts."""
+        """Return the required expanded repeatability, per cent; None where only the number of repeats counts."""
         ...
 
     @property
     def both_directions(self) -> bool:
-        """Two repeats, in opposite directions, make a value: what is counted are pairs."""
+        """Return whether two repeats, in opposite directions, make a value: then the counts are of pairs."""
         ...
 
 
@@ -73,7 +73,7 @@ def needed(until_percent: float, s_percent: float, df: int = POOLED_DF) -> int:
 
 
 def expected(how: Counted, s_percent: float, df: int = POOLED_DF) -> float:
-    """Return the values that are expected to be measured, up to ``at_most``: repeats, or pairs of them.
+    """Return the expected number of measured values, up to ``at_most``: repeats, or pairs of them.
 
     ``s_percent``: standard deviation between repeats, per cent.
     """

@@ -39,7 +39,7 @@ class Listed(Quantity):
     choices: tuple[str, ...] = ()
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Give pydantic a list of at least one value; errors carry the index of the element."""
+        """Return a schema of a list of at least one value; errors carry the index of the element."""
         from pydantic_core import core_schema
 
         items: CoreSchema = (
@@ -72,7 +72,7 @@ class Extent:
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Give pydantic a validator that reads ``30 rev`` or ``60 s``."""
+        """Return a validator of ``30 rev`` or ``60 s``."""
         from pydantic_core import PydanticCustomError, core_schema
 
         def validate(value: object) -> Extent:
@@ -94,7 +94,7 @@ class Extent:
 
     @classmethod
     def read(cls, value: object) -> Extent:
-        """Return the extent that a value of the file means; raises UnitError."""
+        """Return the extent in a value of the file; raises UnitError."""
         if not isinstance(value, str):
             raise UnitError(f"expected {expected('rev', 's')}")
         number, unit = parse_one_of(value, ("rev", "s"))
@@ -113,7 +113,7 @@ Precision: TypeAlias = Annotated[float, Quantity("%", ge=0.1, le=50)]
 
 
 def _free_field(value: object) -> str:
-    """Return a free field as text: numbers and true/false are kept as they would be written."""
+    """Return a free field as text: numbers and true/false keep their spelling."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float | str):
@@ -178,7 +178,7 @@ class RepeatsModel(Section, frozen=True):
 
 
 def _repeats(value: object) -> object:
-    """Take a single number for the repeats that count."""
+    """Turn a single number into the repeats that count."""
     return cast("object", value) if isinstance(value, dict | RepeatsModel) else {"at_least": value}
 
 
@@ -217,12 +217,12 @@ class GridModel(GridName, frozen=True):
     """All combinations of its axes; what is not said here is as in ``measure``."""
 
     axes: ClassVar[Axes]
-    """Of the kind of rig whose grids these are."""
+    """Axes of the kind of rig."""
     base: ClassVar[type[GridModel]]
-    """What the kind has in a grid beside them."""
+    """The kind's model of a grid without its axes."""
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Be pickled by what the class itself is made from."""
+        """Pickle the arguments from which the class itself is made."""
         return _unpickled, (grid_model, (self.axes, self.base), self.__getstate__())
 
     repeats: Repeats | None = None
@@ -239,7 +239,7 @@ class GridModel(GridName, frozen=True):
 @lru_cache
 def grid_model(axes: Axes, base: type[GridModel] = GridModel) -> type[GridModel]:
     """Return the model of a grid over a kind's axes: its keys are their names, and what ``base`` has."""
-    fields: dict[str, Any] = {one.name: _axis_field(one) for one in axes}
+    fields: dict[str, Any] = {axis.name: _axis_field(axis) for axis in axes}
     due_first = dict(sorted(fields.items(), key=lambda entry: entry[1][1] is not ...))
     listed = create_model("GridAxes", __base__=GridName, **due_first)
     made = create_model("GridModel", __base__=(base, listed), __doc__=GridModel.__doc__)
@@ -249,7 +249,8 @@ def grid_model(axes: Axes, base: type[GridModel] = GridModel) -> type[GridModel]
 
 
 def _axis_field(axis: Axis) -> tuple[object, object]:
-    """Return annotation and default of an axis: left out, it is as in ``measure``, at its default, or missing."""
+    """Return annotation and default of an axis: left out, it has the value of ``measure`` or its default, or is
+    missing."""
     if axis.choices:
         listed: Any = Annotated[list[str], Listed("1", choices=axis.choices)]
     else:
@@ -282,12 +283,12 @@ class Recipe(Section, frozen=True):
     """A recipe of the friction tester."""
 
     axes: ClassVar[Axes]
-    """Of the kind of rig that it is for."""
+    """Axes of the kind of rig."""
     part: ClassVar[RecipePart]
-    """What that kind says about recipes."""
+    """That kind's part of the recipe reader."""
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Be pickled by what the class itself is made from."""
+        """Pickle the arguments from which the class itself is made."""
         return _unpickled, (recipe_model, (self.part,), self.__getstate__())
 
     recipe: Text

@@ -1,4 +1,4 @@
-"""What a recipe must make sense of by itself, beyond the form of each value; no rig is looked at."""
+"""Checks that a recipe makes sense by itself, beyond the form of each value; no rig is involved."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ Part = TypeVar("Part", bound=BaseModel)
 
 
 class Parts(NamedTuple):
-    """What of a recipe is valid in itself: the defaults, and grids with their index in the file."""
+    """Valid parts of a recipe: the defaults, and grids with their index in the file."""
 
     measure: MeasureModel | None
     grids: list[tuple[int, GridModel]]
 
 
 def semantic_problems(recipe: Recipe | None, tree: Tree, part: RecipePart) -> list[Problem]:
-    """Return what does not make sense in the values of a recipe for a kind of rig, with positions.
+    """Return the contradictions in the values of a recipe for a kind of rig, with positions.
 
-    ``recipe`` None: some of it is not valid; then what is valid in itself is looked at.
+    ``recipe`` None: part of it is invalid; then its valid parts are checked.
     """
     parts = _salvaged(tree, part) if recipe is None else Parts(recipe.measure, list(enumerate(recipe.grids)))
     problems = [*_whole(recipe, tree, part), *part.whole(recipe, tree), *_names(parts.grids, tree)]
@@ -58,13 +58,13 @@ def _salvaged(tree: Tree, part: RecipePart) -> Parts:
     top = tree.data if isinstance(tree.data, dict) else {}
     listed = top.get("grids")
     model = grid_model(part.axes, part.grid)
-    grids = [(index, _known(model, one)) for index, one in enumerate(listed if isinstance(listed, list) else [])]
+    grids = [(index, _known(model, entry)) for index, entry in enumerate(listed if isinstance(listed, list) else [])]
     measure = _known(part.measure, top.get("measure"))
     return Parts(measure, [(index, grid) for index, grid in grids if grid is not None])
 
 
 def _known(model: type[Part], data: Value) -> Part | None:
-    """Return a mapping's known keys as a model; None where they are not valid."""
+    """Return a mapping's known keys as a model; None where they are invalid."""
     if not isinstance(data, dict):
         return None
     names = {info.alias or name for name, info in model.model_fields.items()}
@@ -92,7 +92,7 @@ def _whole(recipe: Recipe | None, tree: Tree, part: RecipePart) -> Iterator[Prob
 
 
 def _bounds(recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-    """Refuse what is to replace a bound of the budget and is no number for it."""
+    """Refuse a replacement of a bound of the budget that is no suitable number."""
     for key, value in (recipe.experiment if recipe is not None else {}).items():
         if key.startswith(terms.PREFIX):
             try:
@@ -102,10 +102,10 @@ def _bounds(recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
 
 
 def _due(part: RecipePart) -> str:
-    """Return what ``measure`` has to say at least, in words: an example of each axis that has no default there."""
+    """Return the least content of ``measure``, in words: an example of each axis that has no default there."""
     due = [axis for axis in part.axes if axis.in_measure]
-    said = ", ".join(f"{one.name}: {plain(one.default)} {one.unit}" for one in due if one.default is not None)
-    return f' (expected at least "{said}" in it)' if said else ""
+    examples = ", ".join(f"{axis.name}: {plain(axis.default)} {axis.unit}" for axis in due if axis.default is not None)
+    return f' (expected at least "{examples}" in it)' if examples else ""
 
 
 def _names(grids: list[tuple[int, GridModel]], tree: Tree) -> Iterator[Problem]:
@@ -117,37 +117,37 @@ def _names(grids: list[tuple[int, GridModel]], tree: Tree) -> Iterator[Problem]:
 
 
 def _measure(measure: MeasureModel, grid: GridModel | None, at: Location, tree: Tree) -> Iterator[Problem]:
-    """Hold repeats, windows and bands against each other, where the place ``at`` says one of them itself."""
-    own = measure if grid is None else grid
-    said = own.model_fields_set
+    """Compare repeats, windows and bands with each other, where the place ``at`` states at least one of them itself."""
+    section = measure if grid is None else grid
+    stated = section.model_fields_set
 
     def place(*names: str) -> Location:
-        return (*at, next((name for name in names if name in said), names[-1]))
+        return (*at, next((name for name in names if name in stated), names[-1]))
 
-    asked, given = own.repeats or measure.repeats, own.min_valid or measure.min_valid
+    asked, min_valid = section.repeats or measure.repeats, section.min_valid or measure.min_valid
     repeats, most = asked.at_least, at_most_of(asked)
-    if said & {"repeats", "min_valid"} and given is not None and given > repeats:
-        yield tree.problem(place("min_valid", "repeats"), f"min_valid, {given}, is more than repeats, {repeats}")
-    if "repeats" in said and given is None and repeats < DEFAULT_MIN_VALID:
+    if stated & {"repeats", "min_valid"} and min_valid is not None and min_valid > repeats:
+        yield tree.problem(place("min_valid", "repeats"), f"min_valid, {min_valid}, is more than repeats, {repeats}")
+    if "repeats" in stated and min_valid is None and repeats < DEFAULT_MIN_VALID:
         message = f"a value without a flag needs {DEFAULT_MIN_VALID} valid repeats unless min_valid says otherwise"
         expected = f"(expected repeats of at least {DEFAULT_MIN_VALID}, or min_valid)"
         yield tree.problem((*at, "repeats"), f"{message} {expected}")
-    if said & {"repeats", "until"} and (own.until or measure.until) is not None and most < LEAST_REPEATS:
+    if stated & {"repeats", "until"} and (section.until or measure.until) is not None and most < LEAST_REPEATS:
         message = f"until needs {LEAST_REPEATS} repeats to know the repeatability, and at most {most} are made"
         expected = f"(expected at_most: {LEAST_REPEATS} or more in repeats)"
         yield tree.problem(place("until", "repeats"), f"{message} {expected}")
     window, longest = extents_of(measure, grid)
-    if said & {"window", "extend_to"} and longest and (longest.unit != window.unit or longest.value < window.value):
+    if stated & {"window", "extend_to"} and longest and (longest.unit != window.unit or longest.value < window.value):
         message = f"extend_to, {longest}, is to be at least the window, {window}, in the same unit"
         yield tree.problem(place("extend_to", "window"), message)
-    soak, band = own.soak or measure.soak, own.temperature_band or measure.temperature_band
-    if said & {"soak", "temperature_band"} and soak.within > band:
+    soak, band = section.soak or measure.soak, section.temperature_band or measure.temperature_band
+    if stated & {"soak", "temperature_band"} and soak.within > band:
         message = f"soak.within, {soak.within:g} K, is wider than temperature_band, {band:g} K"
         yield tree.problem((*place("soak", "temperature_band"), "within"), message)
 
 
 def _combined(measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: Tree) -> Iterator[Problem]:
-    """Refuse the closest two of three where not three repeats are to count."""
+    """Refuse the closest two of three unless three repeats must count."""
     if measure.combine != "paper":
         return
     used = {(grid.repeats or measure.repeats).at_least for _, grid in grids}
@@ -161,13 +161,13 @@ def _axes(grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
         seen: set[AxisValue] = set()
         for index, value in enumerate(listed(grid, axis)):
             if value in seen:
-                told = value if isinstance(value, str) else show(value, axis.recipe_unit)
-                yield tree.problem((*at, axis.name, index), f"{axis.name}: {told} is listed twice")
+                shown_value = value if isinstance(value, str) else show(value, axis.recipe_unit)
+                yield tree.problem((*at, axis.name, index), f"{axis.name}: {shown_value} is listed twice")
             seen.add(value)
 
 
 def listed(grid: GridModel, axis: Axis) -> Sequence[AxisValue]:
-    """Return an axis as a grid lists it; nothing where it is left to ``measure``."""
+    """Return an axis as a grid lists it; empty where it is left to ``measure``."""
     return getattr(grid, axis.name) or ()
 
 
@@ -175,11 +175,14 @@ def _shared(
     measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: Tree, part: RecipePart
 ) -> Iterator[Problem]:
     """Refuse two grids that share a condition and measure it differently: it is measured once."""
-    grids = [one for one in grids if not one[1].measure_again]
+    grids = [grid for grid in grids if not grid[1].measure_again]
     settings = [part.settings(measure, grid) for _, grid in grids]
     if len(set(settings)) < 2:
         return
-    axes = [{name: frozenset(held) for name, held in axis_values(measure, grid).items()} for _, grid in grids]
+    axes = [
+        {name: frozenset(values_of_axis) for name, values_of_axis in axis_values(measure, grid).items()}
+        for _, grid in grids
+    ]
     for first, second in combinations(range(len(grids)), 2):
         shared = all(values & axes[second][name] for name, values in axes[first].items())
         if shared and settings[first] != settings[second]:

@@ -1,4 +1,4 @@
-"""How the conditions of a grid are measured: the recipe's ``measure`` with what the grid says otherwise."""
+"""How the conditions of a grid are measured: the recipe's ``measure`` with the grid's own values."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ DEFAULT_MIN_VALID = 3
 """Least valid repeats for a value without a flag [A]."""
 
 DEFAULT_AT_MOST = 2
-"""Repeats made in all, as a multiple of those that are to count, unless the recipe says ``at_most``."""
+"""Repeats made in all, as a multiple of those that must count, unless the recipe has ``at_most``."""
 
 LEAST_REPEATS = 4
-"""Repeats of a condition before ``until`` counts as reached: with three a coverage of 71 % would be called 95 %."""
+"""Least repeats of a condition before ``until`` counts as reached: three would have a coverage of 71 %, not 95 %."""
 
 DEFAULT_EXTENSION = 3.0
-"""Most that a repeat collects as a multiple of its window, unless the recipe says ``extend_to``."""
+"""Most that a repeat collects as a multiple of its window, unless the recipe has ``extend_to``."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """How every condition of a grid is measured; a kind's subclass adds what its own sections say of it."""
+    """How every condition of a grid is measured; a kind's subclass adds the values of its own sections."""
 
     repeats: int
     at_most: int
@@ -57,12 +57,12 @@ def at_most_of(repeats: RepeatsModel) -> int:
 
 
 def values_of(axis: Axis, measure: MeasureModel, grid: GridModel) -> tuple[AxisValue, ...]:
-    """Return what a grid holds an axis at, each value once: its own list, or the one value of ``measure``."""
-    own: Sequence[AxisValue] | None = getattr(grid, axis.name)
-    if own is None:
+    """Return a grid's values of an axis, each once: its own list, or the value of ``measure``."""
+    listed: Sequence[AxisValue] | None = getattr(grid, axis.name)
+    if listed is None:
         value: AxisValue = getattr(measure, axis.name)
         return (value,)
-    return tuple(dict.fromkeys(own))
+    return tuple(dict.fromkeys(listed))
 
 
 def extents_of(measure: MeasureModel, grid: GridModel | None) -> tuple[Extent, Extent | None]:

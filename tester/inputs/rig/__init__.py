@@ -1,6 +1,6 @@
-"""The rig file as far as it is the same for all kinds: sections, reader, checks, safety keys, missing keys.
+"""The part of the rig file that is common to all kinds: sections, reader, checks, safety keys, missing keys.
 
-A kind adds its sections (tester.kinds.*.rig); which kind a file is of, ``tester.kinds.load_rig`` finds out.
+A kind adds its sections (tester.kinds.*.rig); ``tester.kinds.load_rig`` determines the kind of a file.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What must hold of a load cell in a rig file: that it measures what its machine needs, and of its transmitters."""
+"""Checks a load cell in a rig file: its required channels, and its transmitters."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _Found = Iterator[tuple[Location, str]]
 
 
 def problems_of_cells(rig: Rig) -> _Found:
-    """Yield what is wrong with the machine's own devices that must measure something, and with parts of devices."""
+    """Yield the faults of the machine's own devices with required channels, and of parts of devices."""
     for name, part in rig.devices.items():
         if part.part_of:
             yield from _belongs(rig, name, part)
@@ -44,12 +44,15 @@ def _measures(rig: Rig, name: str, own: OwnDevice) -> _Found:
         try:
             profile = profile_of(device.profile)
         except ProfileError:
-            return  # said elsewhere
+            return  # reported elsewhere
         for channel in profile.channels:
-            given = device.channels.get(channel, channel)
-            if given in by_channel:
-                yield ("devices", key), f"measures {given}, as {by_channel[given]} does: rename it by `channels`"
-            by_channel.setdefault(given, key)
+            channel_name = device.channels.get(channel, channel)
+            if channel_name in by_channel:
+                yield (
+                    ("devices", key),
+                    f"measures {channel_name}, as {by_channel[channel_name]} does: rename it by `channels`",
+                )
+            by_channel.setdefault(channel_name, key)
         for channel in device.channels:
             if channel not in profile.channels:
                 place = ("devices", key, "channels", channel)
@@ -73,19 +76,25 @@ def skew_problem(rig: Rig, channels: tuple[str, ...], most_skew_s: float) -> _Fo
 
     links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
     try:
-        made = [
+        transmitters = [
             Transmitter(
-                title_of(rig, name), profile_of(one.profile), one.unit_id, links[one.line], one.channels, one.parameters
+                title_of(rig, name),
+                profile_of(part.profile),
+                part.unit_id,
+                links[part.line],
+                part.channels,
+                part.parameters,
             )
-            for name, one in parts.items()
+            for name, part in parts.items()
         ]
-        cell = JoinedCell(made, channels, most_skew_s)
+        cell = JoinedCell(transmitters, channels, most_skew_s)
     except (ProfileError, ValueError, KeyError):
-        return  # said elsewhere
+        return  # reported elsewhere
     if cell.usual_skew_s <= most_skew_s:
         return
     apart = f"are read {1e3 * cell.usual_skew_s:.0f} ms apart at the usual times of their lines"
     limit = f"interlocks.cell_skew is {1e3 * most_skew_s:g} ms"
-    yield ("devices", next(iter(parts))), (
-        f"the load cell's transmitters {apart}, and {limit}: raise the baud, or give each a line of its own"
+    yield (
+        ("devices", next(iter(parts))),
+        (f"the load cell's transmitters {apart}, and {limit}: raise the baud, or give each a line of its own"),
     )

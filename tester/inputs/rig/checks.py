@@ -1,4 +1,4 @@
-"""What must hold between the sections that every rig has; each section alone is checked by its types."""
+"""Checks across the sections that every rig has; the types check each section alone."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from tester.inputs.rig.sensors import channels_of, further_channels, further_sen
 MAX_BUS_LOAD = 0.5
 """Above this share of the bus the scan rate is refused: bursts of SDO and EMCY need the rest (fieldbus, wire sums)."""
 COMMANDED = frozenset({"jacket", "chamber"})
-"""Kinds of profiles whose devices take commands: none of them is a mere further sensor."""
+"""Kinds of profiles whose devices take commands: these cannot be further sensors."""
 EMISSIVITIES = (0.1, 1.0)
-"""Least and greatest emissivity that a surface can be taken to have [A]."""
+"""Least and greatest plausible emissivity of a surface [A]."""
 SYNC_BITS, RPDO_BITS, TPDO_BITS = 55, 115, 135
 """Bits of a frame of 0, 6 and 8 bytes with worst-case stuffing and the space between frames."""
 
@@ -28,10 +28,10 @@ _Found = Iterator[tuple[Location, str]]
 
 
 def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
-    """Return what does not fit together, the kind's own included, with positions."""
-    found = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig)]
-    found += [*_channels(rig), *_watched(rig), *problems_of_cells(rig), *_simulation(rig), *rig.problems()]
-    return [tree.problem(location, message) for location, message in found]
+    """Return the contradictions, including the kind's own, with positions."""
+    faults = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig)]
+    faults += [*_channels(rig), *_watched(rig), *problems_of_cells(rig), *_simulation(rig), *rig.problems()]
+    return [tree.problem(location, message) for location, message in faults]
 
 
 def _packaged(rig: Rig) -> _Found:
@@ -41,9 +41,9 @@ def _packaged(rig: Rig) -> _Found:
 
 def _nodes(rig: Rig) -> _Found:
     taken = {rig.can.node: "the PC"}
-    found = [(("axes", name), name, axis.node_id) for name, axis in rig.drives().items()]
-    found += [(("can", "nodes", name), name, node.node_id) for name, node in rig.can.nodes.items()]
-    for place, name, node_id in found:
+    nodes = [(("axes", name), name, axis.node_id) for name, axis in rig.drives().items()]
+    nodes += [(("can", "nodes", name), name, node.node_id) for name, node in rig.can.nodes.items()]
+    for place, name, node_id in nodes:
         if node_id in taken:
             yield (*place, "node_id"), f"node {node_id} is {taken[node_id]} already"
         taken.setdefault(node_id, name)
@@ -55,7 +55,7 @@ def _nodes(rig: Rig) -> _Found:
 
 
 def _drives(rig: Rig) -> _Found:
-    """What is known of a make of drive, an axis need not be connected to learn."""
+    """Yield faults that the profile of a drive reveals without a connection."""
     for name, axis in rig.drives().items():
         for refused in plan(axis).refused:
             yield ("axes", name, "profile"), refused
@@ -117,7 +117,7 @@ def _profiles(rig: Rig) -> _Found:
 
 
 def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own: bool) -> _Found:
-    """Check what is written to a sensor; one that heats takes nothing from its section."""
+    """Check the parameters written to a sensor; a device that heats takes none from its section."""
     registers = profile.writes if profile.kind not in COMMANDED else {}
     optical = profile.kind == "ir_thermometer"
     for key, value in device.parameters.items():
@@ -139,7 +139,7 @@ def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own:
 
 
 def _channels(rig: Rig) -> _Found:
-    """Every channel of a further sensor has a name of its own, of which a column can be made."""
+    """Check that every channel of a further sensor has a unique name that can become a column."""
     taken: dict[str, str] = {}
     for name, device in further_sensors(rig).items():
         try:
@@ -171,9 +171,9 @@ def _channels(rig: Rig) -> _Found:
 
 
 def _watched(rig: Rig) -> _Found:
-    """Every channel that an interlock looks at is measured by a further sensor."""
+    """Check that a further sensor measures every channel of an interlock."""
     try:
-        there = [one.name for one in further_channels(rig)]
+        there = [further_channel.name for further_channel in further_channels(rig)]
     except ProfileError:
         return
     for name in rig.watched:
@@ -184,12 +184,15 @@ def _watched(rig: Rig) -> _Found:
 
 
 def _is_own(rig: Rig, channel: str) -> bool:
-    """Tell whether a channel of the kind has this name, in the record or on screens."""
-    return any(channel in (one.name, one.screen.key if one.screen is not None else "") for one in rig.quantities)
+    """Return whether a channel of the kind has this name, in the record or on screens."""
+    return any(
+        channel in (quantity.name, quantity.screen.key if quantity.screen is not None else "")
+        for quantity in rig.quantities
+    )
 
 
 def _simulation(rig: Rig) -> _Found:
-    """A simulated rig has no real wire and a real one no simulated wire: half of each is a mistake."""
+    """Check that a simulated rig has no real wire and a real one no simulated wire: a mixture is a mistake."""
     wires = [(("can", "interface"), rig.can.interface)]
     wires += [(("lines", name, "port"), line.port) for name, line in rig.lines.items()]
     for location, wire in wires:
@@ -199,24 +202,24 @@ def _simulation(rig: Rig) -> _Found:
 
 
 def other_settings(rig: Rig) -> list[str]:
-    """Return the lines that are set otherwise than profiles of devices on them say, a text each with what to do.
+    """Return the lines whose settings differ from the profiles of their devices, each with the remedy.
 
-    Most devices can be set to other values than their profile's, which are those of the maker or our advice: so this
-    refuses nothing. A line over TCP has settings of the gateway's.
+    Most devices accept other values than their profile's, which are the maker's or our advice: so this refuses nothing.
+    A line over TCP has the settings of its gateway.
     """
-    found: list[str] = []
+    differing: list[str] = []
     for key, line in rig.lines.items():
         if line.framing != "rtu":
             continue
-        there = [(name, device) for name, device in rig.devices.items() if device.line == key]
-        for name, device in there:
+        on_line = [(name, device) for name, device in rig.devices.items() if device.line == key]
+        for name, device in on_line:
             try:
                 due = profile_of(device.profile).line
             except ProfileError:
-                continue  # said elsewhere
+                continue  # reported elsewhere
             if (due.baud, due.parity) != (line.baud, line.parity):
-                found.append(
+                differing.append(
                     f"lines.{key} has {line.baud} baud, parity {line.parity}; {name} by its profile {device.profile}"
                     f" {due.baud} baud, parity {due.parity}: set one as the other (`tester doctor` finds what answers)"
                 )
-    return found
+    return differing

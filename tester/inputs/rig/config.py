@@ -1,8 +1,8 @@
-"""What every rig file says, whatever its kind: buses, scan rates, lines, and what a kind's own sections build upon.
+"""The common content of every rig file: buses, scan rates, lines, and the base of a kind's own sections.
 
 A kind declares its sections as frozen dataclasses and its rig as a subclass of ``Rig``. Units are in the names; keys in
-the file have none (tester.base.config_reader). Nothing of it has a default: a limit never comes from the program,
-always from a file that a person can read, the rig's own or the packaged one of its kind (``Rig.may_lack``).
+the file have none (tester.base.config_reader). Nothing has a default in the program: a limit always comes from a file
+that a person can read, the rig's own or the packaged one of its kind (``Rig.may_lack``).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ OneRig = TypeVar("OneRig", bound="Rig")
 
 
 class WrongKindError(TypeError):
-    """A rig of one kind came to where another kind's is needed; the message says which."""
+    """A rig of another kind than required; the message names both."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,15 +96,15 @@ class DeviceConfig:
 
 @dataclass(frozen=True, slots=True)
 class OwnDevice:
-    """A device that a kind of machine has: what people call it, its profile's kind, whether a rig can be without it."""
+    """A device of a kind of machine: its name for people, its profile's kind, whether a rig can lack it."""
 
     title: str
     profile: str
     optional: bool = False
     channels: tuple[str, ...] = ()
-    """What it must measure, by the names of its profile's channels."""
+    """Channels that it must measure, by the names of its profile's channels."""
     joined: bool = False
-    """It may be several transmitters, which measure that together (``DeviceConfig.part_of``)."""
+    """Whether it may be several transmitters, which measure the channels together (``DeviceConfig.part_of``)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ class CalibrationConfig:
     overdue: str = "warn"
 
     def __post_init__(self) -> None:
-        """Refuse what is no date, and no word for ``overdue``."""
+        """Raise ValueError for a text that is no date, and for an unknown ``overdue``."""
         self.ends()
         if self.overdue not in ("warn", "refuse"):
             raise ValueError(f'overdue: expected warn or refuse, got "{self.overdue}"')
@@ -130,7 +130,7 @@ class CalibrationConfig:
         return {words: _day(words, getattr(self, name)) for name, words in names.items()}
 
     def over(self, today: date) -> str:
-        """Return which certificates have ended before a day, "" where none has."""
+        """Return the certificates that ended before a day, "" for none."""
         return ", ".join(f"{name} ended {end}" for name, end in self.ends().items() if end is not None and end < today)
 
 
@@ -145,7 +145,7 @@ def section_of(name: str, parameters: tuple[Parameter, ...], module: str) -> Any
     """Return the class of a section with a field for each parameter: a kind's ``interlocks``."""
     return make_dataclass(
         name,
-        [(one.name, Annotated[float, one.unit, one.bounds]) for one in parameters],
+        [(parameter.name, Annotated[float, parameter.unit, parameter.bounds]) for parameter in parameters],
         frozen=True,
         slots=True,
         namespace={"__module__": module, "__doc__": "A section of the rig file: a field for each parameter."},
@@ -153,47 +153,47 @@ def section_of(name: str, parameters: tuple[Parameter, ...], module: str) -> Any
 
 
 def values_of(section: DataclassInstance, parameters: tuple[Parameter, ...]) -> Values:
-    """Return what such a section says, by parameter."""
-    return {one: float(getattr(section, one.name)) for one in parameters}
+    """Return the values of such a section, by parameter."""
+    return {parameter: float(getattr(section, parameter.name)) for parameter in parameters}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rig:
-    """A rig: everything about the machine that software needs to know, and nothing about a test.
+    """A rig: the software's whole knowledge of the machine, without any test.
 
-    A kind's subclass adds its sections and answers what is declared here without a value.
+    A kind's subclass adds its sections and defines the members declared here without a value.
     """
 
     packaged: ClassVar[Mapping[str, str]]
-    """Rig files that ship with the kind, by the names that ``--rig`` takes: ``package:file``. The first is the one
-    that a file of the kind is compared with and completed from, unless its key ``like`` names another."""
+    """Packaged rig files of the kind, by the names that ``--rig`` takes: ``package:file``. The first completes a file
+    of the kind and is compared with it, unless the file's key ``like`` names another."""
     may_lack: ClassVar[tuple[str, ...]] = ("scan", "can.heartbeat", "can.drive_heartbeat", "can.consumer_heartbeat")
     """Keys, or whole sections, that a file may lack: they take the value of the packaged file, and ``tester check``
-    says which did. ``*`` stands for one key. Every other key is only known to those who built the machine."""
+    lists them. ``*`` matches one key. Every other key is known only to the builders of the machine."""
     stated: ClassVar[tuple[str, ...]] = ()
-    """Sections of which every key has to be in the file, although their class, which others use, too, has defaults."""
+    """Sections whose keys must all be in the file, although their class, which others share, has defaults."""
     manual: ClassVar[tuple[str, ...]] = ()
     """Axes that a person may set instead of a drive: ``manual: true``."""
     own: ClassVar[Mapping[str, OwnDevice]] = {}
     """Devices of the kind by their keys in ``devices``; any other is a further sensor (tester.inputs.rig.sensors)."""
     parameters: ClassVar[tuple[Parameter, ...]] = ()
-    """Of the section ``interlocks``. One that the packaged file does not have counts there with its default."""
+    """Parameters of the section ``interlocks``. One missing in the packaged file has its default there."""
     watched: ClassVar[tuple[str, ...]] = ()
-    """Channels of further sensors that the kind's interlocks look at: a rig file has to have them."""
+    """Channels of further sensors that the kind's interlocks watch: a rig file must have them."""
     quantities: ClassVar[Quantities]
     """The kind's table of channels, without those of further sensors (tester.inputs.rig.sensors.quantities_on)."""
     ceilings: ClassVar[tuple[Ceiling, ...]] = ()
-    """Every key on which safety hangs, in the order of the kind's safety page."""
+    """Every safety key, in the order of the kind's safety page."""
     real: ClassVar[tuple[tuple[str, str], ...]] = ()
-    """(text of the packaged file, what a real machine's has there), beside what is the same for all kinds
-    (tester.inputs.rig.packaged); each must be there exactly once."""
+    """(text of the packaged file, its replacement for a real machine), beside those common to all kinds
+    (tester.inputs.rig.packaged); each must occur exactly once."""
 
     rig: str
-    """What the rig is called."""
+    """Name of the rig."""
     kind: str
-    """The kind of machine that it is."""
+    """Kind of the machine."""
     like: str = ""
-    """Name of the packaged rig that it is built like; "" is the first of its kind."""
+    """Name of the packaged rig of the same build; "" is the first of its kind."""
     simulated: bool
     scan: ScanConfig
     can: CanConfig
@@ -209,12 +209,13 @@ class Rig:
 
     @property
     def name(self) -> str:
-        """What the rig is called."""
+        """Return the name of the rig."""
         return self.rig
 
     @property
     def ambient_c(self) -> float:
-        """Temperature of the air around the rig, degC: of the simulated rig's air, else as the file states it."""
+        """Return the temperature of the air around the rig, degC: of the simulated rig's air, else as stated in the
+        file."""
         raise NotImplementedError
 
     def in_air(self: OneRig, ambient_c: float) -> OneRig:
@@ -226,7 +227,7 @@ class Rig:
         return getattr(self, "calibration", CalibrationConfig())
 
     def stale_limits(self) -> Mapping[str, tuple[str, float]]:
-        """Return the key and the value, s, of how old a device's reading may be, by its name in ``devices``."""
+        """Return the key and the value, s, of the greatest age of a device's reading, by its name in ``devices``."""
         return {}
 
     def drives(self) -> Mapping[str, AxisConfig]:
@@ -235,12 +236,13 @@ class Rig:
 
     @property
     def plant(self) -> Any:
-        """The section ``sim``: parameters of the simulated machine, as the kind's twin takes them (sim.machines)."""
+        """Return the section ``sim``: parameters of the simulated machine, as the kind's twin takes them
+        (sim.machines)."""
         return getattr(self, "sim", None)
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """Lines of a fault script (sim.faults.language) that the file states for a simulated rig."""
+        """Return the lines of a fault script (sim.faults.language) in the file, for a simulated rig."""
         return getattr(self.plant, "faults", ())
 
     def values(self) -> Values:
@@ -249,19 +251,20 @@ class Rig:
         return values_of(section, self.parameters)
 
     def settled(self: OneRig) -> OneRig:
-        """Return the rig with what follows from its file."""
+        """Return the rig with the values that follow from its file."""
         return self
 
     def problems(self) -> Iterator[tuple[Location, str]]:
-        """Yield what does not fit together between the kind's sections, with its place."""
+        """Yield contradictions between the kind's sections, with their places."""
         yield from ()
 
     @property
     def tree(self) -> dict[str, object]:
-        """The configuration with everything resolved, as it could stand in a file."""
+        """Return the configuration with everything resolved, as data for a file."""
         return as_tree(self)
 
     @property
     def text(self) -> str:
-        """The configuration with everything resolved, as YAML: what a run stores, and what reads back as this rig."""
+        """Return the configuration with everything resolved, as YAML: a run stores it, and it reads back as this rig.
+        """
         return as_text(self)

@@ -21,22 +21,22 @@ from tester.inputs.rig.profiles import extension_drive, extension_law
 OneRig = TypeVar("OneRig", bound=Rig)
 laws.look_up_with(extension_law)
 reader.look_up_with(extension_drive)
-MISSING = "only those who built the machine know it: no packaged value stands in"
-"""Said of a key that has to be in the file."""
+MISSING = "only those who built the machine know it: no packaged value can replace it"
+"""Message for a key that must be in the file."""
 
 
 def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_risk: str = "") -> OneRig:
     """Return the rig of a file's tree; changes the tree.
 
     ``overrides`` are ``a.b.c=value`` texts, each replacing one key of the file; the value is read as in the file.
-    ``accept_risk``: why safety keys may be looser than they should be (``risks_of``), "" = they may not. On a real rig
-    only its file may say so: ``overrides`` can but tighten what it says. Raises InvalidSource with every problem; one
-    that an override brought in is named by it.
+    ``accept_risk``: why safety keys may be looser than allowed (``risks_of``), "" = they may not. On a real rig only
+    its file may loosen them: ``overrides`` can only tighten. Raises InvalidSource with every problem; a problem of an
+    override carries its name.
     """
     texts = tuple(overrides)
     if not texts:
         return _accepted(checked(kind, tree), None, tree, accept_risk)
-    stated = checked(kind, deepcopy(tree))  # what is wrong with the file itself is told first, and as such
+    stated = checked(kind, deepcopy(tree))  # faults of the file itself come first, under its own name
     problems = [problem for number, text in enumerate(texts) for problem in _override(tree, text, number)]
     if problems:
         raise InvalidSource(problems)
@@ -47,9 +47,9 @@ def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_r
 
 
 def risks_of(rig: Rig) -> tuple[Risk, ...]:
-    """Return the safety keys for which a rig needs somebody's word: those looser than the packaged values.
+    """Return the safety keys for which a rig needs a person's acceptance: those looser than the packaged values.
 
-    Where nobody can be hurt (``counts_as_simulated``) only those looser than their hardest values.
+    On a harmless rig (``counts_as_simulated``) only those looser than their hardest values.
     """
     return beyond(rig) if counts_as_simulated(rig) else loosened(rig, _packaged(type(rig), rig.like))
 
@@ -60,26 +60,26 @@ def _packaged(kind: type[OneRig], like: str) -> OneRig:
 
 
 def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> OneRig:
-    """Return a rig whose risks are accepted; ``stated``: what the file says without overrides."""
+    """Return a rig whose risks are accepted; ``stated``: the file's rig without overrides."""
     real = not counts_as_simulated(rig)
     loose = loosened(rig, stated) if real and stated is not None else ()
     problems = [
         tree.problem(
-            one.location,
-            f"{one.key}: {one.compared}, and --set may only tighten what the file of a real rig says"
-            f" ({one.ceiling.because}): write it there, and run with --accept-risk REASON",
+            risk.location,
+            f"{risk.key}: {risk.compared}, and --set may only tighten what the file of a real rig says"
+            f" ({risk.ceiling.because}): write it there, and run with --accept-risk REASON",
         )
-        for one in loose
+        for risk in loose
     ]
-    told = {one.location for one in loose}
+    reported = {risk.location for risk in loose}
     if not reason:
         problems += [
             tree.problem(
-                one.location,
-                f"{one.key}: {one.compared} ({one.ceiling.because}): tighten it, or take it on: --accept-risk REASON",
+                risk.location,
+                f"{risk.key}: {risk.compared} ({risk.ceiling.because}): tighten it, or accept it: --accept-risk REASON",
             )
-            for one in risks_of(rig)
-            if one.location not in told
+            for risk in risks_of(rig)
+            if risk.location not in reported
         ]
     if problems:
         raise InvalidSource(problems)
@@ -90,25 +90,25 @@ def checked(kind: type[OneRig], tree: Tree) -> OneRig:
     """Return a tree as a rig whose sections fit together, risks or not; changes the tree. Raises InvalidSource."""
     complete(kind, tree)
     _resolve(kind, tree)
-    unsaid = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated(kind, tree)]
+    unstated_keys = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated(kind, tree)]
     try:
         rig = read(kind, tree, MISSING).settled()
     except InvalidSource as error:
-        raise InvalidSource([*error.problems, *unsaid]) from error
-    problems = [*unsaid, *problems_of(rig, tree)]
+        raise InvalidSource([*error.problems, *unstated_keys]) from error
+    problems = [*unstated_keys, *problems_of(rig, tree)]
     if problems:
         raise InvalidSource(problems)
     return rig
 
 
 def _override(tree: Tree, text: str, number: int) -> list[Problem]:
-    """Put one override into the tree, at positions that lead back to it; return what is wrong with it."""
+    """Put one override into the tree, at positions that lead back to it; return its faults."""
     path, equals, value_text = text.partition("=")
     keys = [key.strip() for key in path.split(".")]
     if not equals or not all(keys):
         return [_problem(text, "expected key.key=value")]
     if keys[0] == "kind":
-        return [_problem(text, "the kind of a rig stands in its file")]
+        return [_problem(text, "only its file sets the kind of a rig")]
     try:
         value = load_tree(value_text).data if value_text.strip() else None
     except InvalidSource as error:
@@ -119,7 +119,7 @@ def _override(tree: Tree, text: str, number: int) -> list[Problem]:
     section: dict[str, Value] = tree.data
     for depth, key in enumerate(keys):
         here = tuple(keys[: depth + 1])
-        # A section that refuses a value is named by its own place: that, too, leads to the override.
+        # A section that refuses a value is reported at its own place: that must lead to the override as well.
         tree.positions[here] = tree.keys[here] = (-1 - number, 1)
         if depth == len(keys) - 1:
             section[key] = value
@@ -132,7 +132,7 @@ def _override(tree: Tree, text: str, number: int) -> list[Problem]:
 
 
 def _resolve(kind: type[Rig], tree: Tree) -> None:
-    """Write into every axis what the file says once for all: its name and the heartbeats; ``manual`` becomes None."""
+    """Write the file's common values into every axis: its name and the heartbeats; ``manual`` becomes None."""
     if not isinstance(tree.data, dict):
         return
     axes, can = tree.data.get("axes"), tree.data.get("can")
@@ -156,7 +156,7 @@ def _resolve(kind: type[Rig], tree: Tree) -> None:
 
 
 def _attributed(problem: Problem, overrides: Sequence[str]) -> Problem:
-    """Return a problem under the name of the override that it comes from."""
+    """Return a problem under the name of its override."""
     return _problem(overrides[-1 - problem.line], problem.message) if problem.line < 0 else problem
 
 

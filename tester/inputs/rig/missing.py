@@ -1,4 +1,4 @@
-"""Keys that a rig file lacks: which may take the value of the packaged file, and the file completed with them."""
+"""Missing keys of a rig file: which may take the packaged file's value, and the file completed with them."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from tester.inputs.rig.config import Rig
 from tester.inputs.rig.packaged import packaged_tree
 
 Place = tuple[str, ...]
-"""Where a key stands: the names of its sections, and its own."""
+"""Place of a key: the names of its sections, and its own."""
 
 
 def lacking(kind: type[Rig], tree: Tree) -> tuple[Place, ...]:
-    """Return the keys that a file may lack and does, in the packaged file's order; a missing section as its keys."""
+    """Return the missing keys that a file may lack, in the packaged file's order; a missing section as its keys."""
     packaged = packaged_tree(kind, like(tree)).data
     if not isinstance(packaged, dict) or not isinstance(tree.data, dict):
         return ()
@@ -22,12 +22,12 @@ def lacking(kind: type[Rig], tree: Tree) -> tuple[Place, ...]:
 
 
 def complete(kind: type[Rig], tree: Tree) -> None:
-    """Write the packaged values of the keys that it may lack into a tree."""
+    """Write the packaged values of the missing keys that a file may lack into a tree."""
     packaged = packaged_tree(kind, like(tree)).data
     for place in lacking(kind, tree):
         value, section = packaged, tree.data
         for key in place[:-1]:
-            assert isinstance(value, dict) and isinstance(section, dict)  # else it would not be lacking there
+            assert isinstance(value, dict) and isinstance(section, dict)  # otherwise the key would not be missing there
             value = value[key]
             if section.get(key) is None:
                 section[key] = {}
@@ -37,20 +37,20 @@ def complete(kind: type[Rig], tree: Tree) -> None:
 
 
 def unstated(kind: type[Rig], tree: Tree) -> Iterator[Place]:
-    """Yield the keys that a file has to say itself and does not, of sections that it has (``Rig.stated``)."""
-    for place in (tuple(one.split(".")) for one in kind.stated):
-        due, own = packaged_tree(kind, like(tree)).data, tree.data
+    """Yield the missing keys that a file must state itself, of sections that it has (``Rig.stated``)."""
+    for place in (tuple(key_path.split(".")) for key_path in kind.stated):
+        due, present = packaged_tree(kind, like(tree)).data, tree.data
         for key in place:
             due = due.get(key) if isinstance(due, dict) else None
-            own = own.get(key) if isinstance(own, dict) else None
-        if isinstance(due, dict) and isinstance(own, dict):
-            yield from ((*place, key) for key in due if key not in own)
+            present = present.get(key) if isinstance(present, dict) else None
+        if isinstance(due, dict) and isinstance(present, dict):
+            yield from ((*place, key) for key in due if key not in present)
 
 
 def like(tree: Tree) -> str:
-    """Return the packaged rig that a file says it is built like, "" for the first of its kind."""
-    found = tree.data.get("like") if isinstance(tree.data, dict) else None
-    return found if isinstance(found, str) else ""
+    """Return the packaged rig that a file names in ``like``, "" for the first of its kind."""
+    named = tree.data.get("like") if isinstance(tree.data, dict) else None
+    return named if isinstance(named, str) else ""
 
 
 def _lacking(
@@ -61,7 +61,7 @@ def _lacking(
         inner = own.get(key)
         if isinstance(value, dict):
             if inner is None and _leads_to_some(kind, place) and (key not in own or _may_lack(kind, place)):
-                inner = dict[str, Value]()  # a section that is missing, or that stands there empty
+                inner = dict[str, Value]()  # a section that is missing, or present but empty
             if isinstance(inner, dict) and not _by_hand(kind, place, inner):
                 yield from _lacking(kind, value, inner, place)
         elif key not in own and _may_lack(kind, place):
@@ -69,17 +69,17 @@ def _lacking(
 
 
 def _may_lack(kind: type[Rig], place: Place) -> bool:
-    """Tell whether a key, or a section above it, is one that a file may lack."""
+    """Return whether a file may lack a key, or a section above it."""
     return any(
-        len(parts) <= len(place) and _alike(parts, place) for parts in (one.split(".") for one in kind.may_lack)
+        len(parts) <= len(place) and _alike(parts, place) for parts in (pattern.split(".") for pattern in kind.may_lack)
     )
 
 
 def _leads_to_some(kind: type[Rig], place: Place) -> bool:
-    """Tell whether a section holds keys that a file without it may lack. An axis or a device is there, or it is not."""
+    """Return whether a section has keys that a file without it may lack. An axis or a device is never completed."""
     return _may_lack(kind, place) or any(
         len(parts) > len(place) and "*" not in parts[: len(place)] and _alike(parts, place)
-        for parts in (one.split(".") for one in kind.may_lack)
+        for parts in (pattern.split(".") for pattern in kind.may_lack)
     )
 
 
@@ -88,5 +88,5 @@ def _alike(parts: list[str], place: Place) -> bool:
 
 
 def _by_hand(kind: type[Rig], place: Place, section: Mapping[str, Value]) -> bool:
-    """Tell whether a section is that of an axis without a drive."""
+    """Return whether a section is that of an axis without a drive."""
     return place[0] == "axes" and place[-1] in kind.manual and section.get("manual") is True

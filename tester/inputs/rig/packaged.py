@@ -12,7 +12,7 @@ from tester.inputs.rig.parameter import SECTION, key_line
 
 
 def packaged_name(kind: type[Rig], like: str = "") -> str:
-    """Return the name of a packaged rig: the one asked for, else, or if there is none of that name, the first."""
+    """Return the name of a packaged rig: the requested one, or the first where there is none of that name."""
     return like if like in kind.packaged else next(iter(kind.packaged))
 
 
@@ -23,7 +23,11 @@ def packaged_text(kind: type[Rig], like: str = "") -> str:
     text = (files(package) / file).read_text(encoding="utf-8")
     tree = load_tree(text, file)
     section = tree.data.get(SECTION) if isinstance(tree.data, dict) else None
-    new = [key_line(one) for one in kind.parameters if one.key not in section] if isinstance(section, dict) else []
+    new = (
+        [key_line(parameter) for parameter in kind.parameters if parameter.key not in section]
+        if isinstance(section, dict)
+        else []
+    )
     if not new:
         return text
     lines, place = text.splitlines(), tree.keys[(SECTION,)][0]
@@ -32,12 +36,12 @@ def packaged_text(kind: type[Rig], like: str = "") -> str:
 
 @cache
 def packaged_tree(kind: type[Rig], like: str = "") -> Tree:
-    """Return a packaged file as data, for those who do not change it."""
+    """Return a packaged file as data, for readers that do not change it."""
     return new_tree(kind, like)
 
 
 def new_tree(kind: type[Rig], like: str = "") -> Tree:
-    """Return a packaged file as data of the caller's own."""
+    """Return a packaged file as data that the caller may change."""
     name = packaged_name(kind, like)
     return load_tree(packaged_text(kind, like), kind.packaged[name].replace(":", "/"))
 
@@ -65,13 +69,13 @@ REPLACED = (
     (r'^  channel: ""  ', "  channel: can0  "),
     (r"# sim, or a python-can interface", "# a python-can interface"),
 )
-"""(what the packaged file says, what stands there for a real machine); each must be there exactly once."""
+"""(text of the packaged file, its replacement for a real machine); each must occur exactly once."""
 PORT = re.compile(r"^    port: sim( *# sim, )?", re.MULTILINE)
 """A line's port in the packaged file, the first with a comment that names the simulation."""
 
 FIRST_KEY = "rig: "
 SIMULATION = "# The simulated rig's physics."
-"""From here on the packaged file is about the simulation only."""
+"""From here on the packaged file describes the simulation only."""
 
 
 def hardware_text(kind: type[Rig], like: str = "") -> str:
@@ -93,8 +97,8 @@ def _port(number: int, comment: str | None) -> str:
 
 
 def _place(text: str, marked: str) -> int:
-    """Return where a pattern that must be there exactly once begins."""
-    found = [match.start() for match in re.finditer(marked, text, re.MULTILINE)]
-    if len(found) != 1:
-        raise ValueError(f"the packaged rig file holds {marked!r} {len(found)} times, not once")
-    return found[0]
+    """Return the beginning of a pattern that must occur exactly once."""
+    places = [match.start() for match in re.finditer(marked, text, re.MULTILINE)]
+    if len(places) != 1:
+        raise ValueError(f"the packaged rig file holds {marked!r} {len(places)} times, not once")
+    return places[0]

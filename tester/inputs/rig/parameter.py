@@ -1,7 +1,7 @@
-"""A parameter of an interlock: what it is, its unit, what the packaged rig file says, how far it may be loosened.
+"""A parameter of an interlock: its meaning, its unit, the packaged rig file's value, its loosest accepted value.
 
-A parameter is declared beside the row that it belongs to, and nowhere else: the rig file's section ``interlocks`` with
-its comments, ``tester rig init`` and the page docs/kinds/wheel-on-belt.md are made from these declarations.
+A parameter is declared beside its row, and nowhere else: the rig file's section ``interlocks`` with its comments,
+``tester rig init`` and the page docs/kinds/wheel-on-belt.md are made from these declarations.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tester.base.config_reader import SUFFIXES, Range
 from tester.base.units import known_unit, parse
 
 SECTION: Final = "interlocks"
-"""Of a rig file: where parameters stand."""
+"""Section of a rig file with the parameters."""
 POSITIVE: Final = Range(gt=0.0)
 NOT_NEGATIVE: Final = Range(ge=0.0)
 SHARE: Final = Range(gt=0.0, le=1.0)
@@ -25,7 +25,7 @@ WIDTH: Final = 36
 
 
 class Direction(Enum):
-    """Which way a parameter is tightened: the interlock then trips sooner, or the machine may do less."""
+    """The direction in which a parameter is tightened: the interlock then trips sooner, or the machine may do less."""
 
     LOWER = "lower"
     HIGHER = "higher"
@@ -39,18 +39,18 @@ class Parameter:
     """Field of ``InterlocksConfig``: the key with the suffix of the unit, e.g. ``stale_cell_s`` (config_reader)."""
     unit: str
     default: str
-    """What the packaged rig file says, as it stands there: "50 ms"."""
+    """The packaged rig file's value, as text: "50 ms"."""
     text: str
-    """The comment beside it: what it limits and where the number comes from; [A] marks an engineering assumption."""
+    """The comment beside it: its effect and the origin of the number; [A] marks an engineering assumption."""
     bounds: Range = POSITIVE
-    """What the key accepts at all, in its unit."""
+    """Accepted range, in its unit."""
     direction: Direction = Direction.LOWER
-    """Which way is tighter, where ``hardest`` limits it."""
+    """The tighter direction, where ``hardest`` limits it."""
     hardest: str = ""
-    """How far it may be loosened before a row no longer does what it is there for, as text like ``default``; "" where
-    no harm hangs on it. On a real machine anything looser is a risk that somebody has to accept."""
+    """The loosest value with which a row still serves its purpose, as text like ``default``; "" where no harm depends
+    on it. On a real machine anything looser is a risk that a person must accept."""
     because: str = ""
-    """Why there."""
+    """Reason for ``hardest``."""
 
     def __post_init__(self) -> None:
         """Raise UnitError for a unit that the table lacks."""
@@ -62,21 +62,21 @@ class Parameter:
 
     @property
     def key(self) -> str:
-        """The key in the rig file."""
+        """Return the key in the rig file."""
         return self.name.removesuffix(SUFFIXES.get(self.unit, ""))
 
     @property
     def value(self) -> float:
-        """What the packaged rig file says, in the parameter's unit; raises UnitError for a text in another."""
+        """Return the packaged rig file's value, in the parameter's unit; raises UnitError for a text in another."""
         return parse(self.default, self.unit)
 
     @property
     def hardest_value(self) -> float | None:
-        """How far it may be loosened, in the parameter's unit; None where nothing is said of that."""
+        """Return the loosest accepted value, in the parameter's unit; None without a limit."""
         return parse(self.hardest, self.unit) if self.hardest else None
 
     def looser(self, value: float) -> bool:
-        """Tell whether a value is looser than the hardest; what is not a number is."""
+        """Return whether a value is looser than the hardest; NaN is."""
         limit = self.hardest_value
         if limit is None:
             return False
@@ -84,7 +84,7 @@ class Parameter:
 
 
 Values: TypeAlias = dict[Parameter, float]
-"""What the parameters are on a rig, each in its unit."""
+"""Values of the parameters on a rig, each in its unit."""
 
 
 def key_line(parameter: Parameter, indent: str = "  ") -> str:

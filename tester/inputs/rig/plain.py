@@ -1,7 +1,7 @@
-"""The rig file of a plain machine: drives by name, sensors by their profiles, nothing that a program must know more of.
+"""The rig file of a plain machine: drives by name, sensors by their profiles, without further program code.
 
 A kind inherits from ``PlainRig`` and adds its sections: ``interlocks`` (``section_of`` its table's parameters), ``sim``
-with its twin's parameters, and whatever its rows and its recipes compare with.
+with its twin's parameters, and the limits of its rows and its recipes.
 """
 
 from __future__ import annotations
@@ -30,28 +30,28 @@ PLAIN_CEILINGS: Final = (
     Ceiling("scan.idle", "Hz", _HIGHER, "5 Hz", "the inputs are too old after 250 ms: one scan at least looks at them"),
     Ceiling("can.heartbeat", "s", _LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait"),
     Ceiling("can.drive_heartbeat", "s", _LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
-    Ceiling("can.consumer_heartbeat", "s", _LOWER, "300 ms", "a drive that hears nothing goes on as told meanwhile"),
+    Ceiling("can.consumer_heartbeat", "s", _LOWER, "300 ms", "without heartbeats a drive keeps its last command"),
     Ceiling(f"{AXES}heartbeat", "s", _LOWER, "100 ms", "as can.drive_heartbeat"),
     Ceiling(f"{AXES}consumer_heartbeat", "s", _LOWER, "300 ms", "as can.consumer_heartbeat"),
     Ceiling(f"{AXES}proves_watchdog", "", _HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
 )  # fmt: skip
-"""Keys beside the interlocks' own on which the safety of a plain machine hangs."""
+"""Safety keys of a plain machine beside the interlocks' own."""
 
 
 @dataclass(frozen=True, slots=True)
 class ArmingSection:
-    """What is shown before a run may move anything (tester.machine.plain.arming)."""
+    """Proofs before a run may move anything (tester.machine.plain.arming)."""
 
     listen_s: Annotated[float, "s", Range(ge=0.0)]
-    """Nothing is sent for this long at first: another master on the bus would be heard."""
+    """Time of silence at first, in which another master on the bus is detected."""
     watchdog_proof: bool
-    """Withhold the PC's heartbeat with the drives enabled and standing: every drive must report it and drop out."""
+    """Withhold the PC's heartbeat with the drives enabled at standstill: every drive must report it and drop out."""
     withhold_s: Annotated[float, "s", Range(gt=0.0)]
 
 
 @dataclass(frozen=True, slots=True)
 class PlainSim:
-    """What every twin's section ``sim`` has; a kind's own inherits from it."""
+    """Common part of every twin's section ``sim``; a kind's own inherits from it."""
 
     noise: Annotated[float, "1", Range(ge=0.0)] = 1.0
     """Scale of every sensor's imperfection."""
@@ -69,27 +69,24 @@ class PlainRig(Rig):
     ceilings: ClassVar[tuple[Ceiling, ...]] = PLAIN_CEILINGS
 
     air_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
-    """The air around the rig."""
+    """Temperature of the air around the rig."""
     axes: Mapping[str, AxisConfig]
     arming: ArmingSection
     sim: PlainSim = field(default_factory=PlainSim)
-    """The simulated rig's physics; without meaning on a real one."""
+    """The simulated rig's physics; without effect on a real one."""
 
     @property
     def ambient_c(self) -> float:
-        """Temperature of the air around the rig, degC."""
         return self.air_c
 
     def in_air(self: OneRig, ambient_c: float) -> OneRig:
-        """Return a rig whose file states this temperature of the air, degC."""
         return replace(self, air_c=ambient_c)
 
     def drives(self) -> Mapping[str, AxisConfig]:
-        """Return the axes by name: each has a drive."""
         return self.axes
 
     def problems(self) -> Iterator[tuple[Location, str]]:
-        """Yield what a plain machine cannot have; a kind with more to say yields from this first."""
+        """Yield the faults of a plain machine; a kind with further checks yields from this first."""
         for name, axis in self.axes.items():
             if axis.mode != "velocity" or axis.feedback != "velocity":
                 yield ("axes", name, "mode"), "this kind gives its drives speeds (expected mode and feedback: velocity)"

@@ -14,8 +14,8 @@ from tester.base.source import Tree, Value
 def profile_of(name: str) -> DeviceProfile:
     """Return a device's profile; raises ProfileError.
 
-    ``name``: of a packaged profile; a path that ends in ``.toml``; or an extension's of the group ``profiles``, whose
-    package carries the TOML file. A packaged name cannot be taken by an extension.
+    ``name``: of a packaged profile; a path that ends in ``.toml``; or of an extension in the group ``profiles``, whose
+    package carries the TOML file. An extension cannot take a packaged name.
     """
     if name.endswith(".toml") or name in profile_names():
         return load_profile(name)
@@ -28,14 +28,14 @@ def profile_of(name: str) -> DeviceProfile:
 
 
 def extension_drive(name: str) -> str:
-    """Return the text of a drive's profile, of an extension of the group ``drives``; raises PluginError."""
+    """Return the text of a drive's profile, from an extension of the group ``drives``; raises PluginError."""
     return plugins().text("drives", name, ".toml")
 
 
 def find_beside(tree: Tree, folder: Path) -> None:
-    """Let paths of profiles count from a rig file's folder, where they lead to a file there.
+    """Resolve paths of profiles relative to a rig file's folder, where they lead to a file there.
 
-    Any other is left as it is: it counts from where the program was started.
+    Any other path stays unchanged: it is relative to the working folder.
     """
     if not isinstance(tree.data, dict):
         return
@@ -55,7 +55,7 @@ def _find_beside(part: dict[str, Value], folder: Path) -> None:
 def extension_law(name: str) -> LawMaker | None:
     """Return the law of an extension of the group ``laws``, None where there is none of this name.
 
-    Raises PluginError for one that is not allowed, cannot be loaded or makes nothing.
+    Raises PluginError for an extension that is not allowed, cannot be loaded or is no law.
     """
     if ":" not in name and name not in plugins().names("laws"):
         return None

@@ -15,17 +15,17 @@ from tester.inputs.rig.config import DeviceConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 
 DECIMALS: Final = 3
-"""Most decimals that a screen shows of a further channel."""
+"""Most decimals of a further channel on screens."""
 COUNTS: Final = {
     "u8": (0.0, 255.0), "i8": (-128.0, 127.0), "u16": (0.0, 65535.0), "i16": (-32768.0, 32767.0),
     "u32": (0.0, 2.0**32), "i32": (-(2.0**31), 2.0**31), "f32": (-100.0, 100.0),
 }  # fmt: skip
-"""Ends of the bar, in counts, where a profile states no range: those of the type, of a float any [A]."""
+"""Ends of the bar, in counts, where a profile states no range: those of the type, for a float arbitrary [A]."""
 
 
 @dataclass(frozen=True, slots=True)
 class FurtherChannel:
-    """A quantity that a further sensor measures, under the name that it is recorded by."""
+    """A quantity measured by a further sensor, under its recorded name."""
 
     name: str
     unit: str
@@ -37,15 +37,15 @@ class FurtherChannel:
     decimals: int
 
     def channel(self, place: int, after: Quantities) -> Channel:
-        """Return its line in the run's table, behind those of the kind; ``place``: in ``Readings.channels``, from 0."""
+        """Return its line in the run's table, after those of the kind; ``place``: in ``Readings.channels``, from 0."""
         bar = Screen(
-            self.name, _last(one.screen.rank for one in after.shown if one.screen is not None) + place + 1,
+            self.name, _last(row.screen.rank for row in after.shown if row.screen is not None) + place + 1,
             self.device, Figure(offset=self.low), Figure(offset=self.high),
         )  # fmt: skip
         words = self.name.removesuffix(SUFFIXES.get(self.unit, "")).replace("_", " ")
         return Channel(
             self.name, "°C" if self.unit == "degC" else self.unit, words[:1].upper() + words[1:], f"{FURTHER}.{place}",
-            _last(one.mean for one in after.averaged) + place + 1, self.decimals, screen=bar,
+            _last(quantity.mean for quantity in after.averaged) + place + 1, self.decimals, screen=bar,
         )  # fmt: skip
 
 
@@ -54,7 +54,7 @@ def _last(numbers: Iterable[int]) -> int:
 
 
 def title_of(rig: Rig, device: str) -> str:
-    """Return what people call a device, by its key in the rig file."""
+    """Return a device's name for people, by its key in the rig file."""
     return rig.own[device].title if device in rig.own else device.replace("_", " ")
 
 
@@ -64,25 +64,25 @@ def further_sensors(rig: Rig) -> dict[str, DeviceConfig]:
 
 
 def parts_of(rig: Rig, own: str) -> dict[str, DeviceConfig]:
-    """Return the transmitters that a device of the machine is made of, in the order of the rig file; none = itself."""
+    """Return the transmitters of a joined device, in the order of the rig file; none = a single device."""
     return {name: device for name, device in rig.devices.items() if device.part_of == own}
 
 
 def further_channels(rig: Rig) -> tuple[FurtherChannel, ...]:
-    """Return what they, and the further CANopen nodes, measure, in the order of ``Readings.channels``.
+    """Return the channels of further sensors and further CANopen nodes, in the order of ``Readings.channels``.
 
     Raises ProfileError.
     """
-    found: list[FurtherChannel] = []
+    channels: list[FurtherChannel] = []
     for key, device in further_sensors(rig).items():
         profile = profile_of(device.profile)
-        found += [
+        channels += [
             _channel(device.channels.get(name, name), f"devices.{key}", profile.signal(name))
             for name in profile.channels
         ]
     for key, node in rig.can.nodes.items():
-        found += [_channel(name, f"can.nodes.{key}", channel) for name, channel in node.channels.items()]
-    return tuple(found)
+        channels += [_channel(name, f"can.nodes.{key}", channel) for name, channel in node.channels.items()]
+    return tuple(channels)
 
 
 def _channel(name: str, device: str, number: Signal | NodeChannel) -> FurtherChannel:
@@ -98,10 +98,12 @@ def _channel(name: str, device: str, number: Signal | NodeChannel) -> FurtherCha
 def quantities_on(rig: Rig) -> Quantities:
     """Return the channels of a run on a rig: its kind's, and those of its further sensors. Raises ProfileError."""
     own = rig.quantities
-    return own.with_further([one.channel(place, own) for place, one in enumerate(further_channels(rig))])
+    return own.with_further(
+        [further_channel.channel(place, own) for place, further_channel in enumerate(further_channels(rig))]
+    )
 
 
 def channels_of(device: DeviceConfig) -> Mapping[str, str]:
-    """Return the units of a sensor's channels by the names they are recorded by; raises ProfileError."""
+    """Return the units of a sensor's channels by their recorded names; raises ProfileError."""
     profile = profile_of(device.profile)
     return {device.channels.get(name, name): profile.signal(name).unit for name in profile.channels}

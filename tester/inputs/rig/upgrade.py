@@ -1,4 +1,4 @@
-"""A rig file with the keys that it lacks written in, from the packaged file of its kind and with the comments there."""
+"""Completes a rig file with its missing keys, from the packaged file of its kind and with the comments there."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from tester.inputs.rig.packaged import packaged_tree
 
 
 def upgrade(kind: type[Rig], path: Path) -> tuple[str, ...]:
-    """Write the missing keys with their comments into a rig file and return them; everything else stays as it is.
+    """Write the missing keys with their comments into a rig file and return them; everything else stays unchanged.
 
-    Raises InvalidSource for a file that is not YAML or whose sections are written so that no line can be added to them,
+    Raises InvalidSource for a file that is not YAML or whose layout does not allow adding lines to its sections,
     OSError where it cannot be written. The file is replaced in one step.
     """
     tree = load_tree(path)
@@ -47,7 +47,7 @@ def _refuse_what_is_no_section(kind: type[Rig], tree: Tree) -> None:
 
 
 def _with_keys(text: str, tree: Tree, packaged: Tree, missing: Sequence[Place]) -> str:
-    """Return a file's text with keys added: each at the end of the section that it belongs to."""
+    """Return a file's text with keys added: each at the end of its section."""
     end = "\r\n" if "\r\n" in text else "\n"
     lines = text.splitlines(keepends=True)
     if lines and not lines[-1].endswith("\n"):
@@ -60,7 +60,7 @@ def _with_keys(text: str, tree: Tree, packaged: Tree, missing: Sequence[Place]) 
         new += [indent + line if line else "" for line in _lines(packaged, place, section, missing)]
     last = len(lines)
     ends = {section: _end_of_section(tree, section)[0] if section else last for section in added}
-    # From the end of the file, so that places before stay; of two at one place the inner one is written last, above.
+    # From the end of the file, so that earlier places stay valid; of two at one place the inner is written last, above.
     for section in sorted(added, key=lambda one: (ends[one], -len(one)), reverse=True):
         lines[ends[section] : ends[section]] = [line + end for line in added[section]]
     return "".join(lines)
@@ -72,22 +72,22 @@ def _nearest_section(tree: Tree, place: Place) -> Place:
 
 
 def _lines(packaged: Tree, place: Place, section: Place, missing: Sequence[Place]) -> Iterator[str]:
-    """Yield the lines of a key as the packaged file has them, under the names of the sections that are missing, too.
+    """Yield the lines of a key from the packaged file, including the names of the sections that are missing.
 
-    They are indented from the section on that the file has. A section's name comes with the first of its keys.
+    They are indented relative to the section that the file has. A section's name comes with the first of its keys.
     """
     for n in range(len(section) + 1, len(place)):
-        if next(one for one in missing if one[:n] == place[:n]) == place:
+        if next(other for other in missing if other[:n] == place[:n]) == place:
             if n == 1:
                 yield from ("", *_comment_above(packaged, place[:1]))
             yield "  " * (n - 1 - len(section)) + packaged.text.splitlines()[packaged.keys[place[:n]][0] - 1].strip()
-    own, indent = _block(packaged, place), "  " * (len(place) - 1 - len(section))
-    column = len(own[0]) - len(own[0].lstrip())
-    yield from (indent + line[column:] for line in own)
+    block, indent = _block(packaged, place), "  " * (len(place) - 1 - len(section))
+    column = len(block[0]) - len(block[0].lstrip())
+    yield from (indent + line[column:] for line in block)
 
 
 def _block(packaged: Tree, place: Place) -> list[str]:
-    """Return the lines of a key of the packaged file: its own, and comments that go on below it."""
+    """Return the lines of a key of the packaged file: its own, and comments that continue below it."""
     line, column = packaged.keys[place]
     text = packaged.text.splitlines()
     after = line
@@ -124,7 +124,7 @@ def _end_of_section(tree: Tree, section: Place) -> tuple[int, str]:
 
 
 def _replace(path: Path, text: str) -> None:
-    """Put a file's new text in its place: a crash leaves the one or the other."""
+    """Put a file's new text in its place: a crash leaves either the old text or the new."""
     target = path.resolve()
     with NamedTemporaryFile(
         "w", encoding="utf-8", newline="", dir=target.parent, prefix=f".{target.name}.", delete=False

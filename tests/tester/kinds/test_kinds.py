@@ -54,7 +54,7 @@ def test_a_file_of_a_kind_that_is_none_is_told_with_its_place(tmp_path: Path) ->
 
 
 def test_the_kind_cannot_be_set_for_one_command() -> None:
-    with pytest.raises(InvalidSource, match=r"--set kind=x.*stands in its file"):
+    with pytest.raises(InvalidSource, match=r"--set kind=x.*only its file sets the kind"):
         load_rig("sim", ["kind=x"])
 
 

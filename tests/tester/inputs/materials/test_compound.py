@@ -76,10 +76,10 @@ def test_a_name_is_missing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("moduli", "said"),
     [
-        ("{}", "nothing is said (expected exactly one of table, file, fractional_zener, constant)"),
+        ("{}", "nothing is given (expected exactly one of table, file, fractional_zener, constant)"),
         (
             "{constant: {G: 1 MPa}, fractional_zener: {Gr: 1 Pa, Gg: 1 GPa, tau: 1 s, at: 0 degC, b: 0.5, Ts: 0 degC}}",
-            "fractional_zener and constant is said",
+            "fractional_zener and constant is given",
         ),
         (
             "{fractional_zener: {Gr: 1 GPa, Gg: 1 MPa, tau: 1 s, at: 0 degC, b: 0.5, Ts: 0 degC}}",
@@ -149,7 +149,7 @@ def test_problems_of_a_file_beside_are_told_at_its_own_lines(tmp_path: Path) -> 
 
 def test_doubts_name_what_is_doubtful(tmp_path: Path) -> None:
     assert doubts(tmp_path, FULL.replace("decade_k: 8\n", "")) == [
-        "c.yaml:11:1: measured at 1 Hz alone, and decade_k is not said: 8 K a decade (paper G) counts"
+        "c.yaml:11:1: measured at 1 Hz alone, and decade_k is missing: 8 K a decade (paper G) counts"
     ]
     (doubt,) = doubts(tmp_path, FULL.replace("N234: 50, oil: 8.5", "N234: 5000 %, oil: 800"))
     assert "formulation adds up to 951.6 phr (expected 90 to 500)" in doubt

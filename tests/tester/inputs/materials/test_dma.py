@@ -217,9 +217,9 @@ def test_a_frequency_with_noise_may_be_said() -> None:
     table, _ = read(content)
     assert len(table.frequencies_hz) > 1
     table, found = read(content, DmaOptions(frequency_hz=1.0))
-    assert table.frequencies_hz == (1.0,) and any("frequency: 1 Hz, as said" in note for note in found.notes)
+    assert table.frequencies_hz == (1.0,) and any("frequency: 1 Hz, as set" in note for note in found.notes)
     problems = refused(content, DmaOptions(frequency_hz=2.0))
-    assert len(problems) == 15 and "is not the 2 Hz that is said for all" in problems[0]
+    assert len(problems) == 15 and "is not the 2 Hz that is set for all" in problems[0]
 
 
 def test_digits_in_groups_and_zeros_are_refused() -> None:
@@ -240,7 +240,7 @@ def with_strain(*percent: float, heading: str = "Strain [%]") -> str:
     [
         ("Strain [%]", 'strain: 0.1 %, from "Strain [%]"'),
         ("Dynamic strain / %", 'strain: 0.1 %, from "Dynamic strain / %"'),
-        ("Strain", 'strain: 0.1, from "Strain", whose unit is not said'),
+        ("Strain", 'strain: 0.1, from "Strain", without a unit'),
     ],
 )
 def test_the_strain_of_a_measurement_is_kept(heading: str, told: str) -> None:

@@ -105,7 +105,7 @@ def doubts_of(rows: Sequence[ModuliRow], glass_c: float | None, decade_k: float 
 def test_one_frequency_without_a_decade_is_doubted() -> None:
     assert doubts_of(sweep(), None, 8.0) == []
     (doubt,) = doubts_of(sweep(), None, None)
-    assert doubt == "measured at 1 Hz alone, and decade_k is not said: 8 K a decade (paper G) counts"
+    assert doubt == "measured at 1 Hz alone, and decade_k is missing: 8 K a decade (paper G) counts"
 
 
 def test_a_narrow_sweep_at_one_frequency_is_doubted() -> None:
@@ -115,7 +115,7 @@ def test_a_narrow_sweep_at_one_frequency_is_doubted() -> None:
 def test_several_frequencies_need_a_glass_transition_that_fits() -> None:
     rows = [ModuliRow(t, f, 1e8, 1e7) for t in (-40.0, 0.0, 40.0) for f in (1.0, 10.0)]
     assert doubts_of(rows, -53.0, None) == []
-    assert doubts_of(rows, None, None)[0].startswith("Tg is not said")
+    assert doubts_of(rows, None, None)[0].startswith("Tg is missing")
     assert doubts_of(rows, -30.0, None) == [
         "measured from -40 to 40 degC; the WLF shift holds from Tg to Tg + 100 K, -30 to 70 degC"
     ]

@@ -71,7 +71,7 @@ def test_nothing_is_no_map() -> None:
 def test_unit_and_pixel_are_asked_for() -> None:
     problems = refused(written(";"), ScanOptions())
     assert [one.split(": ", 1)[1] for one in problems] == [
-        "the distance from point to point is not said (expected such as --pixel 1um)",
+        "the distance from point to point is missing (expected such as --pixel 1um)",
         "the heights have no unit (expected nm, um, mm or m; --unit um)",
     ]
 

@@ -41,8 +41,8 @@ def test_a_spectrum_arrives_in_si(tmp_path: Path) -> None:
         ("spectum: {}", 'unknown key "spectum", did you mean spectrum?'),
         ("waves: {coarse: {wavelength: 1 mm, Ra: 10 mm}, fine: {wavelength: 0.1 mm, Ra: 1 um}}", "are they swapped?"),
         ("waves: {coarse: {wavelength: 1 mm, Ra: 1 um}, fine: {wavelength: 2 mm, Ra: 1 um}}", "fine is not finer"),
-        ("note: nothing", "nothing is said of its heights"),
-        ("scan: {file: x.csv}\nradial: {rows: []}", "radial and scan are said"),
+        ("note: nothing", "nothing is given of its heights"),
+        ("scan: {file: x.csv}\nradial: {rows: []}", "radial and scan are given"),
         ("scan: {file: x.csv}", 'there is no file "x.csv" beside this one'),
     ],
 )
@@ -75,4 +75,4 @@ def test_a_scan_without_unit_or_pixel_is_asked(tmp_path: Path) -> None:
     np.savetxt(tmp_path / "map.csv", np.ones((20, 20)))
     problems = refused(tmp_path, "name: x\nscan: {file: map.csv}\n")
     assert any("the heights have no unit (expected nm, um, mm or m; unit: um)" in one for one in problems)
-    assert any("the distance from point to point is not said (expected such as pixel: 1 um)" in one for one in problems)
+    assert any("the distance from point to point is missing (expected such as pixel: 1 um)" in one for one in problems)

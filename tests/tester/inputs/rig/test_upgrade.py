@@ -147,7 +147,7 @@ def test_a_key_that_only_the_builders_know_must_be_there(tmp_path: Path, line: s
     with pytest.raises(InvalidSource) as caught:
         load_rig(path)
     key = line.strip().partition(":")[0]
-    assert f"{key} is missing" in str(caught.value) and "no packaged value stands in" in str(caught.value)
+    assert f"{key} is missing" in str(caught.value) and "no packaged value can replace it" in str(caught.value)
     assert f".{key}" not in "".join(packaged_keys(path))
 
 
