@@ -92,24 +92,24 @@ def _brought(rig: Rig, what: str, part: Callable[[], Part] | None) -> Callable[[
 
 
 def load_rig(source: str | Path = kinds.SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
-    """Return the rig of a file, or the packaged one of that name (tester.inputs.rig.load.load).
+    """Return the rig of a file, or the packaged rig of that name (tester.inputs.rig.load.load).
 
-    Raises InvalidSource, for a rig of a kind that no recipe can be run on too.
+    Raises InvalidSource, even for a valid rig if its kind cannot run recipes.
     """
     return to_be_run(kinds.load_rig(source, overrides, accept_risk))
 
 
 def load_rig_text(text: str | Path) -> Rig:
-    """Return the rig of a text or a file that a run has stored; raises InvalidSource as ``load_rig``.
+    """Return the rig of a stored text or file; raises InvalidSource as ``load_rig``.
 
-    Its risks were accepted when the run began, or are asked for where it goes on (tester.run.session).
+    Its risks were accepted when the run began, or are checked when it resumes (tester.run.session).
     """
     return to_be_run(kinds.load_rig_text(text))
 
 
 @dataclass(frozen=True, slots=True)
 class RingFound:
-    """What a run has on record of its ring; ``rig``: the file of the rig that it ran on."""
+    """A run's record of its ring; ``rig``: the file of its rig."""
 
     part: RingPart
     run: RingRun
@@ -117,7 +117,7 @@ class RingFound:
 
 
 def ring_part(kind: str) -> RingPart | None:
-    """Return what a kind says of its ring; None where it has none, or is not installed."""
+    """Return a kind's ring part; None if it has none, or is not installed."""
     try:
         found = find(kind).ring
     except UnknownKindError:
@@ -126,7 +126,7 @@ def ring_part(kind: str) -> RingPart | None:
 
 
 def ring_in(folder: Path) -> RingFound | None:
-    """Return the ring of a run; None where its kind has none. Raises StoreError."""
+    """Return the ring of a run; None if its kind has none. Raises StoreError."""
     with RunReader(folder) as reader:
         info = reader.run().info
         part = ring_part(info.kind)
@@ -134,5 +134,5 @@ def ring_in(folder: Path) -> RingFound | None:
 
 
 def of_one_rig(found: Sequence[RingFound], like: RingFound) -> list[RingFound]:
-    """Return those of one rig, in order of time: rings of other rigs have an age of their own."""
+    """Return the rings of one rig, in order of time: rings of other rigs age separately."""
     return sorted((one for one in found if one.rig == like.rig), key=lambda one: one.run.started)

@@ -68,7 +68,7 @@ def told_before(rig: Rig, today: date) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A recipe on a rig: what is to be done, and what it takes."""
+    """A recipe planned for a rig: its work and its estimate."""
 
     path: Path
     recipe: LoadedRecipe

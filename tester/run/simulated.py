@@ -66,30 +66,30 @@ def _device(config: DeviceConfig) -> DeviceSpec:
 
 
 Truth = Callable[[Mapping[str, float]], Mapping[str, float]]
-"""What a simulated rig answers: figures of the repeat that has begun, at setpoints by axis."""
+"""Function of setpoints by axis that returns the true figures of the repeat under way."""
 
 
 def truth_of(world: Any, plant: Any) -> Truth | None:
-    """Return what tells the truth of a simulated rig; None where none is asked for, or the rig has none."""
+    """Return the function for a simulated rig's true values; None if not wanted, or not available."""
     return getattr(world, "truth", None) if getattr(plant, "record_truth", False) else None
 
 
 class Witnessed:
-    """The hands at a simulated rig, with a note of what it knows whenever a repeat begins."""
+    """The hands at a simulated rig; records the true values whenever a repeat begins."""
 
     def __init__(self, attendant: Any, truth: Truth, plan: Plan, recorder: Recorder) -> None:
-        """``plan``: of this part of the run, in which a row of the table is one condition."""
+        """``plan``: of this part of the run; a row of the table is one condition."""
         self._attendant = attendant
         self._truth = truth
         self._recorder = recorder
         self._steps = {step.row: step for step in plan.conditions()}
 
     def __getattr__(self, name: str) -> Any:
-        """Return what else hands do."""
+        """Return the hands' other methods."""
         return getattr(self._attendant, name)
 
     def begin_repeat(self, row: int, repeat: int, attempt: int, *more: Mapping[str, float]) -> None:
-        """Begin a repeat at the rig, and put on record what that is; ``more``: what a kind tells its rig of it."""
+        """Begin a repeat at the rig, and record its true values; ``more``: further arguments of the kind."""
         self._attendant.begin_repeat(row, repeat, attempt, *more)
         step = self._steps.get(row)
         if step is not None:

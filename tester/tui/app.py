@@ -1,4 +1,4 @@
-"""`tester tui`: the fixed lines, the screens between them, and the keys that work everywhere."""
+"""`tester tui`: the fixed lines, the screens between them, and the keys that work on every screen."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from tester.tui.theme import CSS, THEMES
 from tester.tui.widgets.head import RING, TABS, KeyLine, StateLine, TabLine, Tabs
 
 FREE: Final = ("OFFLINE", "IDLE", "INTERRUPTED")
-"""Modes of a service that does not have the rig: it takes the buses for a run or manual mode, and gives them back."""
+"""Modes of a service that does not use the rig: it takes the buses only for a run or manual mode."""
 
 
 def begins_here(options: TuiOptions, state: StateView) -> bool:
-    """Tell whether the rig that this screen was told of is the service's."""
+    """Return whether this screen's rig is the service's."""
     try:
         return options.address is None and load_rig(options.rig).name == state.rig
     except (InvalidSource, OSError):
@@ -47,7 +47,7 @@ def begins_here(options: TuiOptions, state: StateView) -> bool:
 
 
 def commission_rig(options: TuiOptions) -> None:
-    """Commission, and come back when it has ended; the terminal is the other process's meanwhile."""
+    """Run the commissioning, which takes over the terminal, and return when it ends."""
     command = tester_command("commission", options.rig, "--tui", "--out", str(options.runs))
     command += ["--ascii"] if options.plain else []
     command += ["--theme", options.theme] if options.theme else []
@@ -63,7 +63,7 @@ F12, Ctrl+X  STOP: controlled software stop, at once, no question. Not an emerge
 F9, Ctrl+F   FAST STOP: quick stop of both drives, the same way; latched until acknowledged.
 F2 … F7      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
 space  HOLD    r  resume    x  abort…    a  acknowledge
-q, Ctrl+C    detach: the run goes on; `tester tui` comes back.
+q, Ctrl+C    detach: the run continues; `tester tui` comes back.
 """
 
 
@@ -87,11 +87,11 @@ class TesterApp(HostApp):
     ]
 
     def __init__(self, options: TuiOptions, now: Callable[[], float] = clock.monotonic) -> None:
-        """As of HostApp."""
+        """Build the screens; options as for HostApp."""
         super().__init__(options, now)
         self._entered: View | None = None
         self._settled = False
-        """A screen has been chosen, by the run that was found or by a person."""
+        """The first screen is chosen, because of a run under way or by a person."""
 
     # -- layout -----------------------------------------------------------------------------------------------
 
@@ -106,7 +106,7 @@ class TesterApp(HostApp):
         yield KeyLine(id="keys")
 
     def below(self) -> Iterable[Widget]:
-        """Return what stands above the last line."""
+        """Return the widgets above the last line."""
         return ()
 
     def views(self) -> Iterable[View]:
@@ -119,14 +119,14 @@ class TesterApp(HostApp):
         yield RingPage(id=RING)
 
     def on_mount(self) -> None:
-        """Begin to listen."""
+        """Connect to the service."""
         self.choose_colours()
         self.query_one(TabLine).tabs = self.SCREENS_HERE
         self.go_to(self.FIRST)
         self.connect()
 
     def on_resize(self, event: Resize) -> None:
-        """Lay out for the new size, which the application itself takes on later."""
+        """Lay out for the new size; Textual itself adopts it only later."""
         width, height = event.size
         base = self.screen_stack[0]
         base.set_class(width < SMALLEST[0] or height < SMALLEST[1], "-tiny")
@@ -135,27 +135,27 @@ class TesterApp(HostApp):
 
     @property
     def view(self) -> View:
-        """Return the screen that is shown."""
+        """Return the screen on display."""
         base = self.screen_stack[0]
         switcher = base.query_one(ContentSwitcher)
         return base.query_one(f"#{switcher.current}", View)
 
     def scene_changed(self) -> None:
-        """Show what has changed: the fixed lines and the screen that is seen."""
+        """Redraw the fixed lines and the screen on display."""
         base = self.screen_stack[0] if self.screen_stack else None
         if base is None or not base.query("#keys"):
-            return  # before the first layout, and while the screen is taken down
+            return  # before the first layout, or during shutdown
         if not self._settled and self.scene.state is not None:
             self._settled = True
             if self.scene.state.run is not None and self.scene.state.run.outcome == UNDER_WAY:
-                self.go_to("run")  # who comes back to a run wants to see it
+                self.go_to("run")  # show a run under way first
                 return
         self._draw(base)
         if self.screen is base:
             self._attend(base)
 
     def _attend(self, base: Screen[object]) -> None:
-        """Enter the screen that is seen once, also one that a dialog has hidden until now, and let it keep the keys."""
+        """Enter the screen on display once, even if a dialog has hidden it until now, and keep the focus in it."""
         view = self.view
         if self._entered is not view:
             self._entered = view
@@ -170,7 +170,7 @@ class TesterApp(HostApp):
         self.view.show(self.scene)
 
     def service_died(self) -> None:
-        """Say so, what the devices do by themselves, and what to do, over whatever is shown."""
+        """Report it in a dialog, with what the devices do by themselves and what to do."""
         self.push_screen(TextDialog(TITLE, death_text(self.scene)))
 
     # -- keys -------------------------------------------------------------------------------------------------
@@ -194,11 +194,11 @@ class TesterApp(HostApp):
         self.scene_changed()
 
     def keys_of(self, view: View) -> Keys:
-        """Return what the last line names on a screen."""
+        """Return the keys that the last line lists on a screen."""
         return view.KEYS
 
     def show_results(self, run: RunView) -> None:
-        """Show what a run has measured."""
+        """Show a run's results."""
         self.go_to("results")
         self.screen_stack[0].query_one(ResultsView).open_run(run.folder)
 
@@ -214,16 +214,16 @@ class TesterApp(HostApp):
             self.push_screen(TextDialog("Help", f"{self.view.HELP}{self.EVERYWHERE}"))
 
     def action_hold(self) -> None:
-        """HOLD, no question."""
+        """HOLD, without asking."""
         self.order(Hold(), "HOLD")
 
     def action_acknowledge(self) -> None:
-        """Acknowledge the alarm of line 2; without one, what was found at the start."""
+        """Acknowledge the alarm of line 2; without an alarm, an interrupted run."""
         alarm = self.scene.top_alarm()
         self.order(Acknowledge(alarm.number if alarm is not None else 0))
 
     def action_abort(self) -> None:
-        """Ask for the word, while there is a run to abort."""
+        """Ask for confirmation, if there is a run to abort."""
         run = self.scene.state.run if self.scene.state is not None else None
         if run is not None and run.outcome == UNDER_WAY:
             self.push_screen(AbortDialog())
@@ -231,12 +231,12 @@ class TesterApp(HostApp):
             self.say("nothing runs that could be aborted")
 
     def action_resume(self) -> None:
-        """Go on after HOLD, or with a stored run that is not over, after the pre-flight list."""
+        """End HOLD, or offer the runs to resume, each after the pre-flight list."""
         state = self.scene.state
         if state is None:
             return
         if state.mode == "HOLD":
-            self.push_screen(GoOnDialog(state, Release(), "HOLD ends, the run goes on"))
+            self.push_screen(GoOnDialog(state, Release(), "HOLD ends, the run continues"))
         elif state.mode == "LATCHED":
             self.say("nothing begins before the trip is acknowledged: a acknowledges")
         elif state.mode not in FREE:
@@ -245,7 +245,7 @@ class TesterApp(HostApp):
             self.run_worker(self._offer_runs(state), group="orders", exit_on_error=False)
 
     async def _offer_runs(self, state: StateView) -> None:
-        """Show the runs that `tester resume` goes on with, the newest first."""
+        """Show the runs that `tester resume` accepts, the newest first."""
         answer = await self.ask(ListRuns())
         runs = resumable(answer)
         if runs:
@@ -254,11 +254,11 @@ class TesterApp(HostApp):
             self.say("nothing to resume: every stored run went through its plan")
 
     def action_take_control(self) -> None:
-        """Take control from whoever has it."""
+        """Take control from the client that has it."""
         self.order(TakeControl(force=True), "this screen controls")
 
     def action_commission(self) -> None:
-        """Commission the rig on a screen of its own, as `tester commission RIG --tui`, while no run is on."""
+        """Open the commissioning screen, as `tester commission RIG --tui`, while no run is on."""
         state, options = self.scene.state, self.options
         if options.view_only or state is None or not self.scene.linked:
             self.say("not from here: `tester commission RIG --tui` in a shell")
@@ -278,11 +278,11 @@ class TesterApp(HostApp):
         self.theme = THEMES[name].name
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        """Return what the palette (Ctrl+P) offers."""
+        """Return the commands of the palette (Ctrl+P)."""
         yield SystemCommand("STOP", "Software stop, at once (F12, Ctrl+X)", self.action_stop)
         yield SystemCommand("FAST STOP", "Quick stop of both drives, at once (F9, Ctrl+F)", self.action_fast_stop)
         yield SystemCommand("HOLD", "Lift and wait, keep the temperature (space)", self.action_hold)
-        yield SystemCommand("Resume", "End HOLD, or go on with a run that is not over (r)", self.action_resume)
+        yield SystemCommand("Resume", "End HOLD, or resume an unfinished run (r)", self.action_resume)
         yield SystemCommand("Abort…", "Controlled stop of the run (x)", self.action_abort)
         yield SystemCommand("Acknowledge", "The alarm of line 2 (a)", self.action_acknowledge)
         for key, title, name in self.SCREENS_HERE:
@@ -292,4 +292,4 @@ class TesterApp(HostApp):
         for name in THEMES:
             yield SystemCommand(f"Theme: {name}", "Colours", lambda name=name: self.action_use_theme(name))
         yield SystemCommand("Help", "Keys of this screen (F1)", self.action_help)
-        yield SystemCommand("Detach", "Leave the screen, the run goes on (q)", self.action_detach)
+        yield SystemCommand("Detach", "Leave the screen; the run continues (q)", self.action_detach)

@@ -1,4 +1,4 @@
-"""Line filters: what leaves for the terminal, without colour (NO_COLOR) or without anything but ASCII (--ascii)."""
+"""Line filters for the terminal: no colour (NO_COLOR), or ASCII only (--ascii)."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ _PAIRS = (
     ("▃▂", "_"),
 )
 TABLE = {ord(sign): plain for signs, plain in _PAIRS for sign in signs}
-"""What stands for a character outside ASCII."""
+"""ASCII replacement of other characters."""
 
 
 @lru_cache(maxsize=4096)
 def ascii_text(text: str) -> str:
-    """Return a text of the same width in ASCII; what has no likeness becomes ``?``."""
+    """Return a text of the same width in ASCII; characters without a likeness become ``?``."""
     if text.isascii():
         return text
     return "".join(c if c.isascii() else TABLE.get(ord(c), "?" * cell_len(c)) for c in text)
 
 
 class AsciiOnly(LineFilter):
-    """For terminals and fonts that have nothing but ASCII."""
+    """Converts text for terminals and fonts that have only ASCII."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the segments with ASCII text."""
@@ -61,7 +61,7 @@ def _colourless(style: Style) -> Style:
 
 
 class Colourless(LineFilter):
-    """NO_COLOR: no colour at all; bold, dim, underlined and reversed stay."""
+    """NO_COLOR: removes all colour; bold, dim, underlined and reversed stay."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the segments without colours."""

@@ -1,4 +1,4 @@
-"""Numbers, times and foreign text as the screens write them."""
+"""Formats numbers, times and foreign text for the screens."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from textwrap import wrap
 
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 _KEY = re.compile(r"\S.*?  +(?=\S)")
-"""In a help text a key is followed by two spaces or more."""
+"""In a help text, two spaces or more follow a key."""
 HIDDEN = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Mn", "Me"})
-"""Unicode categories that move the cursor, turn the writing around or cannot be seen."""
+"""Unicode categories that move the cursor, reverse the writing or are invisible."""
 
 
 def clean(text: str, limit: int = 2000) -> str:
-    """Return a text from outside in one line, as it can be shown: what is not a visible character is replaced.
+    """Return a foreign text in one line for display, with every invisible character replaced.
 
-    One character stands for one, so that columns stay where they are. ``limit``: characters kept.
+    Each character is replaced by exactly one, so that columns keep their places. ``limit``: characters kept.
     """
     return "".join(" " if c == "\t" else REPLACEMENT if unicodedata.category(c) in HIDDEN else c for c in text[:limit])
 
 
 def clean_lines(text: str) -> str:
-    """Return a text of several lines the same way, its line ends kept."""
+    """Return a text of several lines the same way, with its line ends."""
     return "\n".join(clean(line) for line in text.split("\n"))
 
 
 def clock_text(utc: str, *, seconds: bool = False) -> str:
-    """Return the local time of day of an ISO 8601 text in UTC; the text itself where it is none."""
+    """Return the local time of day of an ISO 8601 text in UTC; any other text unchanged."""
     try:
         moment = local(datetime.fromisoformat(utc))
     except ValueError:
@@ -42,7 +42,9 @@ def local(moment: datetime) -> datetime:
 
 
 def reflow(text: str, width: int) -> str:
-    """Return a help text in lines of so many characters: paragraphs are filled, what a key does hangs beside it."""
+    """Return a help text in lines of ``width`` characters: paragraphs are filled, a key's description is indented
+    beside it.
+    """
     lines: list[str] = []
     paragraph: list[str] = []
     for line in [*text.splitlines(), ""]:
@@ -60,7 +62,7 @@ def reflow(text: str, width: int) -> str:
 
 
 def fit(text: str, width: int) -> str:
-    """Return a text cut to so many characters, with an ellipsis where something is missing."""
+    """Return a text cut to ``width`` characters, with an ellipsis if it is cut."""
     if width <= 0:
         return ""
     return text if len(text) <= width else text[: width - 1] + "…"

@@ -1,4 +1,4 @@
-"""The application below its screens (the link to the service, orders to it) and the base of every screen."""
+"""The application below its screens: the link to the service, the scene, and the sending of orders."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ from tester.tui.theme import LookApp
 from tester.tui.widgets.panel import Panel
 
 TICK_S = 0.5
-"""The age of what is shown is looked at this often."""
+"""Period for updating the age of the data shown, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class TuiOptions:
-    """What `tester tui` was told. ``speed``: rig seconds per second of simulated runs, None = as fast as it goes."""
+    """Options of `tester tui`. ``speed``: rig seconds per second of simulated runs, None = as fast as possible."""
 
     rig: str = "sim"
     speed: float | None = 1.0
     runs: Path = Path("runs")
     address: Address | None = None
     start: bool = True
-    """Start a service where none runs."""
+    """Start a service if none runs."""
     plain: bool = False
     """ASCII only."""
     view_only: bool = False
@@ -53,11 +53,11 @@ class TuiOptions:
 
 
 class HostApp(LookApp):
-    """Holds the link and the scene; knows no screen."""
+    """Holds the link and the scene, independent of any screen."""
 
     ENABLE_COMMAND_PALETTE = True
     HAS_RIG: ClassVar[bool] = True
-    """There is a rig behind this screen."""
+    """Whether there is a rig behind this screen."""
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(",".join(keys.STOP.keys), "stop", "STOP", priority=True, show=False),
         Binding(",".join(keys.FAST_STOP.keys), "fast_stop", "Fast stop", priority=True, show=False),
@@ -65,7 +65,7 @@ class HostApp(LookApp):
     ]
 
     def __init__(self, options: TuiOptions, now: Callable[[], float] = clock.monotonic) -> None:
-        """``now``: seconds of tester.base.clock.monotonic; another one in tests."""
+        """``now`` returns seconds, by default of tester.base.clock.monotonic."""
         super().__init__(options.theme, plain=options.plain)
         self.options = options
         self.stop_line = StopLine(options.address, client_name())
@@ -76,22 +76,22 @@ class HostApp(LookApp):
         self._started = False
         self._stops: set[asyncio.Task[None]] = set()
 
-    # -- what the screens do with it --------------------------------------------------------------------------
+    # -- for the screens --------------------------------------------------------------------------------------
 
     def scene_changed(self) -> None:
         """Called after each change of the scene."""
 
     def service_died(self) -> None:
-        """Called when the service turns out to be gone without having been told to end."""
+        """Called when the service is gone without a request to end."""
 
     def go_to(self, name: str) -> None:
         """Show another screen, by its id."""
 
     def show_results(self, run: RunView) -> None:
-        """Show what a run has measured."""
+        """Show a run's results."""
 
     def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
-        """Tell the operator something, as it is."""
+        """Show the operator a message, as plain text."""
         self.notify(
             clean(text), severity="error" if problem else "information", timeout=60.0 if lasting else 6.0, markup=False
         )
@@ -119,7 +119,9 @@ class HostApp(LookApp):
             self.scene_changed()
 
     def _begin_service(self) -> None:
-        """Start a service where none runs, once: a service that ended is not brought back behind anybody's back."""
+        """Start a service if none runs, once: a service that has ended is not restarted without the operator's
+        knowledge.
+        """
         if self._started or not self.options.start or self.options.address is not None or self.options.view_only:
             return
         self._started = True
@@ -131,11 +133,11 @@ class HostApp(LookApp):
     # -- orders -----------------------------------------------------------------------------------------------
 
     def order(self, action: Action, done: str = "") -> None:
-        """Have something done; a refusal is shown, ``done`` once it is taken."""
+        """Send an order; show a refusal, or ``done`` once it is accepted."""
         self.run_worker(self.ask(action, done), group="orders", exit_on_error=False)
 
     async def ask(self, action: Action, done: str = "") -> JsonValue:
-        """Have something done and return the result; None where it was refused, which is shown."""
+        """Send an order and return the result; None if it was refused, which is shown."""
         if self.options.view_only or self.link is None:
             self.say("view only: nothing is commanded from here")
             return None
@@ -153,7 +155,7 @@ class HostApp(LookApp):
         return None
 
     def action_stop(self) -> None:
-        """STOP: no question, from everywhere, whoever controls."""
+        """STOP, without asking, from every screen and every client."""
         self._order_stop(fast=False)
 
     def action_fast_stop(self) -> None:
@@ -169,7 +171,7 @@ class HostApp(LookApp):
         task.add_done_callback(self._stops.discard)
 
     async def _stop(self, link: Link, sent: Future[None] | None, fast: bool) -> None:
-        """Wait for what the key has sent already; where there is nothing, or it failed, go over the link."""
+        """Wait for the STOP that the key has sent already; if there is none, or it failed, send STOP over the link."""
         taken = "FAST STOP taken" if fast else "STOP taken"
         if sent is not None:
             try:
@@ -182,7 +184,7 @@ class HostApp(LookApp):
         try:
             try:
                 await link.command(Stop(fast))
-            except LostError:  # the link is coming back: a connection of its own may be quicker
+            except LostError:  # the link is reconnecting: a new connection may be quicker
                 async with await Client.connect(link.address, name=link.name) as client:
                     await client.stop(fast=fast)
         except (LostError, NoServiceError, RefusedError, TimeoutError) as error:
@@ -191,17 +193,17 @@ class HostApp(LookApp):
         self.say(taken)
 
     def action_detach(self) -> None:
-        """Leave the screen; the run goes on."""
+        """Leave the screen; the run continues."""
         self.exit(farewell(self.scene))
 
 
 def client_name() -> str:
-    """Return how this screen is called at the service."""
+    """Return this screen's name at the service."""
     return f"tui of process {os.getpid()}"
 
 
 def host_of(node: DOMNode) -> HostApp:
-    """Return the application that a widget is part of."""
+    """Return the application of a widget."""
     return cast("HostApp", node.app)  # pyright: ignore[reportUnknownMemberType]  # Textual leaves its type open
 
 
@@ -209,7 +211,7 @@ Keys = tuple[tuple[str, str], ...]
 
 
 class View(Vertical):
-    """A screen between the fixed lines. ``KEYS``: what the last line names; ``HELP``: what F1 shows."""
+    """A screen between the fixed lines. ``KEYS``: the keys in the last line; ``HELP``: the text for F1."""
 
     KEYS: ClassVar[Keys] = ()
     HELP: ClassVar[str | None] = ""
@@ -220,17 +222,17 @@ class View(Vertical):
         return host_of(self)
 
     def show(self, scene: ScreenScene) -> None:
-        """Show the scene as it is now."""
+        """Show the present scene."""
         for panel in self.query(Panel):
             panel.show(scene)
 
     def enter(self) -> None:
-        """Become the screen that is shown, once each time."""
+        """Called each time the screen appears."""
         self.take_focus()
 
     def take_focus(self) -> None:
-        """Have the keys go to where they are wanted first."""
+        """Focus the widget that needs the keys first."""
         self.focus()
 
     def leave(self) -> None:
-        """Another screen is shown from now on."""
+        """Called when another screen appears."""

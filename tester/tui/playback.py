@@ -1,4 +1,4 @@
-"""A stored run as scenes: what the screens would have shown at a moment of it, as far as it was recorded."""
+"""A stored run as scenes: the recorded part of what the screens showed at any moment."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from tester.tui.scene import ScreenScene
 from tester.tui.widgets.trends import WINDOW_S
 
 SPACING_S = 0.25
-"""Of the samples that are kept, rig seconds; wider where that would be more than MOST."""
+"""Spacing of the samples kept, rig seconds; wider if there would be more than MOST."""
 MOST = 40_000
 PLOTS = 4
-"""Trends that a screen has room for."""
+"""Number of trends on a screen."""
 OLD_S = 2.0
 """A sample older than this at the moment shown is stale; between contacts two a second are recorded."""
 
@@ -56,7 +56,7 @@ class Playback:
     conditions: tuple[StoredCondition, ...]
     repeats: tuple[StoredRepeat, ...]
     bursts: dict[int, tuple[Burst, ...]]
-    """Of the committed repeats, by their keys."""
+    """Bursts of the committed repeats, by their keys."""
     events: tuple[Event, ...]
     event_times: tuple[float, ...]
     steps: tuple[RecordedStep, ...]
@@ -67,7 +67,7 @@ class Playback:
         return max(self.run.rig_seconds, self.samples["time_s"][-1] if self.samples["time_s"] else 0.0)
 
     def show(self, scene: ScreenScene, at_s: float) -> None:
-        """Have the scene be that of a moment, rig seconds."""
+        """Set the scene to a moment, rig seconds."""
         condition = next((c for c in self.conditions if c.started_s <= at_s < _end(c, self.length_s)), None)
         index = bisect_right(self.samples["time_s"], at_s) - 1
         scene.replayed = True
@@ -106,14 +106,14 @@ class Playback:
         left_s, step_left_s = left_of(self.steps, at_s)
         last = max((r for r in self.repeats if condition is not None and r.begun_s <= at_s
                     and r.condition == condition.info.condition), key=lambda r: r.begun_s, default=None)  # fmt: skip
-        bursts = [one for one in self.bursts.get(last.key, ()) if one.started_s <= at_s] if last is not None else []
+        bursts = [b for b in self.bursts.get(last.key, ()) if b.started_s <= at_s] if last is not None else []
         wanted = condition.info.window_revolutions if condition is not None else None
         return ProgressView(
             step=here, steps=len(self.steps), title=self.steps[here - 1].title if here else "connecting",
-            over=sum(one.ended_s <= at_s for one in self.conditions), conditions=len(self.conditions),
+            over=sum(c.ended_s <= at_s for c in self.conditions), conditions=len(self.conditions),
             repeat=last.repeat if last is not None else 0,
             repeats=condition.info.repeats_planned if condition is not None else 0,
-            revolutions=sum(_done(one, at_s) for one in bursts), revolutions_wanted=wanted or 0.0,
+            revolutions=sum(_done(burst, at_s) for burst in bursts), revolutions_wanted=wanted or 0.0,
             burst=bursts[-1].number if bursts else 0,
             share=at_s / max(at_s + left_s, 1e-9), elapsed_s=at_s, left_s=left_s, step_left_s=step_left_s,
         )  # fmt: skip
@@ -130,24 +130,24 @@ class Playback:
         )  # fmt: skip
 
     def _measured(self, channel: Channel, row: dict[str, float]) -> float | None:
-        """Return what a sample says of a channel; None where it was not recorded then."""
+        """Return a channel's value in a sample; None if it was not recorded."""
         if channel.source:
             return channel.scaled(row.get(channel.name))
         return friction(self.quantities, row.__getitem__)
 
     def _wanted(self, channel: Channel, row: dict[str, float], info: ConditionInfo | None) -> Wanted:
-        """Return what was wanted: as it was recorded, else by the condition under way."""
+        """Return the setpoint: as recorded, else from the condition under way."""
         screen = screen_of(channel)
         if screen.setpoint:
             return Wanted(channel.scaled(row.get(screen.setpoint)))
         if not screen.axis or info is None:
             return NOTHING_WANTED
         warm = channel.name == self.quantities.roles.temperature
-        held = info.setpoint
-        return Wanted(held.axes[screen.axis].number(held), info.temperature_band_k if warm else None)
+        setpoint = info.setpoint
+        return Wanted(setpoint.axes[screen.axis].number(setpoint), info.temperature_band_k if warm else None)
 
     def _row(self, index: int) -> tuple[float | None, ...]:
-        """Return a row of the trend; of a setpoint that was not recorded it says nothing."""
+        """Return a row of the trend; unrecorded setpoints are left empty."""
         row = {name: column[index] for name, column in self.samples.items()}
         values = {
             spec.key: spec.value(self._measured(channel, row), self._wanted(channel, row, None))
@@ -157,7 +157,7 @@ class Playback:
 
 
 def _done(burst: Burst, at_s: float) -> float:
-    """Return the revolutions of a burst that were counted by then, as if evenly."""
+    """Return a burst's revolutions up to a moment, assuming a constant rate."""
     return burst.revolutions * min((at_s - burst.started_s) / max(burst.ended_s - burst.started_s, 1e-9), 1.0)
 
 
@@ -182,21 +182,22 @@ def load(folder: Path) -> Playback:
         return Playback(
             run, results.status.value, rig.name, drawn_as(quantities, shown, kind.machine), quantities, shown,
             _thinned(reader, spacing_s),
-            tuple(reader.conditions()), repeats, {one.key: tuple(reader.bursts(one.key)) for one in repeats}, events,
+            tuple(reader.conditions()), repeats, {r.key: tuple(reader.bursts(r.key)) for r in repeats}, events,
             tuple(event.t_s for event in events), recorded_steps(events, run.rig_seconds),
         )  # fmt: skip
 
 
 def drawn_as(quantities: Quantities, shown: Sequence[Spec], kind: MachineView) -> MachineView:
-    """Return how a record's channels are drawn: as its kind has it where that shows the same, else as the record says.
+    """Return how to draw a record's channels: as the kind does if its trend is the same, else by the record's own
+    table.
 
-    Of a record whose kind has changed since, or is not installed, the first trends are drawn; each is at least a
-    fiftieth of its bar high.
+    If the kind has changed since, or is not installed, the first trends are drawn; each range is at least a fiftieth of
+    its bar.
     """
     columns = trend_columns(quantities)
     if kind.trend == columns:
         return kind
-    drawn = [(spec, screen_of(one).trend) for spec, one in zip(shown, quantities.shown, strict=True)]
+    drawn = [(spec, screen_of(channel).trend) for spec, channel in zip(shown, quantities.shown, strict=True)]
     plots = [
         PlotView(spec.key, column, 0.02 * (spec.scale_high - spec.scale_low)) for spec, column in drawn if column
     ]
@@ -204,7 +205,7 @@ def drawn_as(quantities: Quantities, shown: Sequence[Spec], kind: MachineView) -
 
 
 def _thinned(reader: RunReader, spacing_s: float) -> dict[str, array[float]]:
-    """Return samples that far apart."""
+    """Return samples at this spacing."""
     kept: dict[str, array[float]] = {name: array("d") for name in reader.quantities().names}
     due_s = float("-inf")
     for block in reader.sample_blocks():

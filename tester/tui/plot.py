@@ -1,4 +1,4 @@
-"""Plots in characters: a trend in braille dots (two by four a cell) or, in ASCII, a sign a cell; a scatter."""
+"""Plots in characters: a trend in braille dots (two by four a cell) or, in ASCII, one sign a cell; a scatter."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 WISH, LIMIT = "╌", "─"
 SERIES = "●"
 OTHER = "·"
-"""Sign of a point that gives way to every other."""
+"""Sign of a point that every other point may cover."""
 SHRINK = 4.0
-"""A range is narrowed only when it is this many times wider than what it shows: it does not jump."""
+"""A range narrows only when it is this many times wider than its content, so that it does not jump."""
 
 
 @dataclass(slots=True)
@@ -29,7 +29,7 @@ class PlotRange:
     """Narrowest range."""
 
     def cover(self, low: float, high: float) -> None:
-        """Have the range hold these values."""
+        """Extend the range to these values."""
         if high - low < self.least:
             middle = 0.5 * (low + high)
             low, high = middle - 0.5 * self.least, middle + 0.5 * self.least
@@ -81,10 +81,10 @@ class Canvas:
         """Draw the newest bins, the last at the right edge."""
         shown = bins[-self.columns :]
         first = self.columns - len(shown)
-        for at, one in enumerate(shown, first):
-            if one is None:
+        for at, ends in enumerate(shown, first):
+            if ends is None:
                 continue
-            for row in range(self._row(one[1], scale), self._row(one[0], scale) + 1):
+            for row in range(self._row(ends[1], scale), self._row(ends[0], scale) + 1):
                 if self.plain:
                     self._dots[row][at] = 1
                 else:
@@ -101,7 +101,7 @@ class Canvas:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One point of a scatter, and the sign that stands for it."""
+    """One point of a scatter, with its sign."""
 
     x: float
     y: float
@@ -109,7 +109,7 @@ class Point:
 
 
 def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2) -> list[str]:
-    """Return points in a frame of axes, ``width`` by ``height`` characters; points on one another show as ``+``."""
+    """Return points in a frame of axes, ``width`` by ``height`` characters; coinciding points show as ``+``."""
     margin = 7
     inner, rows = width - margin - 1, height - 2
     if inner < 4 or rows < 2 or not points:
@@ -137,7 +137,7 @@ def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2)
 
 
 def _labels(at: dict[int, str], width: int) -> str:
-    """Return texts below their columns, the first and the last before those between, each where there is room."""
+    """Return texts below their columns as far as there is room, the first and the last before those between."""
     line = [" "] * width
     columns = sorted(at)
     for column in dict.fromkeys((columns[0], columns[-1], *columns)):

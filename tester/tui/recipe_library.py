@@ -1,4 +1,4 @@
-"""The recipes that can be chosen: those that ship, and the files of the folder one works in."""
+"""The recipes to choose from: those shipped, and the files in the working folder."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import recipes
 from tester.base.trouble import in_words
 
 MOST_BYTES = 262_144
-"""Longest recipe that is read (safety.md): the service takes no longer one."""
+"""Longest recipe read, bytes (safety.md): the service accepts none longer."""
 OWN = "recipes"
-"""Folder of a user's recipes, below the one they work in."""
+"""Folder of a user's recipes, below the working folder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +26,12 @@ class RecipeProblem:
 
 
 Checked: TypeAlias = "tuple[RecipeProblem, ...] | None"
-"""The problems that were found; None where nobody has looked yet."""
+"""The problems of a recipe; None before it is checked."""
 
 
 @dataclass(frozen=True, slots=True)
 class ListedRecipe:
-    """A recipe that can be chosen. ``text``: as it was read; ``unreadable``: why it could not be."""
+    """A recipe to choose from. ``text``: its content; ``unreadable``: why it could not be read."""
 
     name: str
     path: Path
@@ -41,24 +41,24 @@ class ListedRecipe:
 
     @property
     def reference(self) -> str:
-        """Return what the service calls it."""
+        """Return its name at the service."""
         return self.name if self.shipped else str(self.path)
 
     @property
     def sent(self) -> str:
-        """Return the text that goes to the service: it need not find our files, and shipped ones it has."""
+        """Return the text to send: the service may not find our files, but has the shipped ones."""
         return "" if self.shipped else self.text
 
 
 def shelf(folder: Path) -> list[ListedRecipe]:
     """Return the shipped recipes, then those in ``folder/recipes`` and ``folder``, each by name."""
-    found = [_read(name, recipes.find(name), shipped=True) for name in recipes.names()]
+    listed = [_read(name, recipes.find(name), shipped=True) for name in recipes.names()]
     shipped = recipes.FOLDER.resolve()
     for where in (folder / OWN, folder):
         if where.is_dir() and where.resolve() != shipped:
             files = sorted(where.glob("*.yaml"))
-            found += [one for one in (_read(file.stem, file, shipped=False) for file in files) if _looks_like_one(one)]
-    return found
+            listed += [one for one in (_read(file.stem, file, shipped=False) for file in files) if _looks_like_one(one)]
+    return listed
 
 
 def read_again(recipe: ListedRecipe) -> ListedRecipe:
@@ -67,7 +67,7 @@ def read_again(recipe: ListedRecipe) -> ListedRecipe:
 
 
 def own_copy(recipe: ListedRecipe, folder: Path) -> ListedRecipe:
-    """Copy a shipped recipe into the user's folder, under a name that is free, and return the copy; raises OSError."""
+    """Copy a shipped recipe to a free name in the user's folder, and return the copy; raises OSError."""
     where = folder / OWN
     where.mkdir(exist_ok=True)
     path, count = where / f"my-{recipe.name}.yaml", 1
@@ -79,7 +79,7 @@ def own_copy(recipe: ListedRecipe, folder: Path) -> ListedRecipe:
 
 
 def _looks_like_one(recipe: ListedRecipe) -> bool:
-    """Return whether a file is a recipe, or one that is being written: other YAML files lie about."""
+    """Return whether a file is a recipe, finished or not: a folder may hold other YAML files."""
     return bool(recipe.unreadable) or "recipe:" in recipe.text
 
 

@@ -1,4 +1,4 @@
-"""A stored run's steps, from its journal: what was done when, the way to standstill included."""
+"""A stored run's steps, from its journal: each with its times, including the way to standstill."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tester.service.protocol import Event
 from tester.service.state import PlanStep, PlanView, StepState
 
 _STOPS = re.compile(r"(run|hold) -> (?!run\b|hold\b)")
-"""How the text of a change of mode begins by which a run, or a part of it, comes to its end."""
+"""Start of the event text for a change of mode that ends a run, or a part of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class RecordedStep:
 
     @property
     def took_s(self) -> float:
-        """Return what it took, whole s."""
+        """Return its duration, whole s."""
         return float(round(self.ended_s - self.began_s))
 
 
@@ -54,7 +54,9 @@ def present_of(steps: Sequence[RecordedStep], at_s: float) -> int:
 
 
 def left_of(steps: Sequence[RecordedStep], at_s: float) -> tuple[float, float]:
-    """Return what is left at a moment, whole s: of the run, as the list of steps adds up, and of the present step."""
+    """Return the rig seconds left at a moment, whole s: of the run, as the list of steps adds up, and of the present
+    step.
+    """
     here = present_of(steps, at_s)
     present_s = float(ceil(max(steps[here - 1].ended_s - at_s, 0.0))) if here else 0.0
     return present_s + sum(step.took_s for step in steps[here:]), present_s

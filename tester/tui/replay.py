@@ -92,10 +92,10 @@ class ReplayApp(TesterApp):
     def keys_of(self, view: View) -> Keys:
         """Return the keys of a replay."""
         if isinstance(view, RingPage):
-            own: Keys = (("n", "New ring"),)
+            view_keys: Keys = (("n", "New ring"),)
         else:
-            own = (("p", "Plot"), ("e", "Export")) if isinstance(view, ResultsView) else (("l", "Log"),)
-        return (("space", "Play"), ("←→", "10 s"), ("s", "Faster"), *own, ("F1", "Help"), ("q", "Leave"))
+            view_keys = (("p", "Plot"), ("e", "Export")) if isinstance(view, ResultsView) else (("l", "Log"),)
+        return (("space", "Play"), ("←→", "10 s"), ("s", "Faster"), *view_keys, ("F1", "Help"), ("q", "Leave"))
 
     def connect(self) -> None:
         """Show the run's beginning."""
@@ -124,7 +124,7 @@ class ReplayApp(TesterApp):
             self.playing = self.at_s < self.playback.length_s
 
     def action_seek(self, by_s: float) -> None:
-        """Go on or back by rig seconds."""
+        """Move forward or back by rig seconds."""
         self.at_s = min(max(self.at_s + by_s, 0.0), self.playback.length_s)
         self.playback.show(self.scene, self.at_s)
         self._show_time()
@@ -147,19 +147,16 @@ class ReplayApp(TesterApp):
         self._show_time()
 
     def action_stop(self) -> None:
-        """There is nothing to stop here."""
+        """Report that a replay has nothing to stop."""
         self.say("a replay has no rig: `tester stop` stops one", problem=True)
 
     def action_abort(self) -> None:
-        """There is nothing to abort."""
         self.action_stop()
 
     def action_resume(self) -> None:
-        """There is nothing to resume."""
         self.action_stop()
 
     def action_acknowledge(self) -> None:
-        """There is nothing to acknowledge."""
         self.action_stop()
 
     def action_detach(self) -> None:

@@ -1,4 +1,4 @@
-"""The rings of stored runs as a screen shows them. Reading takes long enough to be done in a thread."""
+"""The rings of stored runs, for the screen. Reading is slow enough to need a thread."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tester.store.catalogue import run_folders, under_way
 from tester.store.schema import StoreError
 
 MOST: Final = 200
-"""Runs that are read, the newest."""
+"""Most runs read, the newest."""
 
 
 @dataclass(frozen=True, slots=True)
 class RingRow:
-    """A run: the turns of the ring until its end, where its errors gather."""
+    """A run: the turns of the ring until its end, and the sectors where its errors gather."""
 
     run: RingRun
     age: float
@@ -28,36 +28,36 @@ class RingRow:
 
 @dataclass(slots=True)
 class KeptRings:
-    """The runs of one rig: the one that ran last."""
+    """The runs of one rig: the rig of the last run."""
 
     since: str = ""
-    """The run from which on the ring counts as new; "" the first."""
+    """The run from which the ring counts as new; "" = the first."""
     counted: str = ""
     turns: str = ""
     _found: dict[str, RingFound] = field(default_factory=dict[str, RingFound])
     _rows: list[RingRow] = field(default_factory=list[RingRow])
 
     def read(self, runs: Path) -> None:
-        """Read the runs that are not known yet; raises OSError. One that cannot be read is left out."""
+        """Read new runs, skipping unreadable ones; raises OSError."""
         known: dict[str, RingFound] = {}
         for folder in list(run_folders(runs))[-MOST:]:
-            found = self._found.get(folder.name)
-            if found is None and under_way(folder) is None:
+            ring = self._found.get(folder.name)
+            if ring is None and under_way(folder) is None:
                 with suppress(StoreError):
-                    found = ring_in(folder)
-            if found is not None:
-                known[folder.name] = found
+                    ring = ring_in(folder)
+            if ring is not None:
+                known[folder.name] = ring
         self._found = known
-        with_any = [one for one in known.values() if one.run.requests]
+        with_any = [ring for ring in known.values() if ring.run.requests]
         if not with_any:
             self._rows, self.counted, self.turns = [], "", ""
             return
-        newest = max(with_any, key=lambda one: one.run.started)
+        newest = max(with_any, key=lambda ring: ring.run.started)
         self.counted, self.turns = newest.part.counted, newest.part.turns
         old = {row.run.name: row for row in self._rows}
         self._rows = [
-            old.get(one.run.name) or RingRow(one.run, 0.0, tuple(one.run.sectors()))
-            for one in of_one_rig(with_any, newest)
+            old.get(ring.run.name) or RingRow(ring.run, 0.0, tuple(ring.run.sectors()))
+            for ring in of_one_rig(with_any, newest)
         ]
 
     def rows(self) -> list[RingRow]:

@@ -24,15 +24,18 @@ from tester.service.protocol import Snapshot as SnapshotMessage
 from tester.service.state import Alarm, PlanView, RunView, StateView
 
 STALE_S = 2.0
-"""A state older than this is no state: no value is to be believed."""
+"""A state older than this is stale, and none of its values is trustworthy, s."""
 FRAMES_KEPT = 1000
 UNDER_WAY = "running"
-"""Outcome of a run that has none yet (docs/protocol.md)."""
+"""Outcome of a run under way (docs/protocol.md)."""
 
 
 @dataclass(slots=True)
 class ScreenScene:
-    """``state`` None: nothing was ever heard. ``now``: seconds of tester.base.clock.monotonic, another one in tests."""
+    """The data of the screens. ``state`` None: none has arrived yet.
+
+    ``now`` returns seconds, by default of tester.base.clock.monotonic.
+    """
 
     now: Callable[[], float] = clock.monotonic
     state: StateView | None = None
@@ -42,46 +45,46 @@ class ScreenScene:
         default_factory=lambda: deque[tuple[float | None, ...]](maxlen=TREND_ROWS)
     )
     machine: MachineView = UNKNOWN
-    """Tables of the kind that is shown."""
+    """Tables of the kind on display."""
     epoch: int = 0
-    """Changes where ``trend`` is another one, not a longer one."""
+    """Changes when ``trend`` is replaced, not when it grows."""
     frames: deque[Frame] = field(default_factory=lambda: deque[Frame](maxlen=FRAMES_KEPT))
     frames_dropped: int = 0
     frames_seen: int = 0
     lost: str = ""
     """Why there is no link, "" while there is one."""
     gone: Gone = ""
-    """What became of the service behind a lost link, as far as that is known."""
+    """What became of the service behind a lost link, as far as known."""
     received_s: float = 0.0
     service: str = ""
-    """Which life of the service the events are of."""
+    """The life of the service that the events come from."""
     controls: bool = False
     view_only: bool = False
     replayed: bool = False
 
     @property
     def age_s(self) -> float:
-        """Seconds since the newest state came."""
+        """Seconds since the newest state arrived."""
         return 0.0 if self.replayed else max(self.now() - self.received_s, 0.0)
 
     @property
     def linked(self) -> bool:
-        """Return whether what is shown is how it is."""
+        """Return whether the display is up to date."""
         return self.state is not None and not self.lost and self.age_s <= STALE_S
 
     @property
     def run_under_way(self) -> bool:
-        """Return whether a run was under way when the service was heard last."""
+        """Return whether a run was under way in the last state received."""
         return self.state is not None and self.state.run is not None and self.state.run.outcome == UNDER_WAY
 
     @property
     def ended_run(self) -> RunView | None:
-        """Return the last run, None while one is under way, or where it has left no folder (manual mode)."""
+        """Return the last run; None while a run is under way, or if it has no folder (manual mode)."""
         run = self.state.run if self.state is not None else None
         return run if run is not None and run.outcome != UNDER_WAY and run.folder else None
 
     def take(self, message: ServerMessage | Lost, client: Client | None) -> None:
-        """Take in a message of the link."""
+        """Take a message from the link."""
         if isinstance(message, Lost):
             self.lost, self.gone = message.reason or "the connection is lost", message.gone
             return
@@ -123,13 +126,13 @@ class ScreenScene:
         return self.state.value(key) if self.state is not None else None
 
     def alarms(self) -> list[Alarm]:
-        """Return the alarms, those that need a person first: unacknowledged, then by priority, the first one up."""
+        """Return the alarms, the most urgent first: unacknowledged, then by priority, first-up, number."""
         if self.state is None:
             return []
         return sorted(
-            self.state.alarms, key=lambda one: (one.state == "acknowledged", one.priority, not one.first_up, one.number)
+            self.state.alarms, key=lambda a: (a.state == "acknowledged", a.priority, not a.first_up, a.number)
         )
 
     def top_alarm(self) -> Alarm | None:
-        """Return the alarm that wants acknowledging most, None where none does."""
-        return next((one for one in self.alarms() if one.state != "acknowledged"), None)
+        """Return the most urgent unacknowledged alarm, None without any."""
+        return next((alarm for alarm in self.alarms() if alarm.state != "acknowledged"), None)

@@ -1,4 +1,4 @@
-"""Processes that the screen starts: the service, which outlives the terminal, and single commands."""
+"""Starts the service as a separate process, which outlives the terminal and the program that started it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from tester.base.processes import tester_command
 from tester.service.address import folder
 
 LOG = "serve.log"
-"""What the service says goes there, in its folder."""
+"""Log of the service's output, in its folder."""
 
 
 def start_service(rig: str, runs: Path) -> None:
-    """Start ``tester serve``; raises OSError. Whether it lives is seen by connecting to it.
+    """Start ``tester serve``; raises OSError. Connect to it to find out whether it runs.
 
     A session of its own: neither the end of the terminal nor a Ctrl+C in it reaches the service. Windows has process
     groups for that, as documented; not tried.
@@ -31,10 +31,10 @@ def start_service(rig: str, runs: Path) -> None:
 
 
 async def call(*arguments: str) -> tuple[bool, str]:
-    """Carry out ``tester ARGUMENTS``; return whether it was done, and what it said."""
+    """Run ``tester ARGUMENTS``; return whether it succeeded, and its error output."""
     process = await asyncio.create_subprocess_exec(
         *tester_command(*arguments),
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
     )  # fmt: skip
-    _, told = await process.communicate()
-    return process.returncode == 0, told.decode(errors="replace").strip()
+    _, output = await process.communicate()
+    return process.returncode == 0, output.decode(errors="replace").strip()

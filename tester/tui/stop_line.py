@@ -1,7 +1,7 @@
-"""STOP's own way to the service: taken where the terminal is read, in a thread of its own, past the screen's loop.
+"""STOP's own way to the service: sent from the thread that reads the terminal, past the screen's loop.
 
-A screen that is drawing, or that stands still because nobody reads its terminal, does not keep STOP waiting. The
-connection to the service's lane for STOP is kept open, so that nothing has to be opened when it counts.
+A screen that is drawing, or that hangs because its terminal is not read, does not delay STOP. The connection to the
+service's lane for STOP stays open, so that it need not be opened when it counts.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from tester.service.address import Address
 from tester.service.stop_call import NotTakenError, StopCall
 
 LOOK_S = 1.0
-"""A connection that was lost is opened again this often, s."""
+"""Period for reopening a lost connection, s."""
 
 
 class TakesStop(Protocol):
-    """What takes STOP."""
+    """Takes STOP."""
 
     def press(self, *, fast: bool = False) -> None:
         """STOP; from any thread."""
@@ -33,10 +33,10 @@ class TakesStop(Protocol):
 
 
 class StopLine:
-    """Says STOP, from a thread of its own."""
+    """Sends STOP from a separate thread."""
 
     def __init__(self, address: Address | None, name: str) -> None:
-        """Nothing is connected before ``open`` or ``press``. ``name``: who stops, as the service records it."""
+        """Connect nothing before ``open`` or ``press``. ``name``: who stops, for the record."""
         self._call = StopCall(address, name)
         self._pressed: SimpleQueue[tuple[bool, Future[None]] | None] = SimpleQueue()
         self._sent: Future[None] | None = None
@@ -56,12 +56,12 @@ class StopLine:
         self.open()
 
     def take(self) -> Future[None] | None:
-        """Return what becomes of the newest press (an exception: NotTakenError), once; None where there was none."""
+        """Return the result of the newest press (or its exception, NotTakenError), once; None without a press."""
         sent, self._sent = self._sent, None
         return sent
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         if self._thread is not None:
             self._pressed.put(None)
             self._thread = None
@@ -88,13 +88,13 @@ class StopLine:
 
 
 def stopping(driver: type[Driver], line: TakesStop) -> type[Driver]:
-    """Return a terminal driver that presses ``line`` with STOP's keys before anybody else hears of them."""
+    """Return a terminal driver that presses ``line`` on STOP's keys before the screen gets them."""
 
     class StoppingDriver(driver):
-        """What reads the keys, in a thread of its own."""
+        """Reads the keys, in a separate thread."""
 
         def process_message(self, message: Message) -> None:
-            """Have STOP go its way, then everything as ever."""
+            """Send STOP, then handle the message as usual."""
             if isinstance(message, Key) and message.key in STOP.keys + FAST_STOP.keys:
                 line.press(fast=message.key in FAST_STOP.keys)
             super().process_message(message)

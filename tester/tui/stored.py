@@ -1,4 +1,4 @@
-"""A stored run as the Results screen shows it. Reading takes long enough to be done in a thread."""
+"""A stored run for the Results screen. Reading is slow enough to need a thread."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tester.tui.plot import OTHER, SERIES, Bin, Point
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One condition: cells of ``Stored.header``, what is held, mu (None: none), its number in the store."""
+    """One condition: cells of ``Stored.header``, its setpoint, mu (None: none), its number in the store."""
 
     cells: tuple[str, ...]
     held: Setpoint
@@ -30,16 +30,16 @@ class Row:
     mu: float | None
     condition: int
     mark: str = ""
-    """Of mu (tester.analysis.results): "" where it is trusted."""
+    """Mark of mu (tester.analysis.trust): "" if it is trustworthy."""
     figures: str = ""
-    """What the columns behind the setpoints say, with their headings."""
+    """Text of the columns after the setpoints, with their headings."""
     flags: tuple[str, ...] = ()
-    """What each of its flags means, and what to do about it."""
+    """Meaning of each flag, and the remedy."""
 
 
 @dataclass(frozen=True, slots=True)
 class RepeatRow:
-    """One repeat of a condition: number, coefficient, status, why it is not in the mean, its trace of mu."""
+    """One repeat of a condition: number, coefficient, status, why it is excluded from the mean, its trace of mu."""
 
     repeat: int
     figures: str
@@ -47,7 +47,7 @@ class RepeatRow:
     status: str
     exclusion: str
     by_hand: str
-    """Who has left it out, and when; "" where nobody has."""
+    """Who excluded it, and when; "" unless excluded by a person."""
     trace: tuple[Bin | None, ...]
 
 
@@ -60,24 +60,25 @@ class Stored:
     recipe: str
     status: str
     header: tuple[str, ...]
-    """The paper's axes, one for each further axis that is off its default, and the columns that a screen shows; what
-    all rows share is in ``common`` instead where there are more axes than the paper's."""
+    """The paper's axes, further axes off their default, and the columns for a screen. With more axes than the paper's,
+    values that all rows share are in ``common`` instead.
+    """
     common: str
     rows: tuple[Row, ...]
     axes: Axes
     record_head: str = ""
-    """Of the chain over the run's record; "" where there is none."""
+    """Head of the chain over the run's record; "" without one."""
     conditions: int = 0
-    """Of the recipe, without references; replicates of one are one."""
+    """Number of the recipe's conditions, without references; replicates count once."""
     values: int = 0
-    """Of these, those with a value to be trusted."""
+    """How many of these have a trustworthy value."""
 
     @property
     def plotted(self) -> tuple[Axis, ...]:
-        """What the coefficient can be plotted against: the paper's axes, and others that differ here."""
+        """Axes to plot the coefficient against: the paper's, and others that differ here."""
         more = self.axes.differing(row.held for row in self.rows)
-        shown = (one for one in self.axes if not one.choices and (one.paper or one in more))
-        return tuple(sorted(shown, key=lambda one: one.plotted))
+        shown = (axis for axis in self.axes if not axis.choices and (axis.paper or axis in more))
+        return tuple(sorted(shown, key=lambda axis: axis.plotted))
 
 
 def read(name: str, runs: Path) -> Stored:
@@ -91,17 +92,17 @@ def read(name: str, runs: Path) -> Stored:
 def stored_of(folder: Path, results: RunResults) -> Stored:
     """Return a run's table."""
     conditions = list(results.conditions())
-    held = [measured.info.setpoint for measured in conditions]
-    shown, common = results.axes.columns(held), ""
-    if len(held) > 1 and any(not one.paper for one in shown):
-        # A narrow screen has room for the axes that differ; what all conditions share is told once, above.
-        words = ListWords(held)
+    setpoints = [measured.info.setpoint for measured in conditions]
+    shown, common = results.axes.columns(setpoints), ""
+    if len(setpoints) > 1 and any(not axis.paper for axis in shown):
+        # A narrow screen has room for the axes that differ; shared values are shown once, above.
+        words = ListWords(setpoints)
         shown, common = words.axes, words.common
     table = conditions_table(results)
-    table = table.of(one for one in table.rows if one.measured is not None)
+    table = table.of(row for row in table.rows if row.measured is not None)
     view = table.view(Output.SCREEN, axis_keys(shown))
-    header = tuple(one.narrow_head for one in view.columns)
-    rows = tuple(_row(one, view) for one in table.rows)
+    header = tuple(column.narrow_head for column in view.columns)
+    rows = tuple(_row(row, view) for row in table.rows)
     run = results.run
     if run.info.risk:
         common = f"RISK ACCEPTED: {run.info.risk}{'; ' + common if common else ''}"
@@ -112,7 +113,7 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
 
 def _row(one: ConditionRow, view: Table[ConditionRow]) -> Row:
     """Return a condition with its cells of ``view``."""
-    held, result = one.info.setpoint, one.result
+    setpoint, result = one.info.setpoint, one.result
     figures = "  ".join(
         f"{column.heading} {column.text(one)} {column.unit}".rstrip()
         for column in view.columns
@@ -121,42 +122,42 @@ def _row(one: ConditionRow, view: Table[ConditionRow]) -> Row:
     mu = result.mu if isfinite(result.mu) else None
     flags = tuple(flag_words(FLAGS[word]) for word in flags_in(result.flags) if word in FLAGS)
     cells = tuple(column.text(one) for column in view.columns)
-    return Row(cells, held, held.compound, mu, one.info.condition, one.mark, figures, flags)
+    return Row(cells, setpoint, setpoint.compound, mu, one.info.condition, one.mark, figures, flags)
 
 
 def condition(folder: Path, number: int, columns: int) -> tuple[Row, tuple[RepeatRow, ...]]:
-    """Read a condition and its repeats with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
+    """Read a condition and its repeats, with traces of ``columns`` columns; raises StoreError, sqlite3.Error."""
     with RunReader(folder) as reader:
         results = results_of(reader)
         conditions, repeats = conditions_table(results), repeats_table(results)
-        row = next(one for one in conditions.rows if one.measured is not None and one.info.condition == number)
+        row = next(c for c in conditions.rows if c.measured is not None and c.info.condition == number)
         mu = repeats["mu_as_measured"]
         return _row(row, conditions.view(Output.SCREEN)), tuple(
             RepeatRow(
-                one.repeat.repeat,
-                f"{mu.heading} {mu.text(one)}",
-                one.result.status.value,
-                one.exclusion,
-                _who(one.measured.left_out_by(one.repeat)),
-                _trace(reader, number, one.repeat.repeat, columns),
+                measured.repeat.repeat,
+                f"{mu.heading} {mu.text(measured)}",
+                measured.result.status.value,
+                measured.exclusion,
+                _who(measured.measured.left_out_by(measured.repeat)),
+                _trace(reader, number, measured.repeat.repeat, columns),
             )
-            for one in repeats.rows
-            if one.measured is row.measured
+            for measured in repeats.rows
+            if measured.measured is row.measured
         )
 
 
 def _who(word: StoredExclusion | None) -> str:
-    return f"{word.operator or 'somebody'}, {word.utc[:16].replace('T', ' ')} UTC" if word is not None else ""
+    return f"{word.operator or 'a person'}, {word.utc[:16].replace('T', ' ')} UTC" if word is not None else ""
 
 
 def _trace(reader: RunReader, condition: int, repeat: int, columns: int) -> tuple[Bin | None, ...]:
-    """Return the accepted samples' coefficient, least and greatest in each column."""
+    """Return the coefficient of the accepted samples, least and greatest in each column."""
     import numpy as np
 
-    found, roles = reader.samples(condition, repeat), reader.quantities().roles
-    accepted = (found[GATE] == 0) & (found[roles.normal] > 0.0)
-    force = np.hypot.reduce([found[name][accepted] for name in roles.friction], initial=0.0)
-    mu = force / found[roles.normal][accepted]
+    samples, roles = reader.samples(condition, repeat), reader.quantities().roles
+    accepted = (samples[GATE] == 0) & (samples[roles.normal] > 0.0)
+    force = np.hypot.reduce([samples[name][accepted] for name in roles.friction], initial=0.0)
+    mu = force / samples[roles.normal][accepted]
     if not len(mu):
         return ()
     pieces = np.array_split(mu, min(columns, len(mu)))
@@ -169,26 +170,29 @@ def row_words(row: Row) -> str:
 
 
 def series(stored: Stored, row: Row, along: Axis) -> list[Row]:
-    """Return the conditions with a value that differ from ``row`` along one axis at most."""
+    """Return the conditions with a value that differ from ``row`` in at most this axis."""
 
-    def others(one: Row) -> tuple[object, ...]:
-        return one.compound, *(other.of(one.held) for other in one.held.axes if other.name != along.name)
+    def others(r: Row) -> tuple[object, ...]:
+        return r.compound, *(other.of(r.held) for other in r.held.axes if other.name != along.name)
 
-    return [one for one in stored.rows if one.mu is not None and others(one) == others(row)]
+    return [r for r in stored.rows if r.mu is not None and others(r) == others(row)]
 
 
 def points(stored: Stored, along: Axis, chosen: Row | None = None) -> list[Point]:
     """Return the conditions as points of mu against an axis; the sign is the compound's first letter or digit.
 
-    Where a ``chosen`` row has a series along the axis, that is drawn as ``●`` and everything else as ``·``.
+    If a ``chosen`` row has a series along the axis, its points are ``●`` and all others ``·``.
     """
     marked = series(stored, chosen, along) if chosen is not None else []
 
-    def own(row: Row) -> str:
+    def sign_of(row: Row) -> str:
         return _sign(row) if len(marked) < 2 else SERIES
 
     return [
-        Point(along.number(row.held), row.mu, OTHER if len(marked) > 1 and row not in marked else row.mark or own(row))
+        Point(
+            along.number(row.held), row.mu,
+            OTHER if len(marked) > 1 and row not in marked else row.mark or sign_of(row),
+        )
         for row in stored.rows
         if row.mu is not None
     ]

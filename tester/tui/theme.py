@@ -1,4 +1,4 @@
-"""Themes, and the application in them: a grey base, colour for what is not normal; no colour and ASCII where asked."""
+"""Themes: a grey base, with colour only for abnormal states. Two use 24-bit colours, one the 16 of every terminal."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ SIXTEEN = Theme(
     success="#c0c0c0",
     dark=True,
 )
-"""The colours are those of the terminal's own palette, so that nothing is blended away."""
+"""Uses the terminal's own palette, so that no colour is blended away."""
 THEMES = {"dark": DARK, "light": LIGHT, "16": SIXTEEN}
 
 CSS = """
@@ -180,12 +180,12 @@ class LookApp(App[str]):
             self._last_filters.append(AsciiOnly())
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return what stands between the screen and the terminal; NO_COLOR takes all colour, not its saturation."""
+        """Return the filters between screen and terminal; NO_COLOR removes all colour, not only its saturation."""
         if self._last_filters and self.no_color:
             return list(self._last_filters)
         return [*super().get_line_filters(), *self._last_filters]
 
     def choose_colours(self) -> None:
-        """Take the sixteen colours where the terminal has no more, and nobody has said otherwise."""
+        """Use the sixteen colours if the terminal has no more, unless a theme was chosen."""
         if not self._theme_wanted and self.console.color_system == "standard":
             self.theme = THEMES["16"].name

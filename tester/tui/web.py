@@ -1,8 +1,8 @@
-"""`tester tui --web`: the screen in a browser, on this machine only, to look at.
+"""`tester tui --web`: the screen in a browser, on this machine only, view only.
 
-Who can reach the port can see it: any user of this machine. So nothing is commanded from there, not even STOP
-(docs/decisions/0023). A page of another origin cannot: it is refused by the ``Host`` and ``Origin`` that a browser
-sends, also where its name was made to mean this machine (DNS rebinding).
+Every user of this machine can reach the port. So no command works there, not even STOP (docs/decisions/0023). A page of
+another origin is refused by the ``Host`` and ``Origin`` headers that a browser sends, even if its name resolves to this
+machine (DNS rebinding).
 """
 
 from __future__ import annotations
@@ -18,21 +18,24 @@ if TYPE_CHECKING:
 
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")
-"""What a browser may call this machine."""
+"""Names of this machine in a browser."""
 HTTP_PORT = 80
-"""A browser leaves this one out."""
+"""Browsers leave this port out of the header."""
 
 
 def is_own(host: str, origin: str | None, port: int) -> bool:
-    """Return whether a request is for us by name, and from a page of ours or from no page. Both as the headers say."""
+    """Return whether a request addresses this service by name, and comes from its own page or from no page.
+
+    Arguments as in the headers.
+    """
     places = {f"{name}:{port}" for name in NAMES} | (set(NAMES) if port == HTTP_PORT else set[str]())
     return host.lower() in places and (origin is None or origin.lower() in {f"http://{place}" for place in places})
 
 
 async def application(port: int, address: str) -> web.Application:
-    """Return what answers browsers: textual-serve, for requests that ``is_own``. Raises ImportError without it.
+    """Return the application for browsers: textual-serve, limited to requests that satisfy ``is_own``.
 
-    ``address`` as of ``serve``.
+    ``address`` as in ``serve``. Raises ImportError without textual-serve.
     """
     from aiohttp import web
     from textual_serve.server import Server
@@ -50,18 +53,19 @@ async def application(port: int, address: str) -> web.Application:
         return await handler(request)
 
     class OwnServer(Server):
-        """Answers nobody else."""
+        """A server that answers only requests for itself."""
 
         async def answering(self) -> web.Application:
-            made = await self._make_app()
-            made.middlewares.append(own_only)
-            return made
+            app = await self._make_app()
+            app.middlewares.append(own_only)
+            return app
 
     return await OwnServer(shlex.join(command), host=HOST, port=port, title="friction-tester").answering()
 
 
 def serve(port: int, address: str) -> None:
-    """Serve view-only screens until interrupted, a process for each browser. Raises ImportError without textual-serve.
+    """Serve view-only screens until interrupted, one process for each browser. Raises ImportError without
+    textual-serve.
 
     ``address``: of the service as `--connect` takes it, "" = the user's own.
     """

@@ -1,1 +1,1 @@
-"""Dialogs: they leave lines 1, 2 and the last alone, and STOP works in every one of them."""
+"""Dialogs: they leave lines 1, 2 and the last visible, and STOP works in every one of them."""

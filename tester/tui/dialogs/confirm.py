@@ -20,7 +20,7 @@ SIGNS = {True: "✔", False: "✘", None: "?"}
 
 
 def preflight_rows(checks: tuple[Check, ...]) -> Parts:
-    """Return the pre-flight list; what nobody can know yet is said to be checked by the service when it connects."""
+    """Return the pre-flight list; checks that need a connection are marked as made when the service connects."""
     lines: list[Parts] = []
     for check in checks:
         text = f" {SIGNS[check.ok]} {clean(check.name)}" + (f": {clean(check.text)}" if check.text else "")

@@ -1,4 +1,4 @@
-"""The base of every dialog (fixed lines stay visible, Escape closes, STOP works), the event log and the help."""
+"""Base of every dialog: the fixed lines stay visible, Escape closes it, and STOP always works."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tester.tui.widgets.panel import Parts, rows
 
 
 class Dialog(ModalScreen[None]):
-    """A box between lines 2 and last."""
+    """A box between line 2 and the last line."""
 
     TITLE: ClassVar[str | None] = ""
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "close", "Close", show=False)]
@@ -38,7 +38,7 @@ class Dialog(ModalScreen[None]):
             yield from self.content()
 
     def content(self) -> Iterable[Widget]:
-        """Return what is in the box."""
+        """Return the widgets in the box."""
         return ()
 
     def action_close(self) -> None:
@@ -47,7 +47,7 @@ class Dialog(ModalScreen[None]):
 
 
 def line(parts: Parts | str, *, id: str | None = None) -> Static:  # noqa: A002 - as in Textual
-    """Return a text, as it is."""
+    """Return a plain text."""
     content = Content(parts) if isinstance(parts, str) else Content.assemble(*parts)
     return Static(content, classes="line", markup=False, id=id)
 
@@ -71,7 +71,7 @@ TEXT_WIDTH = 70
 
 
 class LogDialog(Dialog):
-    """All events that are known, newest first."""
+    """All known events, newest first."""
 
     TITLE = "Events, newest first"
 
@@ -89,7 +89,7 @@ class TextDialog(Dialog):
     """A text to read."""
 
     def __init__(self, title: str, text: str) -> None:
-        """``text``: paragraphs, and keys with two spaces or more before what they do."""
+        """``text``: paragraphs, and keys followed by two spaces or more and their description."""
         super().__init__()
         self._title, self._text = title, reflow(text, TEXT_WIDTH)
 

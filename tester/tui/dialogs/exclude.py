@@ -1,4 +1,4 @@
-"""Leave a repeat out of its condition's mean, or take it in again: only with a reason, which goes on record."""
+"""Exclude a repeat from its condition's mean, or include it again: only with a reason, which is recorded."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tester.tui.stored import RepeatRow, Row, Stored, row_words
 
 
 class ExcludeDialog(Dialog):
-    """Asks why, and who says so. ``done`` is called once it is on record."""
+    """Asks for the reason and the person. ``done`` is called once they are recorded."""
 
     TITLE = "Leave a repeat out, or take it in again"
 
@@ -27,12 +27,12 @@ class ExcludeDialog(Dialog):
         self.verb = "include" if repeat.by_hand else "exclude"
 
     def on_mount(self) -> None:
-        """Name the box, begin at the reason."""
+        """Name the box and focus the reason."""
         self.query_one("#box").border_title = f"{self.verb.capitalize()} {self.row.condition}/{self.repeat.repeat}"
         self.query_one("#reason").focus()
 
     def content(self) -> Iterable[Widget]:
-        """Return what it is about, and the fields."""
+        """Return the description and the fields."""
         yield line([(clean(row_words(self.row)), "bold")])
         yield line(f"Repeat {self.repeat.repeat}: {self.repeat.figures}, {clean(self.repeat.status)}")
         if self.repeat.by_hand:
@@ -43,7 +43,7 @@ class ExcludeDialog(Dialog):
         yield field("Who", entry("who", user()))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Have it done, if there is a reason."""
+        """Record it, if there is a reason."""
         event.stop()
         reason, who = (self.query_one(f"#{name}", Input).value.strip() for name in ("reason", "who"))
         if not reason:

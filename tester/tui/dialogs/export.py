@@ -1,4 +1,4 @@
-"""Export a table of a run to a file: `tester export`, in a process of its own."""
+"""Export a table of a run to a file with a separate process, `tester export`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tester.tui.starting import call
 
 
 def _choices() -> list[tuple[str, str, str]]:
-    """Return of every format its name, its file's name and what it is; a package's is not loaded to be listed."""
+    """Return name, file name and title of every format, without loading installed packages."""
     others = [(name, name, "of an installed package") for name in format_names() if name not in FORMATS]
     return [(one.name, one.file, one.title) for one in FORMATS.values()] + others
 
@@ -38,7 +38,7 @@ class ExportDialog(Dialog):
         yield OptionList(*(Option(f"{kind:<11} {words}", id=kind) for kind, _, words in self._formats), id="formats",
                          markup=False)  # fmt: skip
         yield field("File", entry("file", limit=1000))
-        yield line("Enter writes it; what is there by that name is replaced.")
+        yield line("Enter writes it; a file of that name is replaced.")
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
         """Name the file after the format."""
@@ -65,7 +65,7 @@ class ExportDialog(Dialog):
 
 
 class Say(Protocol):
-    """How an export reports: as ``HostApp.say``."""
+    """Reports an export, as ``HostApp.say`` does."""
 
     def __call__(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
         """Tell the operator."""
@@ -73,7 +73,7 @@ class Say(Protocol):
 
 
 async def export(say: Say, folder: Path, kind: str, path: Path) -> None:
-    """Run the command and say how it went."""
+    """Run the command and report its result."""
     done, words = await call("export", "--format", kind, "--out", str(path), "--", str(folder))
     if not done:
         say(f"not exported: {words}", problem=True, lasting=True)

@@ -17,7 +17,7 @@ from tester.tui.formatting import clean
 from tester.tui.recipe_library import ListedRecipe
 
 MOST_STEPS = 2000
-"""More steps than a person scrolls through are not listed."""
+"""Most steps listed: more would be too many to scroll through."""
 
 
 class PlanDialog(Dialog):
@@ -31,23 +31,23 @@ class PlanDialog(Dialog):
         self.recipe = recipe
 
     def content(self) -> Iterable[Widget]:
-        """Return the place of the plan."""
+        """Return the widget for the plan."""
         yield line("planning …", id="plan")
 
     def on_mount(self) -> None:
-        """Have it planned."""
+        """Plan the recipe."""
         self.add_class("-tall")
         self.run_worker(self._plan(), exit_on_error=False)
 
     async def _plan(self) -> None:
-        found = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
+        plan = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
         if self.is_attached:
-            text = plan_text(found, clean(self.host.scene.machine.specimen)) if isinstance(found, dict) else "no plan"
+            text = plan_text(plan, clean(self.host.scene.machine.specimen)) if isinstance(plan, dict) else "no plan"
             self.query_one("#plan", Static).update(text)
 
 
 def plan_text(plan: dict[str, JsonValue], part: str) -> str:
-    """Return a plan (`tester plan --json`) in lines; ``part``: what people call what wears and is changed."""
+    """Return a plan (`tester plan --json`) in lines; ``part``: people's name for the part that wears and is changed."""
     steps = plan.get("steps")
     listed = steps if isinstance(steps, list) else []
     axes = _axes(plan)
@@ -66,14 +66,14 @@ def _number(step: dict[str, JsonValue], key: str) -> float:
 
 
 def _axes(plan: dict[str, JsonValue]) -> Axes | None:
-    """Return the axes of a plan's conditions; None where it does not say them."""
+    """Return the axes of a plan's conditions; None if it lacks them."""
     listed = plan.get("axes")
     rows = [row for row in listed if isinstance(row, dict)] if isinstance(listed, list) else []
     return axes_from(rows) if rows else None
 
 
 def _held(step: dict[str, JsonValue], axes: Axes) -> str:
-    """Return what a condition holds in words."""
+    """Return a condition's setpoints in words."""
     held: dict[str, AxisValue] = {}
     for one in axes:
         value = step.get(one.field)

@@ -1,4 +1,4 @@
-"""The answer to a question of the run: by one of two buttons, and by nothing that was typed before they were seen."""
+"""Answers a question of the run with one of two buttons, ignoring keys typed before they appeared."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.formatting import clean
 
 SEEN_S = 0.5
-"""What comes sooner after the question is shown was typed before it, s [A]."""
+"""An answer sooner than this after the question appears was typed before it, s [A]."""
 
 
 class PromptDialog(Dialog):
-    """Asks whether it is done; the answer is recorded."""
+    """Asks whether the task is done; the answer is recorded."""
 
     TITLE = "The run asks"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -37,15 +37,15 @@ class PromptDialog(Dialog):
         self._shown_s = float("inf")
 
     def content(self) -> Iterable[Widget]:
-        """Return the question and its buttons; the one that does nothing comes first."""
+        """Return the question and its buttons; the one without effect comes first."""
         yield line([(clean(self.prompt.text), "bold")])
-        yield line("Choose with the arrows, then Enter. The answer is recorded; the run goes on at once.")
+        yield line("Choose with the arrows, then Enter. The answer is recorded; the run continues at once.")
         with Horizontal(classes="buttons"):
             yield Button("Not yet", id="not-yet", compact=True)
             yield Button("Yes, it is done", id="done", compact=True)
 
     def on_mount(self) -> None:
-        """Begin at the button that does nothing."""
+        """Focus the button without effect."""
         self._shown_s = self.host.scene.now()
         self.query_one("#not-yet").focus()
 
@@ -59,5 +59,5 @@ class PromptDialog(Dialog):
         self.dismiss(None)
 
     def action_hold(self) -> None:
-        """HOLD works while the question stands."""
+        """HOLD, which works while the question waits."""
         self.host.order(Hold(), "HOLD")

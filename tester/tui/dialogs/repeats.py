@@ -1,4 +1,4 @@
-"""The repeats of a condition, each with its trace; from here one is left out of the mean, or taken in again."""
+"""The repeats of a condition, each with its trace; here one is excluded from the mean, or included again."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ from tester.tui.widgets.panel import FAINT, Parts, rows
 
 HEIGHT = 5
 WIDTH = 60
-"""Of a trace where nobody knows the width of the screen, characters."""
+"""Width of a trace if the screen's width is unknown, characters."""
 MARGIN = 14
-"""Of the dialog beside a trace: borders, labels, scroll bar."""
+"""Width of the dialog beside a trace: borders, labels, scroll bar, characters."""
 LONGEST = 400
-"""Characters of a repeat's line."""
+"""Longest line of a repeat, characters."""
 
 
 class RepeatsDialog(Dialog):
-    """Traces of the accepted samples: every repeat in the same range, so that they can be held against each other."""
+    """Traces of the accepted samples: every repeat in the same range, for comparison."""
 
     TITLE = "Repeats"
 
     def __init__(self, stored: Stored, row: Row, changed: Callable[[], None]) -> None:
-        """``row``: a condition of ``stored``; ``changed`` is called when a repeat has been left out or taken in."""
+        """``row``: a condition of ``stored``; ``changed`` is called when a repeat is excluded or included."""
         super().__init__()
         self.stored, self.row, self.changed = stored, row, changed
         self.found: tuple[RepeatRow, ...] = ()
 
     def content(self) -> Iterable[Widget]:
-        """Return the place of the repeats."""
+        """Return the widgets for the repeats."""
         yield line(self._heading(), id="condition")
         yield OptionList(id="repeat-list", markup=False)
         with VerticalScroll(id="traces", can_focus=False):
@@ -53,7 +53,7 @@ class RepeatsDialog(Dialog):
         return [*heading, *(f"\n{clean(line)}" for line in self.row.flags)]
 
     def on_mount(self) -> None:
-        """Have them read."""
+        """Read the repeats."""
         self.add_class("-tall")
         self.query_one("#box").border_subtitle = "Enter excludes or includes · Esc closes · F12 STOP"
         self.query_one("#repeat-list").focus()
@@ -66,28 +66,28 @@ class RepeatsDialog(Dialog):
         plain, width = self.host.options.plain, max(self.size.width - MARGIN, WIDTH // 3)
         columns = width if plain else 2 * width
         try:
-            self.row, found = await asyncio.to_thread(condition, self.stored.folder, self.row.condition, columns)
+            self.row, repeats = await asyncio.to_thread(condition, self.stored.folder, self.row.condition, columns)
         except (StoreError, OSError, sqlite3.Error) as error:
             self.host.say(f"cannot be read: {in_words(error)}", problem=True)
             return
         if self.is_attached:
-            self.found = found
+            self.found = repeats
             self.query_one("#condition", Static).update(Content.assemble(*self._heading()))
             listed = self.query_one("#repeat-list", OptionList)
             at = listed.highlighted or 0
-            listed.set_options([Option(Content(repeat_words(one))) for one in found])
-            listed.highlighted = min(at, len(found) - 1) if found else None
-            parts = trace_parts(found, width, plain=plain)
+            listed.set_options([Option(Content(repeat_words(one))) for one in repeats])
+            listed.highlighted = min(at, len(repeats) - 1) if repeats else None
+            parts = trace_parts(repeats, width, plain=plain)
             self.query_one("#repeats", Static).update(Content.assemble(*parts))
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        """Bring the repeat's trace into sight."""
+        """Scroll to the repeat's trace."""
         event.stop()
-        above = sum(1 + (HEIGHT if one.trace else 0) for one in self.found[: event.option_index])
+        above = sum(1 + (HEIGHT if repeat.trace else 0) for repeat in self.found[: event.option_index])
         self.query_one("#traces", VerticalScroll).scroll_to(y=above, animate=False)
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Ask why it is to be left out, or taken in again."""
+        """Ask why to exclude it, or to include it again."""
         event.stop()
         if self.host.options.view_only:
             self.host.say("view only: nothing is changed from here")
@@ -101,7 +101,7 @@ class RepeatsDialog(Dialog):
 
 
 def repeat_words(one: RepeatRow) -> str:
-    """Return a repeat in a line: its coefficient, its status, why it is not in the mean and who says so."""
+    """Return a repeat in a line: its coefficient, its status, why it is excluded and by whom."""
     out = f"  ✘ not in the mean: {clean(one.exclusion)}" if one.exclusion else ""
     who = f" ({clean(one.by_hand)})" if one.by_hand else ""
     return fit(f"repeat {one.repeat}: {one.figures}  {clean(one.status)}{out}{who}", LONGEST)

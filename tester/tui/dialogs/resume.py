@@ -1,4 +1,4 @@
-"""Which stored run goes on: those that `tester resume` takes, the newest first."""
+"""Choose a stored run to resume, from those that `tester resume` accepts, the newest first."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Listed = Mapping[str, JsonValue]
 
 
 def resumable(answer: JsonValue) -> list[Listed]:
-    """Return the runs of a list of runs (tester.service.commands.ListRuns) that can go on, the newest first."""
+    """Return the runs in a list of runs (tester.service.commands.ListRuns) that can be resumed, the newest first."""
     runs = answer.get("runs") if isinstance(answer, dict) else None
     listed = [cast("Listed", one) for one in runs if isinstance(one, dict)] if isinstance(runs, list) else []
     found = [one for one in listed if one.get("can_resume") is True]
@@ -29,15 +29,15 @@ def resumable(answer: JsonValue) -> list[Listed]:
 
 
 def run_line(run: Listed) -> str:
-    """Return a run in a line: name, how it ended, how much of it is committed."""
+    """Return a run in a line: name, status, share committed."""
     committed = f"{run.get('repeats')} of {run.get('repeats_planned')} repeats committed"
     return f"{clean(str(run.get('run')))}  {clean(str(run.get('status')))}, {committed}"
 
 
 class ResumeDialog(Dialog):
-    """Lists runs; Enter shows the pre-flight list for the one chosen."""
+    """Lists runs; Enter shows the pre-flight list for the chosen run."""
 
-    TITLE = "Go on with a run"
+    TITLE = "Resume a run"
 
     def __init__(self, state: StateView, runs: Sequence[Listed]) -> None:
         """``runs``: as ``resumable`` returns them, at least one."""
@@ -45,12 +45,12 @@ class ResumeDialog(Dialog):
         self.state, self.runs = state, runs
 
     def on_mount(self) -> None:
-        """Begin at the newest."""
+        """Focus the newest."""
         self.query_one(OptionList).focus()
 
     def content(self) -> Iterable[Widget]:
         """Return the list."""
-        yield line("What is committed stays; the run goes on at its first repeat that is not. Enter chooses.")
+        yield line("Committed repeats stay; the run resumes at the first uncommitted repeat. Enter chooses.")
         yield OptionList(*(Option(Content(run_line(run))) for run in self.runs))
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
@@ -59,5 +59,5 @@ class ResumeDialog(Dialog):
         host, name = self.host, str(self.runs[event.option_index].get("run"))
         speed = host.options.speed if self.state.simulated else 1.0
         self.dismiss(None)
-        host.push_screen(GoOnDialog(self.state, ResumeRun(name, speed), f"{clean(name)} goes on"))
+        host.push_screen(GoOnDialog(self.state, ResumeRun(name, speed), f"{clean(name)} resumes"))
         host.go_to("run")

@@ -18,12 +18,12 @@ from tester.tui.formatting import clean
 from tester.tui.recipe_library import ListedRecipe
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
-"""What the service shows before a drive is armed, and refuses to start without (docs/safety.md)."""
+"""Checks that the service makes before a drive is armed, and without which it refuses to start (docs/safety.md)."""
 MAX = "max"
 
 
 def speed_words(speed: float | None) -> str:
-    """Return a time lapse as it is typed."""
+    """Return a time lapse as text for its field."""
     return MAX if speed is None else f"{speed:g}"
 
 
@@ -38,13 +38,13 @@ def speed_of(text: str) -> float | None:
 
 
 class PlainCheckbox(Checkbox):
-    """A box whose label says whether it is set: Textual shows that by colour alone."""
+    """A box whose label shows whether it is set: Textual shows that only by colour."""
 
     BUTTON_INNER = "·"
 
 
 class StartDialog(Dialog):
-    """The last look before a run begins."""
+    """The last check before a run begins."""
 
     TITLE = "Start a run"
 
@@ -74,7 +74,7 @@ class StartDialog(Dialog):
 
     @property
     def _part(self) -> str:
-        """What people call the part that is changed."""
+        """People's name for the part that is changed."""
         return clean(self.host.scene.machine.specimen)
 
     def _ask(self, *, on: bool) -> str:
@@ -87,14 +87,14 @@ class StartDialog(Dialog):
         return (Check("recipe", True, "valid on this rig"), *known, *later)
 
     def on_mount(self) -> None:
-        """Have it planned, and have Enter start it."""
+        """Plan the recipe, and let Enter start it."""
         self.query_one("#start").focus()
         self.run_worker(self._plan(), exit_on_error=False)
 
     async def _plan(self) -> None:
-        found = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
+        plan = await self.host.ask(ShowPlan(self.recipe.reference, self.recipe.sent))
         if self.is_attached:
-            words = totals(found, self._part) if isinstance(found, dict) else "no plan: it could not be worked out"
+            words = totals(plan, self._part) if isinstance(plan, dict) else "no plan: it could not be worked out"
             self.query_one("#plan", Static).update(words)
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
@@ -106,11 +106,11 @@ class StartDialog(Dialog):
             self.dismiss(None)
 
     def on_checkbox_changed(self, event: Checkbox.Changed) -> None:
-        """Say in words what a colour says: not every terminal has one."""
+        """Show the state in words: not every terminal has colours."""
         event.checkbox.label = self._ask(on=event.value)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Enter in a field leads on to the button."""
+        """Enter in a field moves to the button."""
         event.stop()
         self.query_one("#start").focus()
 
@@ -138,7 +138,7 @@ class StartDialog(Dialog):
 
 
 def totals(plan: dict[str, JsonValue], part: str) -> str:
-    """Return a plan's totals in a line; ``part``: what people call what wears and is changed."""
+    """Return a plan's totals in a line; ``part``: people's name for the part that wears and is changed."""
 
     def figure(key: str) -> float:
         value = plan.get(key)

@@ -1,4 +1,4 @@
-"""`tester commission RIG --tui`: a screen that guides a person; the engine is behind it, in a thread of its own."""
+"""`tester commission RIG --tui`: a screen that guides a person; the engine runs in a separate thread."""
 
 from __future__ import annotations
 
@@ -62,27 +62,27 @@ Screen.-small #guide-question { height: 1fr; }
 
 
 DRAWN_S = 0.1
-"""The screen looks at the engine this often, s."""
+"""Period for reading the engine's state, s."""
 SEEN_S = 0.3
-"""What comes sooner after a question is shown was typed before it, s [A]."""
+"""An answer sooner than this after a question appears was typed before it, s [A]."""
 WIDE = (110, 34)
 KEYS = (("Enter", "Answer"), ("Tab", "Steps"), ("space", "Hold"), ("r", "Go on"), ("F1", "Help"), ("^C", "Leave"))
 HELP = """\
-F12, Ctrl+X  STOP: the step is given up, at once, no question; what moves comes to rest. It is begun anew later.
+F12, Ctrl+X  STOP: gives up the step at once, without asking; everything comes to rest. The step starts again later.
 F9, Ctrl+F   FAST STOP, the same way.
 space  HOLD of a recipe that runs, r ends it. Any other step cannot be held: space is STOP while something may move.
 
-Enter  answers. A word may be cut as far as it is plain: y for yes. What makes something move is the whole word go.
-Tab    to the steps and back; Enter on a step shows what is on record of it.
-r      begins, or goes on where it stands; the rig file is read anew.
-Ctrl+C  leaves. A step under way is stopped first, and begins anew the next time.
+Enter  answers. A word may be shortened while it is unambiguous: y for yes. Motion needs the whole word go.
+Tab    to the steps and back; Enter on a step shows its record.
+r      begins, or continues at the first open step; it reads the rig file again.
+Ctrl+C  leaves. A step under way is stopped first, and starts again the next time.
 
 On a real rig STOP is no emergency stop: that is hardware.
 """
 
 
 class GuideApp(LookApp):
-    """Steps on the left; readings, the question and what was told on the right."""
+    """Steps on the left; readings, question and messages on the right."""
 
     TITLE = "friction-tester"
     CSS = CSS
@@ -100,7 +100,7 @@ class GuideApp(LookApp):
     def __init__(
         self, guide: Guide, *, theme: str = "", plain: bool = False, now: Callable[[], float] = clock.monotonic
     ) -> None:
-        """``now``: seconds of tester.base.clock.monotonic; another one in tests."""
+        """``now`` returns seconds, by default of tester.base.clock.monotonic."""
         super().__init__(theme, plain=plain)
         self.guide = guide
         self.driver_class = stopping(self.driver_class, guide.person)
@@ -127,7 +127,7 @@ class GuideApp(LookApp):
         yield KeyLine(id="keys")
 
     def on_mount(self) -> None:
-        """Begin the engine: it connects nothing before a person has said yes to a step."""
+        """Start the engine: it connects nothing before a person answers yes to a step."""
         self.choose_colours()
         for name, title in (("steps", "Steps"), ("readings", "The rig shows"), ("question", "Question"),
                             ("said", "Told")):  # fmt: skip
@@ -147,7 +147,7 @@ class GuideApp(LookApp):
         base.set_class(event.size.width >= WIDE[0] and event.size.height >= WIDE[1], "-wide")
 
     def look(self) -> None:
-        """Show how the engine is."""
+        """Show the engine's state."""
         base = self.screen_stack[0] if self.screen_stack else None
         if base is None or not base.query("#keys"):
             return
@@ -163,7 +163,7 @@ class GuideApp(LookApp):
         self._list(base, seen)
 
     def _ask(self, base: Screen[object], question: Question | None) -> None:
-        """Have another question stand; what was typed for the one before is none of its answer."""
+        """Show another question, and discard text typed for the one before."""
         self._asked, self._asked_s = question, self._now()
         base.query_one(HintPanel).refusal = ""
         field = base.query_one("#guide-answer", Input)
@@ -177,13 +177,13 @@ class GuideApp(LookApp):
     def _list(self, base: Screen[object], seen: GuideView) -> None:
         listed = base.query_one("#guide-steps", OptionList)
         width = max(listed.scrollable_content_region.width, 20)
-        drawn = [step_row(one, seen, width) for one in seen.steps]
-        made = [part if isinstance(part, tuple) else (part, "") for part in drawn]
-        if made == self._listed:
+        drawn = [step_row(step, seen, width) for step in seen.steps]
+        labels = [part if isinstance(part, tuple) else (part, "") for part in drawn]
+        if labels == self._listed:
             return
-        at, self._listed = listed.highlighted, made
+        at, self._listed = listed.highlighted, labels
         options = [
-            Option(Content.assemble(part), id=one.step.name) for part, one in zip(made, seen.steps, strict=True)
+            Option(Content.assemble(part), id=step.step.name) for part, step in zip(labels, seen.steps, strict=True)
         ]
         listed.set_options(options)
         listed.highlighted = at if at is not None else 0
@@ -191,7 +191,7 @@ class GuideApp(LookApp):
     # -- answers ----------------------------------------------------------------------------------------------
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Answer, if it is an answer."""
+        """Answer the question, if the answer is valid."""
         event.stop()
         question = self._asked
         if question is None or self._now() - self._asked_s < SEEN_S:
@@ -207,33 +207,33 @@ class GuideApp(LookApp):
             self.look()
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Take a refusal away once another answer is typed."""
+        """Remove a refusal once another answer is typed."""
         hint = self.screen_stack[0].query_one(HintPanel)
         if event.value and hint.refusal:
             hint.refusal = ""
             hint.redraw()
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Show what is on record of a step."""
+        """Show the record of a step."""
         event.stop()
         name = event.option.id or ""
         try:
-            told = self.guide.on_record(name)
+            text = self.guide.on_record(name)
         except (RecordError, OSError) as error:
             self.say(in_words(error), problem=True)
             return
-        found = next(one for one in self.seen.steps if one.step.name == name)
-        about = f"{clean(found.step.title)}: {clean(found.words)}"
-        self.push_screen(TextDialog(f"On record: {name}", "\n\n".join([about, *map(clean_text, told.split("\n\n"))])))
+        step = next(shown for shown in self.seen.steps if shown.step.name == name)
+        about = f"{clean(step.step.title)}: {clean(step.words)}"
+        self.push_screen(TextDialog(f"On record: {name}", "\n\n".join([about, *map(clean_text, text.split("\n\n"))])))
 
     # -- keys -------------------------------------------------------------------------------------------------
 
     def say(self, text: str, *, problem: bool = False) -> None:
-        """Tell the person something."""
+        """Show the person a message."""
         self.notify(clean(text), severity="error" if problem else "information", timeout=6.0, markup=False)
 
     def action_stop(self) -> None:
-        """STOP: no question, from everywhere; the terminal's thread has said it already."""
+        """STOP, without asking, from everywhere; the terminal's thread has sent it already."""
         self._stop(fast=False)
 
     def action_fast_stop(self) -> None:
@@ -248,7 +248,7 @@ class GuideApp(LookApp):
         self.say("FAST STOP taken" if fast else "STOP taken")
 
     def action_hold(self) -> None:
-        """HOLD a recipe; another step cannot be held, and is stopped while something may move."""
+        """HOLD a recipe; any other step cannot be held, and is stopped while something may move."""
         guide = self.guide
         if guide.running and guide.recipe_runs and guide.person.asked is None:
             guide.person.command(keys.HOLD.command)
@@ -258,7 +258,7 @@ class GuideApp(LookApp):
             self.say("nothing moves before you answer")
 
     def action_go_on(self) -> None:
-        """End HOLD, or begin again where it stands."""
+        """End HOLD, or continue at the first open step."""
         if self.guide.running:
             if self.guide.recipe_runs:
                 self.guide.person.command(keys.RELEASE.command)
@@ -267,7 +267,7 @@ class GuideApp(LookApp):
         self.look()
 
     def action_leave(self) -> None:
-        """Leave: a step under way is stopped first."""
+        """Leave; a step under way is stopped first."""
         if not self.guide.running:
             self.exit("")
             return
@@ -282,23 +282,23 @@ class GuideApp(LookApp):
             self.push_screen(TextDialog("Help", HELP))
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        """Return what the palette (Ctrl+P) offers."""
+        """Return the commands of the palette (Ctrl+P)."""
         yield SystemCommand("STOP", "Give the step up, at once (F12, Ctrl+X)", self.action_stop)
         yield SystemCommand("FAST STOP", "The same, fast (F9, Ctrl+F)", self.action_fast_stop)
-        yield SystemCommand("Go on", "Begin, or go on where it stands (r)", self.action_go_on)
+        yield SystemCommand("Go on", "Begin, or continue at the first open step (r)", self.action_go_on)
         yield SystemCommand("Help", "Keys of this screen (F1)", self.action_help)
         yield SystemCommand("Leave", "A step under way is stopped first (Ctrl+C)", self.action_leave)
 
 
 def completed(question: Question, typed: str) -> str:
-    """Return an answer; a word of several that was begun is completed where only one of them begins so."""
+    """Return an answer, completing a word if exactly one choice begins with it."""
     text = typed.strip()
     if question.asks is not Asks.CHOICE or not text or text in question.choices:
         return text
-    found = [one for one in question.choices if one.startswith(text)]
-    return found[0] if len(found) == 1 else text
+    matching = [choice for choice in question.choices if choice.startswith(text)]
+    return matching[0] if len(matching) == 1 else text
 
 
 def clean_text(paragraph: str) -> str:
-    """Return a paragraph of the record, its lines kept, as it can be shown."""
+    """Return a paragraph of the record as displayable text, with its lines kept."""
     return "\n".join(clean(line) for line in paragraph.split("\n"))

@@ -1,4 +1,4 @@
-"""The engine in a thread of its own, and what its screen shows of it."""
+"""The commissioning engine in its own thread, and the view of it for the screen."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from tester.store.schema import StoreError
 from tester.tui.guide.person import Live, ScreenPerson
 
 REFUSALS = (CannotStartError, InvalidSource, RecordError, StoreError, OSError, sqlite3.Error)
-"""What keeps a commissioning from going on that a person can do something about."""
+"""Errors that stop a commissioning and that a person can fix."""
 
 
 @dataclass(frozen=True, slots=True)
 class GuideView:
-    """Everything that is shown. ``now``: the step under way, "" for none; ``next``: the one that comes."""
+    """The data of the screen. ``now``: the step under way, "" for none; ``next``: the next step."""
 
     rig: str
     simulated: bool
@@ -46,15 +46,15 @@ class GuideView:
 
     @property
     def stand(self) -> int:
-        """Return how many steps stand."""
-        return sum(one.stands is not None for one in self.steps)
+        """Return how many steps are done."""
+        return sum(step.stands is not None for step in self.steps)
 
 
 class Guide:
-    """Begins the engine, again and again where a person wants it; the record says where it goes on."""
+    """Runs the engine, as often as the person wants; the record determines where it resumes."""
 
     def __init__(self, load: Callable[[], Rig], options: CommissionOptions, twin: AtTheTwin | None = None) -> None:
-        """``load``: reads the rig file, raises InvalidSource; ``twin``: is told of the simulated rig."""
+        """``load`` reads the rig file and raises InvalidSource; ``twin`` receives the simulated rig."""
         self.options = options
         self.rig = load()
         self.steps: tuple[CommissionStep, ...] = part_of(self.rig).steps
@@ -63,7 +63,7 @@ class Guide:
         self.outcome: CommissionOutcome | None = None
         self.trouble = ""
         self.crash: BaseException | None = None
-        """An error of the program itself: raised again where the screen ends."""
+        """An error of the program itself: raised again when the screen ends."""
         self._load, self._twin = load, twin
         self._thread: Thread | None = None
         self._standing: tuple[StepStanding, ...] = ()
@@ -72,21 +72,21 @@ class Guide:
 
     @property
     def running(self) -> bool:
-        """The engine has not ended."""
+        """Whether the engine runs."""
         return self._thread is not None and self._thread.is_alive()
 
     @property
     def recipe_runs(self) -> bool:
-        """The step under way runs a recipe, which can be held."""
+        """Whether the step under way runs a recipe, which can be held."""
         return any(step.name == self._now and step.alone is not None for step in self.steps)
 
     @property
     def moving(self) -> bool:
-        """A step is under way, and no question stands: something may be moving."""
+        """Whether something may move: a step is under way without a question."""
         return self.running and bool(self._now) and self.person.asked is None
 
     def begin(self) -> None:
-        """Read the rig file and begin; what keeps it from beginning is ``trouble``."""
+        """Read the rig file and begin; an error goes into ``trouble``."""
         if self.running:
             return
         self.outcome, self.trouble = None, ""
@@ -107,14 +107,14 @@ class Guide:
             self.outcome = commission(self.rig, self.options, self.person, self._twin, self.person)
         except REFUSALS as error:
             self.trouble = in_words(error)
-        except BaseException as error:  # noqa: BLE001 - shown at once, and raised again when the screen has gone
+        except BaseException as error:  # noqa: BLE001 - shown at once, and raised again when the screen closes
             self.crash = error
             self.trouble = f"the program has failed: {type(error).__name__}: {error}"
         finally:
             self.person.end()
 
     def close(self) -> None:
-        """STOP, and wait until the rig is at rest; raises what the program itself has failed with."""
+        """STOP, and wait until the rig is at rest; raises the program's own error, if any."""
         thread = self._thread
         if thread is not None:
             while thread.is_alive():
@@ -124,7 +124,7 @@ class Guide:
             raise self.crash
 
     def view(self) -> GuideView:
-        """Return what there is to show."""
+        """Return the data of the screen."""
         person, running = self.person, self.running
         if person.entries:
             person.entries.clear()
@@ -134,8 +134,8 @@ class Guide:
             self.rig.simulated,
             self._standing,
             self._now if running else "",
-            next((one.step.name for one in self._standing if one.stands is None and one.step.name != self._now), ""),
-            {one.step.name: float(one.stands.values.get("rig_s", 0.0)) for one in self._standing if one.stands},
+            next((s.step.name for s in self._standing if s.stands is None and s.step.name != self._now), ""),
+            {s.step.name: float(s.stands.values.get("rig_s", 0.0)) for s in self._standing if s.stands},
             person.live,
             person.asked,
             tuple(person.said),
@@ -152,13 +152,13 @@ class Guide:
                 lines.append(f"{entry.at[:19].replace('T', ' ')}  {entry.what}, by {entry.by}. {entry.text}")
                 lines += [f"{name}  {value}" for name, value in entry.values.items()]
                 lines.append("")
-        return "\n".join(lines) or "Nothing is on record of this step."
+        return "\n".join(lines) or "This step has no record yet."
 
     def _record(self) -> CommissionRecord:
         return CommissionRecord(self.path, clock.utc_now, "")
 
     def _read(self) -> None:
-        """Look how the steps stand; raises RecordError, OSError."""
+        """Read which steps are done; raises RecordError, OSError."""
         record = self._record()
         self._standing = standing_of(record, self.steps, self.rig)
         under_way = record.entries[-1] if record.entries else None
@@ -167,8 +167,8 @@ class Guide:
 
 
 ENDINGS = {
-    Ended.DONE: "every step stands: the rig is commissioned",
-    Ended.LEFT: "left before the end: it goes on where it stands",
+    Ended.DONE: "every step is done: the rig is commissioned",
+    Ended.LEFT: "left before the end: it resumes at the first open step",
     Ended.REFUSED: "refused",
     Ended.FAILED: "failed",
     Ended.STOPPED: "stopped",

@@ -1,4 +1,4 @@
-"""What the screen of a commissioning shows: fixed lines, steps, the rig's readings, the question, what was told."""
+"""Panels of the commissioning screen: fixed lines, steps, the rig's readings, the question, messages."""
 
 from __future__ import annotations
 
@@ -28,24 +28,23 @@ class GuidePanel(Panel):
     seen: GuideView | None = None
 
     def see(self, seen: GuideView) -> None:
-        """Draw this from now on."""
+        """Show this view from now on."""
         self.seen = seen
         self.show(self.scene or ScreenScene())
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return what to show in so many columns and rows."""
+        """Return the panel's content for ``width`` columns and ``height`` rows."""
         return [] if self.seen is None else self.drawn(self.seen, width, height)
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
-        """Return the same, of what is seen."""
+        """Return the content for a view."""
         return []
 
 
 class GuideLine(GuidePanel):
-    """Line 1: which rig, how many steps stand, rig time of all of them and of the one under way."""
+    """Line 1: the rig, the number of steps done, and the rig time of all steps, including the one under way."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
-        """Return the line."""
         total = sum(seen.rig_s.values()) + (seen.live.now_s if seen.live is not None else 0.0)
         simulated = ", simulated" if seen.simulated else ""
         text = f"  {seen.stand} of {len(seen.steps)} steps stand   rig time {duration(total)}   {clean(seen.rig, 40)}"
@@ -54,16 +53,15 @@ class GuideLine(GuidePanel):
 
 
 class EndLine(GuidePanel):
-    """Line 2: what is going on; once the engine has ended, how, and how it goes on."""
+    """Line 2: the present activity; after the engine has ended, its outcome and how to resume."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
-        """Return the line."""
         text, style = end_words(seen)
         return [(fit(f" {text}", width).ljust(width), style)]
 
 
 def end_words(seen: GuideView) -> tuple[str, str]:
-    """Return what goes on in words, and its style."""
+    """Return the present activity or outcome in words, and its style."""
     if seen.trouble:
         return f"{clean(seen.trouble)} (r tries again)", ABNORMAL
     outcome = seen.outcome
@@ -80,7 +78,7 @@ def end_words(seen: GuideView) -> tuple[str, str]:
 
 
 def step_row(one: StepStanding, seen: GuideView, width: int) -> Part:
-    """Return a step: sign, name, its rig time or what becomes of it."""
+    """Return a step: sign, name, its rig time or state."""
     name, style, sign, word = one.step.name, "", "·", ""
     if name == seen.now:
         sign, style, word = "▶", "bold", f"now {duration(seen.live.now_s)}" if seen.live is not None else "now"
@@ -96,15 +94,14 @@ def step_row(one: StepStanding, seen: GuideView, width: int) -> Part:
 
 
 class ReadingsPanel(GuidePanel):
-    """What the rig shows of what the step is about."""
+    """The rig's readings that matter for the step."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
-        """Return a row a reading."""
         if seen.live is None:
             return [("the rig is not connected", FAINT)]
         if not seen.live.readings:
             return [("connecting, or nothing to show in this step", FAINT)]
-        return rows([reading_row(one, width) for one in seen.live.readings[:height]])
+        return rows([reading_row(reading, width) for reading in seen.live.readings[:height]])
 
 
 def reading_row(one: StepReading, width: int) -> Parts:
@@ -115,36 +112,33 @@ def reading_row(one: StepReading, width: int) -> Parts:
 
 
 class QuestionPanel(GuidePanel):
-    """The question that waits."""
+    """The waiting question."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
-        """Return it in full lines."""
         if seen.question is not None:
             text, style = clean(seen.question.text), "bold"
         elif seen.running:
             text, style = "no question: the step is under way" if seen.now else "", FAINT
         else:
             text, style = end_words(seen)[0], "bold"
-        return rows([[(one, style)] for one in wrap(text, width)[:height]])
+        return rows([[(line, style)] for line in wrap(text, width)[:height]])
 
 
 class HintPanel(GuidePanel):
-    """What may be answered; in its place why the last answer was none."""
+    """The valid answers, or why the last answer was refused."""
 
     refusal = ""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
-        """Return a line."""
         if self.refusal:
             return [(fit(f" {clean(self.refusal)}", width), WARNING)]
         return [(fit(f"[{clean(seen.question.hint)}]", width), FAINT)] if seen.question is not None else []
 
 
 class SaidPanel(GuidePanel):
-    """What the engine has told, the newest last."""
+    """The engine's messages, the newest last."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
-        """Return as many lines as there is room for."""
         lines: list[Parts] = []
         for text in reversed(seen.said):
             style = said_style(text)
@@ -156,7 +150,7 @@ class SaidPanel(GuidePanel):
 
 
 def said_style(text: str) -> str:
-    """Return how a line that was told is drawn."""
+    """Return the style of a message."""
     if text.startswith(("REFUSED", "FAILED")):
         return ABNORMAL
     return FAINT if text.startswith("  on record") else "bold" if text.startswith("passed") else ""

@@ -1,4 +1,4 @@
-"""The person at the screen, as the engine sees them: questions, answers and commands pass between two threads here."""
+"""The person at the screen, for the engine: passes questions, answers and commands between two threads."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from tester.machine.commission.record import RecordEntry
 from tester.machine.commission.step import CommissionStep, StepReading, Walk
 
 KEPT: Final = 500
-"""Lines of what was told."""
+"""Number of messages kept."""
 LOOK_S: Final = 0.2
-"""Readings are taken this often, s of wall time."""
+"""Period of readings, s of wall time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """A step that has the rig: its name, rig time in it, s, and what the rig shows."""
+    """The step that uses the rig: its name, its rig time, s, and the rig's readings."""
 
     step: str
     now_s: float
@@ -31,14 +31,14 @@ class Live:
 
 
 class ScreenPerson:
-    """A front of the engine (tester.machine.commission.person.Person), which looks on as well (Onlooker)."""
+    """A person for the engine (tester.machine.commission.person.Person) who also looks on (Onlooker)."""
 
     def __init__(self, *, time_stands: bool) -> None:
-        """``time_stands``: on a rig simulated in this process."""
+        """``time_stands``: true for a rig simulated in this process."""
         self.time_stands = time_stands
         self.said: deque[str] = deque(maxlen=KEPT)
         self.entries: deque[RecordEntry] = deque()
-        """Put on record and not shown yet."""
+        """Recorded entries that are not shown yet."""
         self.live: Live | None = None
         self._lock = Lock()
         self._question: Question | None = None
@@ -49,16 +49,16 @@ class ScreenPerson:
     # -- the engine's side ------------------------------------------------------------------------------------
 
     def tell(self, text: str) -> None:
-        """Say something."""
+        """Show a message."""
         self.said.append(text)
 
     def put(self, question: Question) -> None:
-        """Put a question; the one before is answered or withdrawn."""
+        """Ask a question; the one before is answered or withdrawn."""
         with self._lock:
             self._question, self._answer = question, None
 
     def taken(self, now_s: float) -> str | None:
-        """Return the answer; it is taken away where a rig runs (``now_s`` finite)."""
+        """Return the answer; while a rig runs (``now_s`` finite), also remove it."""
         with self._lock:
             answer = self._answer
             if answer is not None and now_s < inf:
@@ -66,26 +66,26 @@ class ScreenPerson:
             return answer
 
     def poll(self) -> list[str]:
-        """Return the commands given since the last call."""
-        found: list[str] = []
+        """Return the commands since the last call."""
+        commands: list[str] = []
         while True:
             try:
-                found.append(self._commands.get_nowait())
+                commands.append(self._commands.get_nowait())
             except Empty:
-                return found
+                return commands
 
     def entered(self, entry: RecordEntry) -> None:
-        """Take note of an entry."""
+        """Note a recorded entry."""
         self.entries.append(entry)
 
     def look(self, step: CommissionStep, walk: Walk) -> None:
-        """Take the readings, not too often."""
+        """Update the readings, at most every ``LOOK_S``."""
         wall_s = clock.monotonic()
         if wall_s - self._looked_s < LOOK_S and self.live is not None and self.live.step == step.name:
             return
         self._looked_s = wall_s
-        found = tuple(step.readings(walk.seat)) if step.readings is not None and walk.seat.ready else ()
-        self.live = Live(step.name, walk.now_s, found)
+        readings = tuple(step.readings(walk.seat)) if step.readings is not None and walk.seat.ready else ()
+        self.live = Live(step.name, walk.now_s, readings)
 
     # -- the screen's side ------------------------------------------------------------------------------------
 
@@ -96,7 +96,7 @@ class ScreenPerson:
             return self._question if self._answer is None else None
 
     def answer(self, question: Question, text: str) -> bool:
-        """Answer a question; return False where it stands no more."""
+        """Answer a question; return False if it no longer waits."""
         with self._lock:
             if self._question is not question or self._answer is not None:
                 return False
@@ -104,7 +104,7 @@ class ScreenPerson:
             return True
 
     def press(self, *, fast: bool = False) -> None:
-        """STOP, from any thread; pressed again it does no more."""
+        """STOP, from any thread; pressing again has no further effect."""
         self._commands.put((FAST_STOP if fast else STOP).command)
 
     def command(self, command: str) -> None:
@@ -112,14 +112,14 @@ class ScreenPerson:
         self._commands.put(command)
 
     def begin(self) -> None:
-        """Forget what was asked and commanded of an engine that has ended."""
+        """Discard questions and commands of an engine that has ended."""
         self.poll()
         self.live = None
         with self._lock:
             self._question = self._answer = None
 
     def end(self) -> None:
-        """The engine has ended: nobody waits for an answer any more."""
+        """Called when the engine ends. Pending questions are dropped."""
         with self._lock:
             self._question = self._answer = None
         self.live = None

@@ -28,7 +28,7 @@ from tester.tui.starting import LOG
 from tester.tui.widgets.panel import FAINT, NOTICE, WARNING, Panel, Parts, rows
 
 LOG_BYTES = 1_000_000
-"""Of the service's log, from its end."""
+"""Bytes from the end of the service's log."""
 
 
 def write_bundle(scene: ScreenScene, stamp: str, where: Path = Path()) -> Path:
@@ -62,7 +62,7 @@ answer. Buses: load and errors. Frames: rig time, bus, direction, address, bytes
 
 f     freeze the frames, and let them run again.
 /     show only frames with this text (bus, address in hex, bytes); Esc shows all.
-b     support bundle: a zip file with state, events, plan, frames and the service's log, to send to somebody.
+b     support bundle: a zip file with state, events, plan, frames and the service's log, to send for help.
 """
 
 
@@ -76,11 +76,11 @@ class DevicesPanel(Panel):
             return [("no rig is connected: a run or manual mode connects it", FAINT)]
         hourly = f"{'/h':>7}" if width >= HOURLY_FROM else ""
         head = f"  {'device':<11} {'bus':<9} {'at':>3} {'age':>8} {'requests':>9} {'errors':>6}{hourly}  state"
-        return rows([[(fit(head, width), "bold")], *(device_row(one, width) for one in devices[: height - 1])])
+        return rows([[(fit(head, width), "bold")], *(device_row(device, width) for device in devices[: height - 1])])
 
 
 HOURLY_FROM = 90
-"""Columns from which on there is room for errors per hour beside a drive's state."""
+"""Columns needed for errors per hour beside a drive's state."""
 
 
 def device_row(one: DeviceView, width: int) -> Parts:
@@ -96,7 +96,7 @@ def device_row(one: DeviceView, width: int) -> Parts:
 
 
 class BusesPanel(Panel):
-    """A row a bus; the title says how punctual the scan is."""
+    """A row for each bus; the title shows how punctual the scan is."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the table."""
@@ -105,7 +105,7 @@ class BusesPanel(Panel):
         tick = scene.state.tick
         late = f"{1e3 * tick.late_s:.1f} ms late, at most {1e3 * tick.late_max_s:.1f}"
         self.entitle(fit(f"Buses ── scan {tick.rate_hz:g} Hz, {late}, {tick.overruns} overruns", width - 2))
-        return rows([[fit(bus_row(one), width)] for one in scene.state.buses[:height]])
+        return rows([[fit(bus_row(bus), width)] for bus in scene.state.buses[:height]])
 
 
 def bus_row(one: BusState) -> str:
@@ -140,7 +140,7 @@ def frame_row(frame: Frame) -> str:
 
 
 class BusPage(View, can_focus=True):
-    """What passes on the wires."""
+    """The traffic on the wires."""
 
     KEYS: ClassVar[Keys] = (("f", "Freeze"), ("/", "Filter"), ("b", "Bundle"), ("space", "Hold"), ("a", "Ack"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -153,7 +153,7 @@ class BusPage(View, can_focus=True):
     ]
 
     def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
-        """Nobody has asked for frames yet."""
+        """Request no frames yet."""
         super().__init__(id=id)
         self._epoch = 0
 
@@ -170,20 +170,20 @@ class BusPage(View, can_focus=True):
             self.query_one(f"#{name}").border_title = title
 
     def enter(self) -> None:
-        """Ask for the frames."""
+        """Request the frames."""
         super().enter()
         self._epoch = self.host.scene.epoch
         self._watch(on=True)
 
     def show(self, scene: ScreenScene) -> None:
-        """Ask for the frames again where the connection is another one."""
+        """Request the frames again after a reconnection."""
         if scene.epoch != self._epoch:
             self._epoch = scene.epoch
             self._watch(on=True)
         super().show(scene)
 
     def leave(self) -> None:
-        """Frames cost: nobody looks at them any more."""
+        """Stop the frames: they cost, and the screen no longer shows them."""
         self._watch(on=False)
 
     def _watch(self, *, on: bool) -> None:
@@ -191,7 +191,7 @@ class BusPage(View, can_focus=True):
             self.host.order(WatchFrames(on))
 
     def action_freeze(self) -> None:
-        """Hold the frames still, or let them run."""
+        """Freeze the frames, or let them run."""
         panel = self.query_one(FramesPanel)
         panel.frozen = tuple(self.host.scene.frames) if panel.frozen is None else None
         panel.redraw()

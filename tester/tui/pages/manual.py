@@ -23,7 +23,7 @@ from tester.tui.widgets.values import value_row
 
 COMMISSIONING = "load cell, scales, directions: c commissions the rig"
 SIGN_S = 0.25
-"""Signs of life are given this often, s; a second without one ends manual mode."""
+"""Period of signs of life, s; a second without one ends manual mode."""
 SOON_S = 15.0
 """Less time left than this is worth a warning."""
 HELP = """\
@@ -32,15 +32,15 @@ more than five a second. Limits and interlocks are those of a run.
 
 m         arm manual mode, or disarm it. It disarms 60 s after the last step, and when this screen is left.
 up, down  choose an axis.     right or +, left or -   one step up, one step down.
-t         zero (tare) of the load cell: lifted and standing. Says the old and the new zero.
-F12       STOP stops manual motion too, F9 is a fast stop. A screen that stands still for 1 s ends the mode.
-c         commission the rig: directions, scales, load cell, first contact, step by step and on record. A screen of its
-          own, as `tester commission RIG --tui`; it begins where the record stands, and only while no run is on.
+t         zero (tare) of the load cell: lifted and at rest. Shows the old and the new zero.
+F12       STOP also stops manual motion, F9 is a fast stop. A screen that hangs for 1 s ends the mode.
+c         commission the rig: directions, scales, load cell, first contact, step by step and recorded. Opens the screen
+          of `tester commission RIG --tui` at the first open step, while no run is on.
 """
 
 
 class ArmedPanel(Panel):
-    """Whether manual mode is armed, for how long, and what the last zero gave."""
+    """Whether manual mode is armed, for how long, and the result of the last tare."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return some lines."""
@@ -72,12 +72,12 @@ class ManualValues(Panel):
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return a row for each."""
-        found = [value for key in scene.machine.by_hand if (value := scene.value(key)) is not None]
-        return rows([value_row(value, width, linked=scene.linked) for value in found[:height]])
+        values = [value for key in scene.machine.by_hand if (value := scene.value(key)) is not None]
+        return rows([value_row(value, width, linked=scene.linked) for value in values[:height]])
 
 
 def axis_words(axis: HandAxis) -> str:
-    """Return what may be moved, and how far a step of it goes."""
+    """Return an axis and the size of its step, in words."""
     return f"{clean(axis.title):<12} {clean(axis.step)}"
 
 
@@ -85,7 +85,7 @@ class ManualPage(View):
     """Jog, zero, heat by hand."""
 
     axes: tuple[HandAxis, ...] = ()
-    """Those of the machine, as listed."""
+    """The machine's axes, as listed."""
 
     KEYS: ClassVar[Keys] = (("m", "Arm"), ("↑↓", "Axis"), ("←→", "Step"), ("t", "Tare"), ("a", "Ack"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -121,21 +121,21 @@ class ManualPage(View):
         if scene.machine.hand != self.axes:
             self.axes = scene.machine.hand
             listed = self.query_one("#manual-axes", OptionList)
-            listed.set_options([Option(Content(axis_words(one)), id=one.name) for one in self.axes])
+            listed.set_options([Option(Content(axis_words(axis)), id=axis.name) for axis in self.axes])
             listed.highlighted = 0 if self.axes else None
 
     def _give_sign(self) -> None:
-        """Say that somebody sees what moves: from the loop that draws, so that one that stands still says nothing."""
+        """Send a sign of life; called from the drawing loop, so that a hung screen sends none."""
         link = self.host.link
         if self.display and self.host.scene.controls and link is not None and link.client is not None:
             link.client.attend()
 
     def take_focus(self) -> None:
-        """Begin at the axes."""
+        """Focus the axes."""
         self.query_one("#manual-axes").focus()
 
     def leave(self) -> None:
-        """Disarm: nobody moves the rig from a screen that is not seen."""
+        """Disarm: a hidden screen must not move the rig."""
         if self.armed and self.host.scene.controls:
             self.host.order(Arm(on=False), "manual mode disarmed")
 

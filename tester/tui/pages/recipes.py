@@ -1,4 +1,4 @@
-"""Recipes: the list with what is wrong, the text, the problems; from here a run starts."""
+"""Recipes: the list with the number of problems, the text, the problems; runs start here."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ DEFAULT_EDITOR = "notepad" if os.name == "nt" else "vi"
 TAKES_A_LINE = ("vi", "vim", "nvim", "nano", "emacs")
 """Editors that open a file at +LINE."""
 HELP = """\
-The list on the left: ✔ valid on this rig, ✘ with how many problems. Problems stand below the text, each with line,
-column, what is wrong and where the limit comes from.
+The list on the left: ✔ valid on this rig, ✘ with the number of problems. Problems are below the text, each with line,
+column, the error and the source of the limit.
 
 Enter   on a recipe: the start dialog, or with problems the first of them. On a problem: jump to its line.
-e       edit in $EDITOR, from a copy of your own where the recipe is a shipped one; then it is checked again.
+e       edit in $EDITOR, a shipped recipe as your copy; the recipe is then checked again.
 d       the plan: steps, durations, total, sliding distance, wear.
 g       look for recipes again.
 Tab     from list to text to problems.
@@ -44,7 +44,7 @@ While the editor has the terminal, keys go to it: `tester stop` in another shell
 
 
 class RecipesView(View):
-    """Choose, correct, start."""
+    """Choose, correct and start a recipe."""
 
     KEYS: ClassVar[Keys] = (("Enter", "Start"), ("e", "Edit"), ("d", "Plan"), ("space", "Hold"), ("a", "Ack"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -56,7 +56,7 @@ class RecipesView(View):
     ]
 
     def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
-        """Nothing is read yet."""
+        """Read nothing yet."""
         super().__init__(id=id)
         self.recipes: list[ListedRecipe] = []
         self.checked: dict[str, Checked] = {}
@@ -73,18 +73,18 @@ class RecipesView(View):
                 yield OptionList(id="problems", markup=False)
 
     def on_mount(self) -> None:
-        """Read the shelf."""
+        """Read the recipes."""
         self.query_one("#recipe-list").border_title = "Recipes"
         self.query_one("#problems").border_title = "Problems"
         self.query_one("#problems").display = False
         self._read(FIRST)
 
     def take_focus(self) -> None:
-        """Begin at the list."""
+        """Focus the list."""
         self.query_one("#recipe-list").focus()
 
     def show(self, scene: ScreenScene) -> None:
-        """Have the recipes checked once there is a service."""
+        """Check the recipes once there is a service."""
         if scene.linked and not self._asked and not scene.replayed and not scene.view_only:
             self._asked = True
             self._check_all()
@@ -96,7 +96,7 @@ class RecipesView(View):
         options = self.query_one("#recipe-list", OptionList)
         options.clear_options()
         options.add_options([Option(self._label(recipe), id=str(at)) for at, recipe in enumerate(self.recipes)])
-        options.highlighted = next((at for at, one in enumerate(self.recipes) if one.name == chosen), 0)
+        options.highlighted = next((at for at, recipe in enumerate(self.recipes) if recipe.name == chosen), 0)
         self._open()
 
     def _label(self, recipe: ListedRecipe) -> Content:
@@ -126,32 +126,32 @@ class RecipesView(View):
         if text.text != shown:
             text.load_text(shown)
         text.border_title = Content(clean(str(recipe.path) if not recipe.shipped else f"{recipe.name} (shipped)"))
-        found = self.checked.get(str(recipe.path)) or ()
+        faults = self.checked.get(str(recipe.path)) or ()
         problems = self.query_one("#problems", OptionList)
         problems.clear_options()
         failed = self.failed.get(str(recipe.path), "")
-        if not found and not failed and problems.has_focus:
+        if not faults and not failed and problems.has_focus:
             self.take_focus()
-        problems.display = bool(found or failed)
+        problems.display = bool(faults or failed)
         if failed:
             problems.add_option(Option(clean(failed)))
-        problems.add_options([Option(f"{one.line}:{one.column} {clean(one.message)}") for one in found])
+        problems.add_options([Option(f"{p.line}:{p.column} {clean(p.message)}") for p in faults])
 
     def _relabel(self, recipe: ListedRecipe) -> None:
-        for at, one in enumerate(self.recipes):
-            if one.path == recipe.path:
-                self.query_one("#recipe-list", OptionList).replace_option_prompt_at_index(at, self._label(one))
+        for at, listed in enumerate(self.recipes):
+            if listed.path == recipe.path:
+                self.query_one("#recipe-list", OptionList).replace_option_prompt_at_index(at, self._label(listed))
         if self.chosen is not None and self.chosen.path == recipe.path:
             self._open()
 
     # -- checking ---------------------------------------------------------------------------------------------
 
     def _check_all(self) -> None:
-        order = sorted(self.recipes, key=lambda one: one is not self.chosen)
+        order = sorted(self.recipes, key=lambda recipe: recipe is not self.chosen)
         self._begin_check(order)
 
     def _begin_check(self, recipes: list[ListedRecipe]) -> None:
-        """Check these, in the place of what was being checked."""
+        """Check these recipes, abandoning earlier checks."""
         self.run_worker(partial(self._check, recipes), group="check", exclusive=True, exit_on_error=False)
 
     async def _check(self, recipes: list[ListedRecipe]) -> None:
@@ -161,10 +161,10 @@ class RecipesView(View):
 
     async def _check_one(self, recipe: ListedRecipe) -> None:
         answer = await self.host.ask(CheckRecipe(recipe.reference, recipe.sent))
-        found = answer.get("problems") if isinstance(answer, dict) else None
+        problems = answer.get("problems") if isinstance(answer, dict) else None
         self.failed.pop(str(recipe.path), None)
-        if isinstance(found, list):
-            self.checked[str(recipe.path)] = tuple(_problem(one) for one in found)
+        if isinstance(problems, list):
+            self.checked[str(recipe.path)] = tuple(_problem(problem) for problem in problems)
         else:
             self.failed[str(recipe.path)] = "could not be checked"
         if self.is_attached:
@@ -197,11 +197,11 @@ class RecipesView(View):
 
     def _jump(self, at: int) -> None:
         recipe = self.chosen
-        found = (self.checked.get(str(recipe.path)) if recipe is not None else None) or ()
-        if at < len(found):
+        problems = (self.checked.get(str(recipe.path)) if recipe is not None else None) or ()
+        if at < len(problems):
             text = self.query_one("#recipe-text", TextArea)
-            row = min(max(found[at].line - 1, 0), text.document.line_count - 1)
-            text.move_cursor((row, max(found[at].column - 1, 0)))
+            row = min(max(problems[at].line - 1, 0), text.document.line_count - 1)
+            text.move_cursor((row, max(problems[at].column - 1, 0)))
 
     def action_plan(self) -> None:
         """Show the plan."""
@@ -215,13 +215,13 @@ class RecipesView(View):
         self._check_all()
 
     def action_edit(self) -> None:
-        """Edit in $EDITOR, then check again."""
+        """Open the editor, then check again."""
         recipe = self.chosen
         if recipe is None or self.host.options.view_only:
             return
         try:
-            own = own_copy(recipe, self.host.options.recipe_folder) if recipe.shipped else recipe
-            self._edit(own)
+            file = own_copy(recipe, self.host.options.recipe_folder) if recipe.shipped else recipe
+            self._edit(file)
         except OSError as error:
             self.host.say(f"cannot be edited: {in_words(error)}", problem=True)
             return
@@ -229,17 +229,17 @@ class RecipesView(View):
             self.host.say("no editor can be shown here: edit the file, then press g", problem=True)
             return
         if recipe.shipped:
-            self.host.say(f"a copy of your own: {own.path}")
-        self.checked.pop(str(own.path), None)
-        self._read(own.name)
-        others = [one for one in self.recipes if one.path != own.path and str(one.path) not in self.checked]
-        self._begin_check([read_again(own), *others])
+            self.host.say(f"your copy: {file.path}")
+        self.checked.pop(str(file.path), None)
+        self._read(file.name)
+        others = [r for r in self.recipes if r.path != file.path and str(r.path) not in self.checked]
+        self._begin_check([read_again(file), *others])
 
     def _edit(self, recipe: ListedRecipe) -> None:
         command = shlex.split(next((os.environ[name] for name in EDITORS if os.environ.get(name)), DEFAULT_EDITOR))
-        found = self.checked.get(str(recipe.path))
-        if found and Path(command[0]).name in TAKES_A_LINE:
-            command.append(f"+{found[0].line}")
+        problems = self.checked.get(str(recipe.path))
+        if problems and Path(command[0]).name in TAKES_A_LINE:
+            command.append(f"+{problems[0].line}")
         with self.host.suspend():
             subprocess.run([*command, str(recipe.path)], check=False)
 

@@ -39,7 +39,7 @@ class PlotDialog(Dialog):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("p", "next", "Next", show=False)]
 
     def __init__(self, stored: Stored, row: Row | None, axis: int) -> None:
-        """``row``: the condition whose series is marked; ``axis``: the first one shown."""
+        """``row``: the condition whose series is highlighted; ``axis``: the first axis."""
         super().__init__()
         self.stored, self.row, self.axis = stored, row, axis
 
@@ -74,26 +74,26 @@ class PlotPanel(Panel):
     axis = 0
 
     def plot(self, stored: Stored | None, row: Row | None, axis: int) -> None:
-        """Plot these from now on; ``row``: the condition whose series is marked."""
+        """Plot this run; ``row``: the condition whose series is highlighted."""
         self.stored, self.row, self.axis = stored, row, axis % len(stored.plotted) if stored is not None else 0
         self.redraw()
 
     @property
     def title(self) -> str:
-        """Return what is plotted, and which series is marked."""
+        """Return the axes of the plot, and the highlighted series."""
         along = self.along
         if along is None:
             return "mu"
         what = f"mu against {along.name.replace('_', ' ')} ({along.unit})"
         if self.stored is None or self.row is None or len(series(self.stored, self.row, along)) < 2:
             return what
-        held = self.row.held
-        others = [one for one in held.axes if one.name != along.name and not one.at_default(held)]
-        return f"{what}: ● {clean(condition_words(held, others), 80)}   · others"
+        setpoint = self.row.held
+        others = [one for one in setpoint.axes if one.name != along.name and not one.at_default(setpoint)]
+        return f"{what}: ● {clean(condition_words(setpoint, others), 80)}   · others"
 
     @property
     def along(self) -> Axis | None:
-        """Return the axis that is plotted against; None while no run is chosen."""
+        """Return the axis to plot against; None while no run is chosen."""
         return self.stored.plotted[self.axis] if self.stored is not None else None
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
@@ -119,31 +119,31 @@ that setpoint is a faint dot.
 
 Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there
         leaves a repeat out, or takes it in again, with a reason that goes on record. Nothing is ever deleted.
-p       plot against one axis of the conditions after another; one that they share is told above instead.
+p       plot against the next axis; axes with a single value are shown above the table instead.
 e       export a table to a file.
 g       look for runs again.
 """
 
 
 class TextTable(DataTable[Text]):
-    """A table of texts that are never taken for markup."""
+    """A table of plain texts, never markup."""
 
     def fill(self, header: Sequence[str], rows: Sequence[Sequence[str]] = ()) -> None:
-        """Show these cells alone, each column as wide as its widest.
+        """Show these cells, each column as wide as its widest.
 
-        The widths are given: a table that measures them does so when it has nothing else to do, and what was painted
-        before that, under a dialog for instance, stays on the screen with columns that are too narrow.
+        The widths are explicit: a table that measures them does so only when idle, and cells painted before that, for
+        example under a dialog, stay on the screen with columns that are too narrow.
         """
         self.clear(columns=True)
         for number, title in enumerate(header):
             self.add_column(Text(title), width=max(cell_len(row[number]) for row in (header, *rows)))
         for row in rows:
             self.add_row(*(Text(cell) for cell in row))
-        self.call_later(self.refresh)  # it learns how far it can be scrolled with its next message, and has none coming
+        self.call_later(self.refresh)  # the table updates its scroll range with its next message, and none is coming
 
 
 class ResultsView(View):
-    """What is stored."""
+    """The stored runs."""
 
     KEYS: ClassVar[Keys] = (("Enter", "Open"), ("p", "Plot"), ("e", "Export"), ("g", "Look again"), ("space", "Hold"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -155,7 +155,7 @@ class ResultsView(View):
     ]
 
     def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
-        """Nothing is read yet."""
+        """Read nothing yet."""
         super().__init__(id=id)
         self.names: list[str] = []
         self.stored: Stored | None = None
@@ -182,12 +182,12 @@ class ResultsView(View):
         return self.query_one("#conditions", TextTable)
 
     def enter(self) -> None:
-        """Begin at the runs, as they are now."""
+        """Read the runs, and focus them."""
         super().enter()
         self.action_reload()
 
     def take_focus(self) -> None:
-        """Begin at the runs."""
+        """Focus the runs."""
         self.runs_table.focus()
 
     def action_reload(self) -> None:
@@ -199,16 +199,16 @@ class ResultsView(View):
 
     async def _list(self) -> None:
         answer = await self.host.ask(ListRuns())
-        found = answer.get("runs") if isinstance(answer, dict) else None
-        if isinstance(found, list) and self.is_attached:
-            self.fill([one for one in reversed(found) if isinstance(one, dict)])
+        runs = answer.get("runs") if isinstance(answer, dict) else None
+        if isinstance(runs, list) and self.is_attached:
+            self.fill([run for run in reversed(runs) if isinstance(run, dict)])
 
     def fill(self, runs: list[dict[str, JsonValue]]) -> None:
-        """Show these runs, `tester runs --json`, the newest first."""
+        """Show these runs (`tester runs --json`), the newest first."""
         table = self.runs_table
         before = table.cursor_row
-        self.names = [str(one.get("run", "")) for one in runs]
-        table.fill(RUN_HEADER, [run_cells(one) for one in runs])
+        self.names = [str(run.get("run", "")) for run in runs]
+        table.fill(RUN_HEADER, [run_cells(run) for run in runs])
         if before < len(runs):
             table.move_cursor(row=before)
         table.border_title = f"Runs: {len(runs)}"
@@ -234,7 +234,7 @@ class ResultsView(View):
         return self.stored.rows[at] if self.stored is not None and at < len(self.stored.rows) else None
 
     def _read_again(self) -> None:
-        """Read the run again: somebody has left out a repeat."""
+        """Read the run again, after a repeat was excluded or included."""
         if self.stored is not None:
             self.open_run(str(self.stored.folder))
 
@@ -275,7 +275,7 @@ class ResultsView(View):
         panel.entitle(panel.title)
 
     def action_plot(self) -> None:
-        """Plot against the next axis; over the whole screen where there is no room beside the tables."""
+        """Plot against the next axis, on the whole screen if there is no room beside the tables."""
         panel = self.query_one(PlotPanel)
         if panel.display:
             self._plot(panel.axis + 1)
@@ -295,7 +295,7 @@ class ResultsView(View):
 
 
 def run_cells(run: dict[str, JsonValue]) -> tuple[str, ...]:
-    """Return a run's cells of RUN_HEADER."""
+    """Return a run's cells for RUN_HEADER."""
     seconds = run.get("rig_seconds")
     time = duration(seconds if isinstance(seconds, int | float) else None)
     values = f"{run.get('values', '?')}/{run.get('conditions', '?')}"

@@ -1,4 +1,4 @@
-"""Ring: errors of the line over a ring against the angle of what turns, against its speed, and from run to run."""
+"""Ring: errors of the line over a ring, by angle of the ring, by speed, and from run to run."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from tester.tui.widgets.ring import AgePanel, AnglePanel, SpeedPanel
 HEADER = ("Run", "Turns", "Requests", "Errors", "of 1000", "Angle")
 MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
-Requests over the ring that had no good reply, as the stored runs have them: a run under way tells when it ends.
+Requests over the ring without a good reply, from the stored runs: a run under way counts once it has ended.
 
 Above: the runs of one rig, oldest first, with the turns of the ring until the end of each. Below, of the run under the
-cursor: errors in twelve sectors of the angle, counted from where it stood when it was mounted; errors by speed. The
-trend is of all runs above. An angle stands in the table where the errors gather beyond chance.
+cursor: errors in twelve sectors of the angle, counted from its position when mounted; errors by speed. The trend is of
+all runs above. The table shows an angle if the errors gather there beyond chance.
 
 n  a new ring, or new brushes, before the run under the cursor: turns and trend count from there. Again: all runs.
 g  look for runs again.
@@ -37,7 +37,7 @@ g  look for runs again.
 
 
 class RingPage(View):
-    """What the ring of this machine does."""
+    """The ring of this machine."""
 
     KEYS: ClassVar[Keys] = (("↑↓", "Run"), ("n", "New ring"), ("g", "Look again"), ("space", "Hold"), ("a", "Ack"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -48,7 +48,7 @@ class RingPage(View):
     ]
 
     def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
-        """Nothing is read yet."""
+        """Read nothing yet."""
         super().__init__(id=id)
         self.kept = KeptRings()
         self.rows: list[RingRow] = []
@@ -80,7 +80,7 @@ class RingPage(View):
         self.action_reload()
 
     def take_focus(self) -> None:
-        """Begin at the runs."""
+        """Focus the runs."""
         self.table.focus()
 
     def action_reload(self) -> None:
@@ -99,12 +99,12 @@ class RingPage(View):
             self._fill()
 
     def _fill(self) -> None:
-        """Show the runs, the newest under the cursor, and what there is of them."""
+        """Show the runs, the newest under the cursor, and the panels of the chosen run."""
         before = self.rows[self.table.cursor_row].run.name if self.rows else ""
         self.rows = self.kept.rows()
-        self.table.fill(HEADER, [cells(one) for one in self.rows])
-        found = [one.run.name for one in self.rows]
-        self.table.move_cursor(row=found.index(before) if before in found else max(len(found) - 1, 0))
+        self.table.fill(HEADER, [cells(row) for row in self.rows])
+        names = [row.run.name for row in self.rows]
+        self.table.move_cursor(row=names.index(before) if before in names else max(len(names) - 1, 0))
         about = f", since {clean(self.kept.since)}" if self.kept.since else ""
         self.table.border_title = Text(f"Runs: {len(self.rows)}{about}")
         self.table.border_subtitle = Text(clean(self.kept.counted, 70))
@@ -139,9 +139,9 @@ class RingPage(View):
 
 
 def cells(row: RingRow) -> tuple[str, ...]:
-    """Return a run's cells of HEADER."""
+    """Return a run's cells for HEADER."""
     run = row.run
-    places = [f"{one.centre_deg:.0f}° ±{one.half_deg:.0f}" for one in row.sectors if one.found]
+    places = [f"{sector.centre_deg:.0f}° ±{sector.half_deg:.0f}" for sector in row.sectors if sector.found]
     per_thousand = decimal(run.per_thousand, 2) if run.requests else NONE
     texts = (run.name, f"{row.age:.0f}", str(run.requests), str(run.errors), per_thousand, ", ".join(places))
     return tuple(clean(text, 60) for text in texts)

@@ -1,4 +1,4 @@
-"""Run: values with their limits, progress, trends, steps, events, and the question that waits."""
+"""Run: values with their limits, progress, trends, steps, events, and the waiting question."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class StepsPanel(Panel):
         first = max(min(now - height // 3, len(plan.steps) - height), 0)
         shown, below = plan.steps[first : first + height], plan.steps[first + height :]
         more = plan.total - plan.first + 1 - first - len(shown)
-        if more and len(shown) == height:  # the last row is for what has none, so that the list adds up
+        if more and len(shown) == height:  # use the last row for the steps without a row, so that the list adds up
             *shown, last = shown
             below, more = (last, *below), more + 1
         left_s = scene.state.progress.step_left_s if scene.state is not None else None
@@ -49,8 +49,9 @@ class StepsPanel(Panel):
 
 
 def step_row(step: PlanStep, width: int, left_s: float | None) -> Parts:
-    """Return a step: sign, title, and what it took, what is left of it (``left_s``, of the present one), or what it is
-    expected to take."""
+    """Return a step: sign, title, and its measured duration, the time left in it (``left_s``), or its expected
+    duration.
+    """
     if step.measured_s is not None:
         time = duration(step.measured_s)
     else:
@@ -68,7 +69,7 @@ class PromptPanel(Panel):
     """Shown while a question waits."""
 
     def show(self, scene: ScreenScene) -> None:
-        """Appear with the question, and vanish with it."""
+        """Appear and vanish with the question."""
         self.display = scene.state is not None and scene.state.prompt is not None
         super().show(scene)
 
@@ -139,7 +140,7 @@ class RunPage(View, can_focus=True):
         self.query_one("#events").border_title = "Alarms and events"
 
     def action_answer(self) -> None:
-        """Ask for the answer to the question that waits; at the end of a run, show what it has measured."""
+        """Open the waiting question; at the end of a run, show its results."""
         state = self.host.scene.state
         if state is not None and state.prompt is not None:
             self.host.push_screen(PromptDialog(state.prompt))

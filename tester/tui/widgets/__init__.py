@@ -1,1 +1,1 @@
-"""What the screens are made of: each shows a part of the scene, and is told when the scene has changed."""
+"""Parts of the screens: each shows a part of the scene, and is redrawn when the scene changes."""

@@ -1,4 +1,4 @@
-"""The fixed lines: 1 the state, 2 the screens or the alarm that wants acknowledging, last the keys with STOP."""
+"""The fixed lines: 1 the state, 2 the screens or the top alarm, last the keys with STOP."""
 
 from __future__ import annotations
 
@@ -60,15 +60,15 @@ def _risk(state: StateView) -> Parts:
 
 
 def _count(alarms: tuple[Alarm, ...]) -> Part:
-    waiting = [one for one in alarms if one.state != "acknowledged"]
+    waiting = [alarm for alarm in alarms if alarm.state != "acknowledged"]
     if not alarms:
         return "□ 0 alarms"
     text = f"{'■' if waiting else '▣'} {counted(len(alarms), 'alarm')}"
-    return text, ALARM_STYLES[min(one.priority for one in alarms)] if waiting else NOTICE
+    return text, ALARM_STYLES[min(alarm.priority for alarm in alarms)] if waiting else NOTICE
 
 
 def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
-    """Return what fits beside mode and alarms, the more important first."""
+    """Return the pieces beside mode and alarms, the most important first."""
     progress, run = state.progress, state.run
     pieces: list[str] = []
     if progress.conditions:
@@ -89,7 +89,7 @@ def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
 
 
 def _cut(parts: Parts, width: int) -> Parts:
-    """Return as many of the parts as fit, whole ones."""
+    """Return as many whole parts as fit."""
     kept: Parts = []
     used = 0
     for part in parts:
@@ -102,7 +102,7 @@ def _cut(parts: Parts, width: int) -> Parts:
 
 
 class TabLine(Panel):
-    """Line 2: the screens; in their place the top alarm while one is not acknowledged."""
+    """Line 2: the screens, or the top alarm until it is acknowledged."""
 
     current = "recipes"
     tabs: Tabs = TABS
@@ -127,7 +127,7 @@ class TabLine(Panel):
 
 
 def alarm_words(alarm: Alarm) -> str:
-    """Return an alarm in a line: what, value, limit, what it means, what happens next."""
+    """Return an alarm in a line: name, value, limit, meaning, consequence."""
     text = f"{ALARM_SIGNS[alarm.state]} P{alarm.priority} {clean(alarm.name)}"
     if alarm.value is not None:
         limit = f" (limit {decimal(alarm.limit, 1)})" if alarm.limit is not None else ""
@@ -143,12 +143,12 @@ def alarm_key(alarm: Alarm) -> str:
 
 
 class KeyLine(Panel):
-    """The last line: the keys that do something here, and STOP, which is always there."""
+    """The last line: the keys that work here, and always STOP."""
 
     keys: tuple[tuple[str, str], ...] = ()
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return the line: STOP first where there is no room for more."""
+        """Return the line; STOP comes first if there is room for no more."""
         stop: Part = (STOP_KEYS, "bold reverse") if not scene.view_only else " view only: `tester stop` "
         room = width - len(stop if isinstance(stop, str) else stop[0])
         parts: Parts = []

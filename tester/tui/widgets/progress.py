@@ -30,7 +30,7 @@ class ProgressPanel(Panel):
 
 
 def idle_words(scene: ScreenScene, width: int) -> Parts:
-    """Return what there is to say while no run is under way."""
+    """Return the panel's content while no run is under way."""
     state = scene.state
     if state is None:
         return []
@@ -41,12 +41,12 @@ def idle_words(scene: ScreenScene, width: int) -> Parts:
         key = "Enter shows its results. " if scene.ended_run is not None else ""
         lines.append([fit(f" {key}Last run {clean(run.outcome)}{reason}   {clean(run.name)}", width)])
         if run.missing:
-            named = "; ".join(clean(one) for one in run.missing)
+            named = "; ".join(clean(name) for name in run.missing)
             lines.append([fit(f" {len(run.missing)} without a value: {named}", width)])
     if len(lines) < 3 and state.interrupted:
         lines.append([(fit(f" {clean(state.interrupted[-1])} was cut off: r resumes it", width), NOTICE)])
     elif len(lines) < 3 and run is not None and run.outcome not in (UNDER_WAY, "done", "incomplete"):
-        lines.append([(fit(" r goes on with it, or with another run that is not over", width), NOTICE)])
+        lines.append([(fit(" r resumes it, or another unfinished run", width), NOTICE)])
     if len(lines) < 3:
         lines.append([(fit(" F2 chooses a recipe", width), FAINT)])
     return rows(lines)

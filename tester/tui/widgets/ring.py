@@ -18,11 +18,11 @@ STEPS: Final = " ▁▂▃▄▅▆▇█"
 """Eighths of a row."""
 SECTORS: Final = 12
 SCATTER_FROM: Final = 9
-"""Rows from which on there is room for the points beside the words."""
+"""Rows needed for points beside the words."""
 
 
 class AnglePanel(Panel):
-    """Errors in twelve sectors of a run, all that were mounted together."""
+    """Errors of a run in twelve sectors, each mounting separately."""
 
     run: RingRun | None = None
 
@@ -32,29 +32,30 @@ class AnglePanel(Panel):
         if run is None:
             return [("no run has anything on record of a ring", FAINT)]
         sectors = run.sectors()
-        counts = [sum(one.sectors[at] for one in sectors) for at in range(SECTORS)]
+        counts = [sum(mounting.sectors[at] for mounting in sectors) for at in range(SECTORS)]
         if not sum(counts):
             words = f"{run.errors} errors while it stood" if run.errors else "no errors"
             return [(fit(words, width), FAINT)]
         lines: list[Parts] = [[line] for line in columns(counts, width, height - 2)]
-        for number_, one in enumerate(sectors, start=1):
-            if one.found and len(lines) < height:
-                told = f"{number_}: most at {one.centre_deg:.0f}°, half within {one.half_deg:.0f}° of it"
-                lines.append([(fit(told, width), NOTICE)])
+        for number_, sector in enumerate(sectors, start=1):
+            if sector.found and len(lines) < height:
+                text = f"{number_}: most at {sector.centre_deg:.0f}°, half within {sector.half_deg:.0f}° of it"
+                lines.append([(fit(text, width), NOTICE)])
         if len(lines) < height:
             lines.append([(fit("from where it stood when mounted", width), FAINT)])
         return rows(lines[:height])
 
 
 def columns(counts: Sequence[int], width: int, height: int) -> list[str]:
-    """Return a column a sector, ``height`` rows with the angles below; the greatest count stands above its column."""
+    """Return a column for each sector, ``height`` rows with the angles below; the greatest count is above its column.
+    """
     each = max(width // SECTORS, 1)
     most, room = max(counts), max(height - 2, 1)
     eighths = [round(8 * room * count / most) if most else 0 for count in counts]
-    eighths = [max(one, 1) if count else 0 for one, count in zip(eighths, counts, strict=True)]
+    eighths = [max(eighth, 1) if count else 0 for eighth, count in zip(eighths, counts, strict=True)]
     lines = ["".join(f"{count:<{each}}" if count == most else " " * each for count in counts).rstrip()]
     for row in range(room - 1, -1, -1):
-        signs = (STEPS[min(max(one - 8 * row, 0), 8)] for one in eighths)
+        signs = (STEPS[min(max(eighth - 8 * row, 0), 8)] for eighth in eighths)
         lines.append("".join((sign * max(each - 1, 1)).ljust(each) for sign in signs).rstrip())
     lines.append("".join(f"{30 * at:<{each}}" if at % (1 if each > 3 else 2) == 0 else " " * each
                          for at in range(SECTORS)).rstrip())  # fmt: skip
@@ -62,7 +63,7 @@ def columns(counts: Sequence[int], width: int, height: int) -> list[str]:
 
 
 class SpeedPanel(Panel):
-    """Errors of a run by class of speed."""
+    """Errors of a run by speed class."""
 
     run: RingRun | None = None
 
@@ -83,11 +84,11 @@ class AgePanel(Panel):
     found: Sequence[RingRow] = ()
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return points where there is room, and the trend in words."""
+        """Return points, if there is room, and the trend in words."""
         counted = [(row.age, row.run.requests, row.run.errors) for row in self.found if row.run.requests]
         trend = trend_of(counted)
-        told = trend.words or "two runs with errors, or more, tell a trend"
-        words = wrap(told, max(width, 1))
+        text = trend.words or "a trend needs two or more runs with errors"
+        words = wrap(text, max(width, 1))
         style = NOTICE if trend.grows else ""
         lines: list[Parts] = []
         if height >= SCATTER_FROM and len(counted) > 1:

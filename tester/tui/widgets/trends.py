@@ -1,4 +1,4 @@
-"""Trends: ten minutes of one value, with its setpoint, band and limits drawn in; the y range does not jump."""
+"""Trends: ten minutes of one value, with its setpoint, band and limits; the y range does not jump."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LABELS = 7
 
 
 class Bins:
-    """Least and greatest value of each stretch of time; each new row of the trend costs one look."""
+    """Least and greatest value of each stretch of time, updated with each new row of the trend."""
 
     def __init__(self, column: int, count: int, epoch: int) -> None:
         """``column``: of the trend's rows; ``count``: stretches in the window."""
@@ -26,7 +26,7 @@ class Bins:
         self._seen = float("-inf")
 
     def take(self, row: tuple[float | None, ...]) -> None:
-        """Take in a row, if it is a newer one."""
+        """Take a row, if it is newer."""
         wall_s = row[0]
         if wall_s is None or wall_s <= self._seen:
             return
@@ -59,7 +59,7 @@ class TrendPanel(Panel):
         self._bins: Bins | None = None
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return the plot, and have the title say the value."""
+        """Return the plot, and show the value in the title."""
         plots, columns = scene.machine.plots, scene.machine.trend
         plot = plots[self.place] if self.place < len(plots) else None
         value = scene.value(plot.key) if plot is not None else None

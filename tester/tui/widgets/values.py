@@ -1,4 +1,4 @@
-"""Values: measured, wanted, unit, and a bar with the limits."""
+"""Values: measured value, setpoint, unit, and a bar with the limits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ OFF_LEFT, OFF_RIGHT = "◀", "▶"
 
 
 def bar(value: Value, width: int) -> str:
-    """Return the bar in so many characters; only the rail and the limits where there is no value."""
+    """Return the bar, ``width`` characters wide; without a value only the rail and the limits."""
     if width < 3:
         return ""
     span = value.scale_high - value.scale_low
@@ -59,7 +59,7 @@ def beyond(value: Value) -> str:
 
 
 def believable(value: Value) -> bool:
-    """Return whether the value can be taken for one: not stale, and not reported invalid."""
+    """Return whether the value is trustworthy: neither stale nor reported invalid."""
     return value.quality == "good"
 
 
@@ -67,7 +67,7 @@ LABEL, CELL, UNIT, FLAG = 15, 9, 5, 6
 
 
 class ValuesPanel(Panel):
-    """As many values as there are rows, in their own order: the important ones first."""
+    """As many values as there are rows, the most important first."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return a row for each value."""
@@ -76,7 +76,7 @@ class ValuesPanel(Panel):
 
 
 def value_row(value: Value, width: int, *, linked: bool = True) -> Parts:
-    """Return one value in ``width`` columns. ``linked`` False: what is shown is not how it is."""
+    """Return one value in ``width`` columns. ``linked`` False: the value is out of date."""
     label = fit(clean(value.label), LABEL).ljust(LABEL)
     unit = clean(value.unit, UNIT).ljust(UNIT)
     wanted = decimal(value.setpoint, value.decimals).rjust(CELL)
