@@ -19,45 +19,45 @@ from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 from tester.run.set_up import mapped, written
 
 LOAD_MOST = 0.6
-"""A bus that is busy for a greater share delays frames beyond their scan [A]."""
+"""A busier bus delays frames beyond their scan, share [A]."""
 BEAT_OFF = 0.2
-"""By what share a heartbeat's period may differ from its object [A]."""
+"""Greatest relative difference between a heartbeat's period and its object [A]."""
 MISSED = 3
 BUS = "CAN bus"
 WIRING = "drives' supply, the plug, CAN high and low, 120 ohm terminators at both ends, can.bitrate"
 
 
 def bus(e: Examination) -> Iterator[Finding]:
-    """Say whether the bus can be used at all, and at which bit rate its nodes answer."""
-    can, told = e.can, e.rig.can.bitrate
+    """Check that the bus works, and report the bit rate at which its nodes answer."""
+    can, bitrate = e.can, e.rig.can.bitrate
     if can.answers_at:
         yield fault(
-            BUS, f"nodes answer at a bit rate of {can.answers_at} bit/s, the rig file says {told}",
-            f"set can.bitrate to {can.answers_at}, or the drives to {told}",
+            BUS, f"nodes answer at a bit rate of {can.answers_at} bit/s, the rig file says {bitrate}",
+            f"set can.bitrate to {can.answers_at}, or the drives to {bitrate}",
         )  # fmt: skip
         return
     if can.lost:
-        yield fault(BUS, can.lost, f"another bit rate on the bus, or nobody acknowledges: look at {WIRING}")
+        yield fault(BUS, can.lost, f"another bit rate on the bus, or no node acknowledges: look at {WIRING}")
     elif not can.present and not can.heard.frames:
-        yield fault(BUS, f"silent at {told} bit/s: no frame was heard, and no node answers", f"look at {WIRING}")
+        yield fault(BUS, f"silent at {bitrate} bit/s: no frame arrived, and no node answers", f"look at {WIRING}")
     elif not can.present:
-        yield fault(BUS, "frames are heard, but no node answers an SDO request", "switch the drives off and on")
+        yield fault(BUS, "frames arrive, but no node answers an SDO request", "switch the drives off and on")
     else:
-        yield ok(BUS, f"{told} bit/s, nodes {', '.join(map(str, can.present))}")
+        yield ok(BUS, f"{bitrate} bit/s, nodes {', '.join(map(str, can.present))}")
 
 
 def masters(e: Examination) -> Iterator[Finding]:
-    """Look for frames that only a master sends, while we sent none."""
-    heard = [*e.can.heard.masters, *e.watch.can.masters]
-    if heard:
+    """Report frames that only a master sends, received while the doctor sent none."""
+    senders = [*e.can.heard.masters, *e.watch.can.masters]
+    if senders:
         yield fault(
-            BUS, f"another master is sending: {', '.join(dict.fromkeys(heard))}",
+            BUS, f"another master is sending: {', '.join(dict.fromkeys(senders))}",
             "two masters command one machine: end the other program, or unplug the maker's set-up tool",
         )  # fmt: skip
 
 
 def load(e: Examination) -> Iterator[Finding]:
-    """Measure the load of the bus as it stands, and add what a run's scans will bring."""
+    """Report the present load of the bus, and the load with a run's scans."""
     watch = e.watch.can
     if e.watch.can_lost and not e.can.lost:
         yield fault(BUS, f"lost while it was watched: {e.watch.can_lost}", f"look at {WIRING}")
@@ -67,11 +67,11 @@ def load(e: Examination) -> Iterator[Finding]:
     now = bits / watch.seconds / e.rig.can.bitrate
     per_scan = frame_bits(0) + sum(frame_bits(6) + frame_bits(8) for _ in e.rig.drives())
     run = now + per_scan * e.rig.scan.sliding_hz / e.rig.can.bitrate
-    found = f"load {100 * now:.1f} % now, up to {100 * run:.0f} % while a run is sliding"
+    text = f"load {100 * now:.1f} % now, up to {100 * run:.0f} % while a run is sliding"
     if run > LOAD_MOST:
-        yield warning(BUS, found, "a higher bit rate, a lower scan.sliding, or nodes taken off the bus")
+        yield warning(BUS, text, "a higher bit rate, a lower scan.sliding, or nodes taken off the bus")
     else:
-        yield ok(BUS, found)
+        yield ok(BUS, text)
 
 
 def axes(e: Examination) -> Iterator[Finding]:
@@ -114,11 +114,11 @@ def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
 
 
 def _same_type(e: Examination, node: int, config: AxisConfig) -> bool:
-    """Tell whether a node is a drive of the axis' maker and product, as far as the rig file states them."""
+    """Return whether a node is a drive of the axis' maker and product, as far as the rig file states them."""
     if (e.can.number(node, (o.DEVICE_TYPE, 0)) or 0) & 0xFFFF != o.DEVICE_PROFILE:
         return False
-    told = ((1, config.vendor_id), (2, config.product_code))
-    return all(not expected or e.can.number(node, (o.IDENTITY, sub)) == expected for sub, expected in told)
+    identity = ((1, config.vendor_id), (2, config.product_code))
+    return all(not expected or e.can.number(node, (o.IDENTITY, sub)) == expected for sub, expected in identity)
 
 
 def _identity(e: Examination, name: str, config: AxisConfig, serials: Mapping[int, str]) -> Iterator[Finding]:
@@ -128,10 +128,10 @@ def _identity(e: Examination, name: str, config: AxisConfig, serials: Mapping[in
         text for text in (can.text(node, (o.DEVICE_NAME, 0)), can.text(node, (o.HARDWARE_VERSION, 0)),
                           can.text(node, (o.SOFTWARE_VERSION, 0))) if text
     )  # fmt: skip
-    told = f"node {node}: {who or 'no name'}, vendor 0x{vendor:08X}, product 0x{product:08X}, revision 0x{revision:08X}"
+    seen = f"node {node}: {who or 'no name'}, vendor 0x{vendor:08X}, product 0x{product:08X}, revision 0x{revision:08X}"
     device_type = can.number(node, (o.DEVICE_TYPE, 0)) or 0
     if device_type & 0xFFFF != o.DEVICE_PROFILE:
-        yield fault(name, f"{told}: device type 0x{device_type:08X} is no CiA 402 drive", "look at axes' node numbers")
+        yield fault(name, f"{seen}: device type 0x{device_type:08X} is no CiA 402 drive", "look at axes' node numbers")
         return
     other = serials.get(serial)
     if other is not None and other != name:
@@ -141,17 +141,17 @@ def _identity(e: Examination, name: str, config: AxisConfig, serials: Mapping[in
         )  # fmt: skip
         return
     wrong = [
-        f"{describe(o.IDENTITY, sub)} is 0x{found:08X}, the rig file says 0x{expected:08X}"
-        for sub, found, expected in ((1, vendor, config.vendor_id), (2, product, config.product_code),
-                                     (4, serial, config.serial_number)) if expected and found != expected
+        f"{describe(o.IDENTITY, sub)} is 0x{actual:08X}, the rig file says 0x{expected:08X}"
+        for sub, actual, expected in ((1, vendor, config.vendor_id), (2, product, config.product_code),
+                                     (4, serial, config.serial_number)) if expected and actual != expected
     ]  # fmt: skip
     if wrong:
         yield fault(
-            name, f"{told}: {'; '.join(wrong)}: another drive than the rig file's",
+            name, f"{seen}: {'; '.join(wrong)}: another drive than the rig file's",
             "the right drive at this node number, or its own identity and profile in the rig file",
         )  # fmt: skip
     else:
-        yield ok(name, f"{told}, serial number {serial}")
+        yield ok(name, f"{seen}, serial number {serial}")
 
 
 def _twice(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
@@ -159,7 +159,7 @@ def _twice(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
     if times:
         yield fault(
             name, f"node {config.node_id} answered {times} question more than once: two nodes have one node number",
-            "unplug one drive after the other and look which go on answering; give one another number",
+            "unplug one drive after the other and see which still answers; give one drive another number",
         )  # fmt: skip
 
 
@@ -170,7 +170,7 @@ def _drive_state(e: Examination, name: str, config: AxisConfig) -> Iterator[Find
         state = cia402.decode(statusword)
         code = can.number(node, (o.ERROR_CODE, 0)) or 0
         if state in (State.FAULT, State.FAULT_REACTION):
-            yield fault(name, f"the drive is in fault: {o.emergency_text(code)}", "what its manual says to this code")
+            yield fault(name, f"the drive is in fault: {o.emergency_text(code)}", "look this code up in its manual")
         elif state is State.OPERATION_ENABLED:
             yield fault(name, "the drive is enabled, and no run is under way", "end whatever enabled it")
     inputs = can.number(node, (o.DIGITAL_INPUTS, 0)) if config.digital_io else None
@@ -194,7 +194,7 @@ def _input(name: str, good: bool, what: str, yes: str, no: str, bit: int, word: 
 
 
 def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
-    """Look for every object that the set-up needs, and hold ratings and process data against the rig file."""
+    """Check every object that the set-up needs, and compare ratings and process data with the rig file."""
     answers = e.can.objects.get(config.node_id, {})
     needed = {**written(config), **mapped(config)}
     missing = [describe(*key) for key in needed if key in answers and answers[key].missing
@@ -206,10 +206,10 @@ def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]
         )  # fmt: skip
     rated = answers[o.RATED_TORQUE, 0].number if (o.RATED_TORQUE, 0) in answers else None
     expected = config.rated_torque_counts
-    told_nm = (rated or 0) * config.drive.units.rated_torque_nm * config.gear
+    actual_nm = (rated or 0) * config.drive.units.rated_torque_nm * config.gear
     if rated and abs(rated - expected) > max(RATED_TORQUE_SHARE * expected, 1.0):
         yield fault(
-            name, f"0x6076 rated torque is {told_nm:.4g} N m, the rig file says {config.rated_torque_nm:g} N m",
+            name, f"0x6076 rated torque is {actual_nm:.4g} N m, the rig file says {config.rated_torque_nm:g} N m",
             f"every torque would be shown and limited by a factor of {rated / expected:.3g} wrong: correct"
             f" axes.{name}.rated_torque, or the drive's motor data",
         )  # fmt: skip
@@ -219,20 +219,20 @@ def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]
 
 
 def heartbeats(e: Examination) -> Iterator[Finding]:
-    """Hold every node's heartbeat against its own object 0x1017, and against the rig file."""
+    """Compare every node's heartbeat with its object 0x1017."""
     seconds = e.watch.can.seconds
     periods = {name: (config.node_id, config.heartbeat_s) for name, config in e.rig.drives().items()}
     for name, (node, expected_s) in periods.items():
-        told_ms = e.can.number(node, (o.PRODUCER_HEARTBEAT, 0))
-        if told_ms is None:
+        asked_ms = e.can.number(node, (o.PRODUCER_HEARTBEAT, 0))
+        if asked_ms is None:
             continue
-        if told_ms == 0:
+        if asked_ms == 0:
             yield note(name, f"sends no heartbeat yet (0x1017 = 0); every connect writes {1e3 * expected_s:g} ms")
             continue
-        beats, period_s = e.watch.can.beats.get(node, []), told_ms / 1000.0
+        beats, period_s = e.watch.can.beats.get(node, []), asked_ms / 1000.0
         if len(beats) < 2 and seconds > MISSED * period_s:
             yield fault(
-                name, f"no heartbeat is heard, though 0x1017 asks for one every {told_ms} ms",
+                name, f"no heartbeat arrives, though 0x1017 asks for one every {asked_ms} ms",
                 "the drive's firmware or its CAN set-up: a run would take this drive for lost",
             )  # fmt: skip
             continue
@@ -243,14 +243,14 @@ def heartbeats(e: Examination) -> Iterator[Finding]:
         if abs(measured_s - period_s) > BEAT_OFF * period_s or longest_s > MISSED * period_s:
             yield warning(
                 name, f"heartbeat every {1e3 * measured_s:.0f} ms, at most {1e3 * longest_s:.0f} ms apart;"
-                f" 0x1017 says {told_ms} ms", "the bus load, and the drive's CAN set-up",
+                f" 0x1017 says {asked_ms} ms", "the bus load, and the drive's CAN set-up",
             )  # fmt: skip
         else:
             yield ok(name, f"heartbeat every {1e3 * measured_s:.0f} ms")
 
 
 def strangers(e: Examination) -> Iterator[Finding]:
-    """Name nodes that answer and are not in the rig file, and further nodes of it that do not."""
+    """Report nodes that answer without being in the rig file, and the rig file's further nodes that do not answer."""
     known = {config.node_id for config in e.rig.drives().values()}
     further = {config.node_id: name for name, config in e.rig.can.nodes.items()}
     for node, name in further.items():
@@ -265,12 +265,12 @@ def strangers(e: Examination) -> Iterator[Finding]:
         serial = e.can.number(node, (o.IDENTITY, 4))
         yield warning(
             BUS, f"node {node} is not in the rig file: {name}, serial number {serial}",
-            "a device that nobody watches: add it to the rig file, or take it off the bus",
+            "a device that no run watches: add it to the rig file, or take it off the bus",
         )  # fmt: skip
 
 
 def emergencies(e: Examination) -> Iterator[Finding]:
-    """Tell emergencies that were sent while the bus was listened to."""
+    """Report emergencies sent while the doctor listened."""
     names = {config.node_id: name for name, config in e.rig.drives().items()}
     for node, data in {**e.can.heard.emergencies, **e.watch.can.emergencies}.items():
         code = int.from_bytes(data[:2], "little")
@@ -279,19 +279,19 @@ def emergencies(e: Examination) -> Iterator[Finding]:
 
 
 _STATES = {
-    "passive": "error-passive: it has seen many errors, and marks none of its own any more",
-    "error": "in an error state: it takes part no more",
+    "passive": "error-passive: after many errors it no longer marks its own",
+    "error": "in an error state: it no longer takes part",
 }
 
 
 def errors(e: Examination) -> Iterator[Finding]:
-    """Count error frames, and tell an adapter's state; nothing where the adapter tells neither."""
+    """Count error frames and report the adapter's state, if the adapter reports them."""
     watch = e.watch
     if watch.can_errors is not None and watch.seconds:
         count = sum(watch.can_errors.values())
-        said = ", ".join(f"{number} {kind}" for kind, number in watch.can_errors.items())
+        kinds = ", ".join(f"{number} {kind}" for kind, number in watch.can_errors.items())
         if count:
-            yield warning(BUS, f"error frames in {watch.seconds:.0f} s: {said}", f"look at {WIRING}; shields, stubs")
+            yield warning(BUS, f"error frames in {watch.seconds:.0f} s: {kinds}", f"look at {WIRING}; shields, stubs")
         else:
             yield ok(BUS, f"no error frame in {watch.seconds:.0f} s")
     words = _STATES.get(watch.can_state)

@@ -1,4 +1,4 @@
-"""What is on the CAN bus: listened to, then asked node by node."""
+"""Surveys the CAN bus: listens first, then asks node by node."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tester.inputs.rig import Rig
 from tester.run.kept import IDENTITY
 
 LISTEN_S = 1.0
-"""So long the bus is only listened to, s: twenty heartbeats of 50 ms."""
+"""Time of listening only, s: twenty heartbeats of 50 ms."""
 STEP_S = 0.002
-"""How often the wires are looked at while an answer is awaited, s."""
+"""Period for reading the wires while waiting for an answer, s."""
 MOST_S = 30.0
-"""No scan of a bus takes longer, s: 126 silent nodes, four at a time, take 3.2 s."""
+"""Longest scan of a bus, s: 126 silent nodes, four at a time, take 3.2 s."""
 PRESENCE: Key = (o.DEVICE_TYPE, 0)
 """The object that every CANopen node has."""
 
@@ -33,7 +33,7 @@ _FUNCTIONS_OF_A_MASTER = {
 
 @dataclass(slots=True)
 class Heard:
-    """Frames of a stretch in which the computer was silent on the bus."""
+    """Frames received while the computer sent none."""
 
     seconds: float = 0.0
     frames: Counter[int] = field(default_factory=Counter[int])
@@ -43,13 +43,13 @@ class Heard:
     beats: dict[int, list[float]] = field(default_factory=dict[int, list[float]])
     """Arrivals of the heartbeats of each node, s."""
     states: dict[int, int] = field(default_factory=dict[int, int])
-    """The NMT state that each node's last heartbeat told."""
+    """The NMT state in each node's last heartbeat."""
     emergencies: dict[int, bytes] = field(default_factory=dict[int, bytes])
     masters: list[str] = field(default_factory=list[str])
-    """What only a master sends, first of each kind, for people."""
+    """Frames that only a master sends, the first of each kind, for people."""
 
     def take(self, frames: Iterable[CanFrame], own_node: int) -> None:
-        """Take frames that arrived; ``own_node``: the computer's number."""
+        """Take received frames; ``own_node``: the computer's node number."""
         for t, can_id, data in frames:
             self.frames[can_id] += 1
             self.lengths[len(data)] += 1
@@ -65,7 +65,7 @@ class Heard:
 
 
 def _of_a_master(can_id: int, own_node: int) -> str:
-    """Return what a frame is that only a master sends, "" for any other."""
+    """Return the name of a frame that only a master sends, "" for any other."""
     if can_id in _OF_A_MASTER:
         return _OF_A_MASTER[can_id]
     if can_id == o.HEARTBEAT_BASE + own_node:
@@ -75,63 +75,63 @@ def _of_a_master(can_id: int, own_node: int) -> str:
 
 @dataclass(slots=True)
 class CanSurvey:
-    """What was found on the CAN bus."""
+    """The results of a survey of the CAN bus."""
 
     lost: str = ""
-    """Why the bus cannot be used, "" where it can."""
+    """Why the bus is not usable, "" if it is."""
     heard: Heard = field(default_factory=Heard)
     present: tuple[int, ...] = ()
     """Nodes that answered."""
     surplus: Mapping[int, int] = field(default_factory=dict[int, int])
-    """Answers too many, by node."""
+    """Number of surplus answers, by node."""
     objects: Mapping[int, Mapping[Key, ObjectAnswer]] = field(default_factory=dict[int, Mapping[Key, ObjectAnswer]])
     answers_at: int = 0
-    """The bit rate at which the nodes answer, where it is not the rig file's, bit/s; 0 = none was found."""
+    """The bit rate at which the nodes answer, if not the rig file's, bit/s; 0 = none found."""
 
     def number(self, node: int, key: Key) -> int | None:
-        """Return an object of a node as a number, None where it did not give it."""
+        """Return an object of a node as a number, None without an answer."""
         answer = self.objects.get(node, {}).get(key)
         return None if answer is None else answer.number
 
     def text(self, node: int, key: Key) -> str:
-        """Return an object of a node as a text, "" where it did not give it."""
+        """Return an object of a node as a text, "" without an answer."""
         answer = self.objects.get(node, {}).get(key)
         return answer.text if answer is not None and answer.ok else ""
 
 
 def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
     """Listen to the bus, ask every node number, and read the objects of those that answer."""
-    found = CanSurvey()
+    survey = CanSurvey()
     try:
         port = wires.can(rig.can.bitrate)
-        found.heard = listen(port, wires, LISTEN_S, rig.can.node)
-        everybody = [node for node in range(1, 128) if node != rig.can.node]
-        scan = _scanned(port, wires, {node: [PRESENCE] for node in everybody})
+        survey.heard = listen(port, wires, LISTEN_S, rig.can.node)
+        others = [node for node in range(1, 128) if node != rig.can.node]
+        scan = _scanned(port, wires, {node: [PRESENCE] for node in others})
         configs = {config.node_id: config for config in rig.drives().values()}
         awaited = [*configs, *(node.node_id for node in rig.can.nodes.values())]
         missing = [node for node in awaited if node not in scan.answers]
         late = _scanned(port, wires, {node: [PRESENCE] for node in missing}, PATIENCE_S)
-        found.present, found.surplus = tuple(sorted({*scan.answers, *late.answers})), scan.surplus
-        wanted = {node: objects_of(configs[node]) if node in configs else list(IDENTITY) for node in found.present}
-        found.objects = _scanned(port, wires, wanted, PATIENCE_S).answers
+        survey.present, survey.surplus = tuple(sorted({*scan.answers, *late.answers})), scan.surplus
+        wanted = {node: objects_of(configs[node]) if node in configs else list(IDENTITY) for node in survey.present}
+        survey.objects = _scanned(port, wires, wanted, PATIENCE_S).answers
     except BusLost as lost:
-        found.lost = str(lost)
-    if not found.present and not found.heard.frames:
-        found.answers_at = _other_bitrate(rig, wires)
-    return found
+        survey.lost = str(lost)
+    if not survey.present and not survey.heard.frames:
+        survey.answers_at = _other_bitrate(rig, wires)
+    return survey
 
 
 def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Heard:
-    """Listen without a word; raises BusLost."""
-    heard, begun_s = Heard(), wires.now()
-    port.receive(begun_s)  # what came before
+    """Listen without sending; raises BusLost."""
+    frames, begun_s = Heard(), wires.now()
+    port.receive(begun_s)  # discard earlier frames
     due_s = begun_s
     while due_s < begun_s + seconds:
         due_s += 0.01
         wires.wait_until(due_s)
-        heard.take(port.receive(wires.now()), own_node)
-    heard.seconds = wires.now() - begun_s
-    return heard
+        frames.take(port.receive(wires.now()), own_node)
+    frames.seconds = wires.now() - begun_s
+    return frames
 
 
 def _scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> SdoScan:
@@ -145,7 +145,7 @@ def _scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]], t
 
 
 def _other_bitrate(rig: Rig, wires: Wires) -> int:
-    """Return the bit rate at which a node of the rig file answers, 0 where there is none."""
+    """Return the bit rate at which a node of the rig file answers, 0 without any."""
     nodes = [config.node_id for config in rig.drives().values()]
     for bitrate in wires.bitrates:
         if bitrate == rig.can.bitrate:

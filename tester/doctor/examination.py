@@ -1,4 +1,4 @@
-"""What the probes look at: the rig file, the computer, and what was read over the wires, each once."""
+"""The input of the probes: the rig file, the computer, and the results read over the wires, each read once."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from tester.inputs.rig import Rig
 
 
 def nobody(_: str) -> None:
-    """Tell nobody how far the look is."""
+    """Default for ``say``: drop the progress message."""
 
 
 @dataclass
 class Examination:
-    """A look at a rig. What costs time is done when a probe first asks for it."""
+    """An examination of a rig. Slow parts run when a probe first needs them."""
 
     rig: Rig
-    """As its file says it is."""
+    """The rig according to its file."""
     computer: ComputerDoor
     wires: Wires
     runs: Path = Path("runs")
@@ -32,11 +32,11 @@ class Examination:
     seconds: float = 60.0
     """How long devices and computer are watched."""
     packaged_keys: tuple[str, ...] = ()
-    """Keys for which the packaged value counts, because the rig file does not have them."""
+    """Keys missing in the rig file, for which the packaged value counts."""
     everybody: bool = True
     """Ask every unit number of a Modbus line, not only those of the rig file."""
     say: Callable[[str], None] = field(default=nobody)
-    """Is told what is being looked at."""
+    """Shows what is being examined."""
 
     @property
     def in_memory(self) -> bool:
@@ -45,29 +45,29 @@ class Examination:
 
     @cached_property
     def can(self) -> CanSurvey:
-        """What is on the CAN bus."""
+        """The survey of the CAN bus."""
         self.say("CAN bus: listening, then asking every node number")
         return survey_can(self.rig, self.wires)
 
     @cached_property
     def lines(self) -> dict[str, LineSurvey]:
-        """What is on the Modbus lines, by their names."""
-        found: dict[str, LineSurvey] = {}
+        """The surveys of the Modbus lines, by name."""
+        surveys: dict[str, LineSurvey] = {}
         for name in self.rig.lines:
             whom = "every unit number" if self.everybody else "its devices"
             self.say(f"Modbus line {name}: asking {whom}")
-            found[name] = survey_line(self.rig, name, self.wires, everybody=self.everybody)
-        return found
+            surveys[name] = survey_line(self.rig, name, self.wires, everybody=self.everybody)
+        return surveys
 
     @cached_property
     def watch(self) -> RigWatch:
-        """What a stretch of watching shows, after the wires were surveyed."""
+        """The results of watching, after the surveys."""
         can, lines = not self.can.lost, self.lines
         self.say(f"watching for {self.seconds:g} s")
         return watched(self.rig, self.wires, lines, self.seconds, can=can)
 
     def limit(self, *names: str) -> float | None:
-        """Return the first of these parameters of the rig file's interlocks that it has, None where it has none."""
+        """Return the first of these interlock parameters that the rig has, None without any."""
         section = getattr(self.rig, "interlocks", None)
         for name in names:
             value = getattr(section, name, None)

@@ -1,4 +1,4 @@
-"""What a probe has found: how bad it is, where, what, and what to do about it."""
+"""A probe's finding: severity, place, text, and remedy."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import IntEnum
 
 
 class Severity(IntEnum):
-    """How bad a finding is. A run will not start, or not last, on a rig with a fault."""
+    """The severity of a finding. With a fault, a run will not start, or not last."""
 
     OK = 0
     NOTE = 1
@@ -19,23 +19,23 @@ class Severity(IntEnum):
 
     @property
     def word(self) -> str:
-        """The word that is printed."""
+        """The printed word."""
         return self.name.lower()
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A finding; ``str`` gives its line without what to do."""
+    """A finding; ``str`` gives its line without the remedy."""
 
     severity: Severity
     subject: str
-    """What it is about: an axis or a device by its name, a bus, the computer."""
+    """Its subject: an axis or a device by name, a bus, the computer."""
     found: str
     todo: str = ""
-    """What a person can do about it; "" where nothing is to be done."""
+    """What a person can do about it; "" if nothing is needed."""
 
     def __str__(self) -> str:
-        """Return the line that is printed."""
+        """Return the printed line."""
         return f"{self.severity.word:7} {self.subject}: {self.found}"
 
     @property
@@ -45,25 +45,25 @@ class Finding:
 
 
 def ok(subject: str, found: str) -> Finding:
-    """Return a finding that is as it should be."""
+    """Return a finding that all is well."""
     return Finding(Severity.OK, subject, found)
 
 
 def note(subject: str, found: str, todo: str = "") -> Finding:
-    """Return something that is good to know."""
+    """Return a finding for information."""
     return Finding(Severity.NOTE, subject, found, todo)
 
 
 def warning(subject: str, found: str, todo: str) -> Finding:
-    """Return something that a run may suffer from."""
+    """Return a finding that a run may suffer from."""
     return Finding(Severity.WARNING, subject, found, todo)
 
 
 def fault(subject: str, found: str, todo: str) -> Finding:
-    """Return something with which a run will not start, or not last."""
+    """Return a finding with which a run will not start, or not last."""
     return Finding(Severity.FAULT, subject, found, todo)
 
 
 def worst(findings: Iterable[Finding]) -> Severity:
-    """Return the highest severity, OK of none."""
+    """Return the highest severity, OK without findings."""
     return max((finding.severity for finding in findings), default=Severity.OK)

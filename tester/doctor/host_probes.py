@@ -1,4 +1,4 @@
-"""Probes of the computer: adapters, permissions, clock, disk, how punctual it is; and of the rig file itself."""
+"""Probes of the computer (adapters, permissions, clock, disk, punctuality) and of the rig file itself."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OFTEN = 0.999
 
 
 def serial_ports(e: Examination) -> Iterator[Finding]:
-    """Compare the lines' serial ports with those the computer has, and look whether they may be used."""
+    """Compare the lines' serial ports with the computer's, and check the permissions."""
     ports = _serial_lines(e)
     if not ports:
         return
@@ -54,7 +54,7 @@ def serial_ports(e: Examination) -> Iterator[Finding]:
 
 
 def _serial_lines(e: Examination) -> dict[str, LineConfig]:
-    """Return the lines that go over serial ports of this computer: none of a rig in memory."""
+    """Return the lines on serial ports of this computer; none of a rig in memory."""
     if e.in_memory:
         return {}
     return {name: line for name, line in e.rig.lines.items() if line.framing == "rtu"}
@@ -95,7 +95,7 @@ def _latency_remedy(e: Examination, port: str) -> str:
 
 
 def can_adapter(e: Examination) -> Iterator[Finding]:
-    """Look at the SocketCAN interface: there, up, at the bit rate of the rig file, its queue, its errors."""
+    """Check the SocketCAN interface: present, up, at the rig file's bit rate, its queue, its errors."""
     can = e.rig.can
     if can.interface != "socketcan":
         if not e.in_memory:
@@ -133,7 +133,7 @@ def can_adapter(e: Examination) -> Iterator[Finding]:
 
 
 def _details(e: Examination, channel: str) -> dict[str, Any]:
-    """Return what ``ip`` tells of a CAN interface; nothing where it cannot."""
+    """Return the output of ``ip`` on a CAN interface; empty on failure."""
     text = e.computer.output("ip", "-json", "-details", "link", "show", channel)
     try:
         return cast("dict[str, Any]", json.loads(text or "[]")[0]["linkinfo"]["info_data"])
@@ -143,7 +143,7 @@ def _details(e: Examination, channel: str) -> dict[str, Any]:
 
 def _queue(e: Examination, folder: str) -> Iterator[Finding]:
     text = e.computer.text(f"{folder}/tx_queue_len") or ""
-    needed = 2 * (len(e.rig.drives()) + 3)  # a command each, outputs, SYNC, heartbeat; and the scan that comes late
+    needed = 2 * (len(e.rig.drives()) + 3)  # a command each, outputs, SYNC, heartbeat; twice, for a late scan
     if not text.isdecimal():
         return
     if int(text) < needed:
@@ -156,29 +156,29 @@ def _queue(e: Examination, folder: str) -> Iterator[Finding]:
 
 
 def disk(e: Examination) -> Iterator[Finding]:
-    """Hold the free room against what a working day takes, and look whether runs can be written."""
+    """Compare the free space with a working day's need, and check that runs can be written."""
     folder = str(e.runs)
     if not e.computer.may_use(folder):
         yield fault("run folder", f"nothing can be written to {folder}", "choose another (--out), or ask its owner")
     free = e.computer.free_bytes(folder)
     if free is None:
-        yield warning("run folder", f"the room on the disk of {folder} cannot be told", "look at the disk")
+        yield warning("run folder", f"the free space on the disk of {folder} is unknown", "look at the disk")
         return
     least, day = MARGIN * FIXED_BYTES, MARGIN * (FIXED_BYTES + ROW_BYTES * CONTACT_ROWS_S * DAY_S)
-    told = f"{free / 1e6:.0f} MB free for {folder}"
+    room = f"{free / 1e6:.0f} MB free for {folder}"
     if free < least:
-        yield fault("run folder", f"the disk is full: {told}", "make room, or choose a folder on another disk (--out)")
+        yield fault("run folder", f"the disk is full: {room}", "make room, or choose a folder on another disk (--out)")
     elif free < day:
-        yield warning("run folder", f"{told}: less than a day of contact takes ({day / 1e6:.0f} MB)", "make room")
+        yield warning("run folder", f"{room}: less than a day of contact takes ({day / 1e6:.0f} MB)", "make room")
     else:
-        yield ok("run folder", told)
+        yield ok("run folder", room)
 
 
 def clock(e: Examination) -> Iterator[Finding]:
-    """Look whether the computer's clock is set by a time server: records carry its time; control does not use it."""
+    """Check that a time server sets the computer's clock: records carry its time; control does not use it."""
     text = e.computer.output("timedatectl", "show", "--property=NTPSynchronized", "--value")
     if text is None:
-        yield note("clock", "whether a time server sets it cannot be told here; only times on record depend on it")
+        yield note("clock", "it is unknown whether a time server sets it; only recorded times depend on it")
     elif text.strip() == "yes":
         yield ok("clock", "set by a time server")
     else:
@@ -189,14 +189,14 @@ def clock(e: Examination) -> Iterator[Finding]:
 
 
 def punctuality(e: Examination) -> Iterator[Finding]:
-    """Say how late the computer's scans came in the watch, and which limits that supports."""
+    """Report how late the computer's scans were during the watch, and which limits that supports."""
     late = sorted(e.watch.late_s)
     if not late:
         yield note("scan", "rig time is simulated: how punctual this computer is was not measured")
         return
     most, often = late[-1], late[min(int(OFTEN * len(late)), len(late) - 1)]
     period_s = 1.0 / e.rig.scan.sliding_hz
-    found = (
+    text = (
         f"{len(late)} scans of {1e3 * period_s:g} ms: at most {1e3 * most:.1f} ms late,"
         f" 99.9 % within {1e3 * often:.1f} ms"
     )
@@ -206,15 +206,15 @@ def punctuality(e: Examination) -> Iterator[Finding]:
     remedy = "end other programs; real-time priority (ulimit -r 10); no power saving; a computer of its own"
     supports = f"it supports stale limits from {1e3 * (most + period_s):.0f} ms"
     if trip_s is not None and most > trip_s:
-        yield fault("scan", f"{found}: interlocks.late_scan trips at {1e3 * trip_s:g} ms", remedy)
+        yield fault("scan", f"{text}: interlocks.late_scan trips at {1e3 * trip_s:g} ms", remedy)
     elif allowed_s is not None and most + period_s > allowed_s:
-        yield warning("scan", f"{found}; {supports}, drive data may be {1e3 * allowed_s:g} ms old", remedy)
+        yield warning("scan", f"{text}; {supports}, drive data may be {1e3 * allowed_s:g} ms old", remedy)
     else:
-        yield ok("scan", f"{found}; {supports}")
+        yield ok("scan", f"{text}; {supports}")
 
 
 def rig_file(e: Examination) -> Iterator[Finding]:
-    """Tell what the rig file leaves open or loosens."""
+    """Report what the rig file leaves open or loosens."""
     if e.packaged_keys:
         yield note(
             "rig file", f"packaged values count for {', '.join(e.packaged_keys)}", "`tester rig upgrade` writes them in"

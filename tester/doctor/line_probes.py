@@ -14,11 +14,11 @@ from tester.doctor.watch import UnitWatch
 from tester.inputs.rig.sensors import title_of
 
 READINGS_S = 40.0
-"""What a device that is read with every scan should give at least, readings a second."""
+"""Least rate of a device that is read in every scan, readings a second."""
 LATE_S = 0.008
-"""An answer that comes later than the profile's longest time by so much is the adapter's, s [A]."""
+"""The adapter is to blame for an answer later than the profile's longest time by this much, s [A]."""
 FAILED_MOST = 0.01
-"""Share of failed questions from which a line is worth looking at [A]."""
+"""Greatest acceptable share of failed questions on a line [A]."""
 STALE_LIMITS = {
     "load_cell": ("stale_cell_s",),
     "ir_thermometer": ("stale_ir_s",),
@@ -29,7 +29,7 @@ STALE_LIMITS = {
 
 
 def lines(e: Examination) -> Iterator[Finding]:
-    """Say whether each line can be used, and at which settings its devices answer."""
+    """Check that each line works, and report the settings at which its devices answer."""
     for name, line in e.lines.items():
         config = e.rig.lines[name]
         settings = f"{config.baud} baud, parity {config.parity}" if config.framing == "rtu" else config.port
@@ -37,7 +37,7 @@ def lines(e: Examination) -> Iterator[Finding]:
         if line.lost:
             yield fault(subject, line.lost, "the adapter, its name in the rig file, whether another program uses it")
         elif line.answers_at is not None:
-            found = line.answers_at
+            actual = line.answers_at
             other = _exchanged_with(e, name)
             if other:
                 yield fault(
@@ -46,17 +46,17 @@ def lines(e: Examination) -> Iterator[Finding]:
                     f"exchange the plugs, or lines.{name}.port and lines.{other}.port",
                 )
                 continue
-            what = "baud rate" if found.baud != config.baud else "parity"
+            what = "baud rate" if actual.baud != config.baud else "parity"
             yield fault(
                 subject,
-                f"wrong {what}: devices answer at {found.baud} baud, parity {found.parity}, not at {settings}",
-                f"set lines.{name} to baud: {found.baud} and parity: {found.parity}, or the devices",
+                f"wrong {what}: devices answer at {actual.baud} baud, parity {actual.parity}, not at {settings}",
+                f"set lines.{name} to baud: {actual.baud} and parity: {actual.parity}, or the devices",
             )
         elif line.units and not any(unit.there for unit in line.units.values()) and not line.others:
             noise = b"".join(unit.noise for unit in line.units.values())
-            heard = f"{len(noise)} bytes came that are no answer" if noise else "silent"
+            what_came = f"{len(noise)} bytes that are no answer" if noise else "silent"
             yield fault(
-                subject, f"{heard} at {settings}",
+                subject, f"{what_came} at {settings}",
                 "supply of the devices, wires A and B exchanged, terminators, baud rate, parity",
             )  # fmt: skip
         else:
@@ -64,7 +64,7 @@ def lines(e: Examination) -> Iterator[Finding]:
 
 
 def _exchanged_with(e: Examination, name: str) -> str:
-    """Return the line whose devices seem to be on this one, and this one's on that; "" where there is none."""
+    """Return the line whose devices seem to be exchanged with this line's; "" without any."""
     mine, here = e.rig.lines[name], e.lines[name].answers_at
     for other, line in e.lines.items():
         config, there = e.rig.lines[other], line.answers_at
@@ -119,7 +119,7 @@ def _silent(e: Examination, line_name: str, line: LineSurvey, key: str, name: st
 
 
 def _refusals(name: str, unit: UnitSurvey) -> Iterator[Finding]:
-    """Tell registers of the profile that the device does not have, and a device of another type."""
+    """Report registers of the profile that the device lacks, and a device of another type."""
     profile = unit.profile
     wrong = f"is it a {profile.title}? Correct the profile of the device in the rig file, or the device"
     identity = unit.configuration.get("device type")
@@ -135,14 +135,14 @@ def _refusals(name: str, unit: UnitSurvey) -> Iterator[Finding]:
              for answer in unit.blocks] + list(unit.configuration.items())  # fmt: skip
     refused = [f"{what}: {answer.describe()}" for what, answer in asked if answer.exception]
     if refused:
-        yield fault(name, f"wrong profile: it refuses what {profile.name} names ({'; '.join(refused)})", wrong)
+        yield fault(name, f"wrong profile: it refuses registers of {profile.name} ({'; '.join(refused)})", wrong)
     for what, answer in asked:
         if not answer.there:
             yield warning(name, f"{what}: {answer.describe()}", "supply, terminators, shielding, baud rate")
 
 
 def _values(name: str, unit: UnitSurvey) -> Iterator[Finding]:
-    """Tell what a device measures, whether that is plausible, and what its status says."""
+    """Report a device's readings, whether they are plausible, and its status."""
     for block, answer in zip(unit.profile.blocks, unit.blocks, strict=False):
         if not answer.ok:
             continue
@@ -152,10 +152,10 @@ def _values(name: str, unit: UnitSurvey) -> Iterator[Finding]:
             if signal.name == "status":
                 yield from _status(name, unit, int(value))
             else:
-                said = f"{signal.name} {value:.4g} {signal.unit}".rstrip()
-                shown.append(said)
+                text = f"{signal.name} {value:.4g} {signal.unit}".rstrip()
+                shown.append(text)
                 if not signal.least <= value <= signal.greatest:
-                    wrong.append(f"{said} is outside {signal.least:g} to {signal.greatest:g}")
+                    wrong.append(f"{text} is outside {signal.least:g} to {signal.greatest:g}")
         if wrong:
             yield from _implausible(name, unit, block, answer.data, wrong)
         elif shown:
@@ -165,13 +165,13 @@ def _values(name: str, unit: UnitSurvey) -> Iterator[Finding]:
 def _decoded(block: RegisterBlock, data: bytes) -> list[tuple[Signal, float]]:
     values = list(zip(block.signals, block.unpack(data), strict=True))
     status = next((int(value) for signal, value in values if signal.name == "status"), 0)
-    found: list[tuple[Signal, float]] = []
+    values_by_signal: list[tuple[Signal, float]] = []
     for signal, counts in values:
         value = float(counts) * signal.scale
         if signal.sign_bit is not None and status >> signal.sign_bit & 1:
             value = -value
-        found.append((signal, value if isfinite(value) else nan))
-    return found
+        values_by_signal.append((signal, value if isfinite(value) else nan))
+    return values_by_signal
 
 
 def _implausible(name: str, unit: UnitSurvey, block: RegisterBlock, data: bytes, wrong: list[str]) -> Iterator[Finding]:
@@ -197,7 +197,7 @@ def _status(name: str, unit: UnitSurvey, status: int) -> Iterator[Finding]:
     bits = [meaning for meaning, bit in unit.profile.status_bits.items() if status >> bit & 1]
     if status & unit.profile.invalid_bits:
         why = ", ".join(bits) or hex(status)
-        yield fault(name, f"says that its reading is not valid: {why}", "the sensor, its cable")
+        yield fault(name, f"reports an invalid reading: {why}", "the sensor, its cable")
     elif bits:
         yield note(name, f"status: {', '.join(bits)}")
 
@@ -205,14 +205,14 @@ def _status(name: str, unit: UnitSurvey, status: int) -> Iterator[Finding]:
 def _settings(name: str, unit: UnitSurvey) -> Iterator[Finding]:
     """Compare the registers that every connect writes with the rig file and the profile."""
     profile = unit.profile
-    told: dict[str, float] = {write.name: write.value for write in profile.setup}
+    wanted: dict[str, float] = {write.name: write.value for write in profile.setup}
     for key, signal in profile.writes.items():
         value = unit.config.parameters.get(key, signal.default)
         if value is not None:
-            told[key] = signal.counts(value)
+            wanted[key] = signal.counts(value)
     differ = [
         f"{key} {int.from_bytes(unit.configuration[key].data, 'big')} instead of {value:g}"
-        for key, value in told.items()
+        for key, value in wanted.items()
         if key in unit.configuration and unit.configuration[key].ok
         and int.from_bytes(unit.configuration[key].data, "big") != value
     ]  # fmt: skip
@@ -221,25 +221,25 @@ def _settings(name: str, unit: UnitSurvey) -> Iterator[Finding]:
 
 
 def units(e: Examination) -> Iterator[Finding]:
-    """Name units that answer and are not in the rig file."""
+    """Report units that answer without being in the rig file."""
     for name, line in e.lines.items():
         for number, answer in line.others.items():
             if number not in line.looks_like:
                 yield warning(
                     f"line {name}", f"unit {number} answers ({answer.describe()}) and is not in the rig file",
-                    "a device that nobody reads: add it to the rig file, or take it off the line",
+                    "a device that no run reads: add it to the rig file, or take it off the line",
                 )  # fmt: skip
 
 
 def ages(e: Examination) -> Iterator[Finding]:
-    """Say how fast, how reliably and how old each device's readings came, and hold that against the limits."""
+    """Report rate, reliability and age of each device's readings, and compare them with the limits."""
     for name, why in e.watch.lines_lost.items():
         yield fault(f"line {name}", f"lost while it was watched: {why}", "the adapter and its cable")
     surveyed = {key: unit for line in e.lines.values() for key, unit in line.units.items()}
     for key, watch in e.watch.units.items():
         name, unit = title_of(e.rig, key), surveyed[key]
         if not watch.readings and watch.exceptions:
-            continue  # it refuses: said already
+            continue  # its refusal is reported already
         if not watch.readings:
             yield fault(name, f"no reading in {e.watch.seconds:.0f} s", "its supply, its plug")
             continue
@@ -262,29 +262,29 @@ def _errors(name: str, watch: UnitWatch) -> Iterator[Finding]:
 def _reply_time(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -> Iterator[Finding]:
     usual_s, timing = median(watch.delays_s), unit.profile.timing
     rate = watch.readings / e.watch.seconds
-    found = f"answers after {1e3 * usual_s:.1f} ms, {rate:.0f} readings/s"
+    text = f"answers after {1e3 * usual_s:.1f} ms, {rate:.0f} readings/s"
     if usual_s > timing.reply_max_s + LATE_S:
         yield warning(
-            name, f"{found}; {unit.profile.name} takes at most {1e3 * timing.reply_max_s:g} ms: late by"
+            name, f"{text}; {unit.profile.name} takes at most {1e3 * timing.reply_max_s:g} ms: late by"
             f" {1e3 * (usual_s - timing.turnaround_s):.0f} ms, as by the latency timer of a USB adapter (16 ms)",
             "set the adapter's latency timer to 1 ms, or its low-latency flag; or take an adapter without a timer",
         )  # fmt: skip
     slow = unit.profile.blocks[0].period_s == 0.0 and rate < READINGS_S
     if slow:
         yield warning(
-            name, f"{found}: less than {READINGS_S:g} readings/s",
+            name, f"{text}: less than {READINGS_S:g} readings/s",
             "a higher baud rate, a line of its own, the adapter's latency timer at 1 ms",
         )  # fmt: skip
 
 
 def _age(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -> Iterator[Finding]:
     limit_s = e.limit(*STALE_LIMITS.get(unit.profile.kind, ()))
-    found = f"{watch.readings} readings, at most {1e3 * watch.oldest_s:.0f} ms old when the next came"
+    text = f"{watch.readings} readings, at most {1e3 * watch.oldest_s:.0f} ms old when the next came"
     if limit_s is not None and watch.oldest_s > limit_s:
         yield warning(
-            name, f"{found}: the rig file allows {1e3 * limit_s:g} ms",
+            name, f"{text}: the rig file allows {1e3 * limit_s:g} ms",
             "what delays answers or loses them, as above; the limit stays the rig file's",
         )  # fmt: skip
     else:
         allowed = f" (the rig file allows {1e3 * limit_s:g} ms)" if limit_s is not None else ""
-        yield ok(name, f"{found}{allowed}")
+        yield ok(name, f"{text}{allowed}")

@@ -1,4 +1,4 @@
-"""What is on a Modbus line: every device of the rig file asked, then every other unit number."""
+"""Surveys a Modbus line: asks every device of the rig file, then every other unit number."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TRIES = 3
 
 @dataclass(slots=True)
 class UnitSurvey:
-    """What a device of the rig file answered."""
+    """The answers of a device of the rig file."""
 
     config: DeviceConfig
     profile: DeviceProfile
@@ -40,59 +40,59 @@ class UnitSurvey:
 
     @property
     def there(self) -> bool:
-        """Whether it answered anything."""
+        """Whether it answered at all."""
         return any(answer.there for answer in (*self.blocks, *self.configuration.values()))
 
     @property
     def noise(self) -> bytes:
-        """What came that is no answer."""
+        """Received bytes that are no answer."""
         return b"".join(answer.noise for answer in (*self.blocks, *self.configuration.values()))
 
 
 @dataclass(slots=True)
 class LineSurvey:
-    """What was found on a line."""
+    """The results of a survey of a line."""
 
     lost: str = ""
     units: dict[str, UnitSurvey] = field(default_factory=dict[str, UnitSurvey])
     """By the devices' names in the rig file."""
     others: dict[int, LineAnswer] = field(default_factory=dict[int, LineAnswer])
-    """Unit numbers that answer and are not in the rig file."""
+    """Unit numbers that answer without being in the rig file."""
     looks_like: dict[int, str] = field(default_factory=dict[int, str])
     """Of those, the device of the rig file whose registers they have."""
     answers_at: LineConfig | None = None
-    """The settings at which a device answers, where they are not the rig file's."""
+    """The settings at which a device answers, if not the rig file's."""
 
 
 def survey_line(rig: Rig, name: str, wires: Wires, *, everybody: bool = True) -> LineSurvey:
-    """Ask the devices of a line; ``everybody``: and every other unit number."""
-    found = LineSurvey()
+    """Ask the devices of a line; with ``everybody``, also every other unit number."""
+    survey = LineSurvey()
     config = rig.lines[name]
     for key, device in rig.devices.items():
         if device.line == name:
-            found.units[key] = UnitSurvey(device, profile_of(device.profile))
+            survey.units[key] = UnitSurvey(device, profile_of(device.profile))
     try:
         port = wires.line(name, config)
         scan = LineScan(config.framing, config.baud, config.parity)
-        for unit in found.units.values():
+        for unit in survey.units.values():
             _ask_unit(scan, port, wires, unit)
         if everybody:
-            known = {unit.config.unit_id for unit in found.units.values()}
+            known = {unit.config.unit_id for unit in survey.units.values()}
             for other in UNITS:
                 answer = None if other in known else asked(scan, port, wires, RegisterQuestion(other, 3, 0, 1), SCAN_S)
                 if answer is not None and answer.there:
-                    found.others[other] = answer
-            _compare(scan, port, wires, found)
+                    survey.others[other] = answer
+            _compare(scan, port, wires, survey)
     except BusLost as lost:
-        found.lost = str(lost)
-        return found
-    if found.units and not found.others and not any(unit.there for unit in found.units.values()):
-        found.answers_at = _other_settings(config, name, wires, found)
-    return found
+        survey.lost = str(lost)
+        return survey
+    if survey.units and not survey.others and not any(unit.there for unit in survey.units.values()):
+        survey.answers_at = _other_settings(config, name, wires, survey)
+    return survey
 
 
 def asked(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuestion, timeout_s: float) -> LineAnswer:
-    """Ask a question and return what became of it; raises BusLost."""
+    """Ask a question and return its result; raises BusLost."""
     scan.ask(question, timeout_s)
     while True:
         now = wires.now()
@@ -104,7 +104,7 @@ def asked(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuesti
 
 
 def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) -> None:
-    """Read everything that the profile of a device names; one that is silent at first is not asked for the rest."""
+    """Read all registers in a device's profile; skip the rest if the first gets no answer."""
     number = unit.config.unit_id
     for block in unit.profile.blocks:
         answer = _patiently(scan, port, wires, RegisterQuestion(number, block.function, block.address, block.count))
@@ -125,7 +125,7 @@ def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQ
 
 
 def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[RegisterQuestion, int | None]]:
-    """Yield questions whose answers tell a type of device, at another unit number, with the value it must give."""
+    """Yield questions that identify a type of device at another unit number, with the expected value."""
     identity = unit.profile.identity
     if identity is not None:
         yield RegisterQuestion(number, identity.function, identity.address, 1), identity.value
@@ -133,10 +133,10 @@ def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[RegisterQuestion, in
     yield RegisterQuestion(number, block.function, block.address, block.count), None
 
 
-def _compare(scan: LineScan, port: LinePort, wires: Wires, found: LineSurvey) -> None:
-    """Find out whether a unit that nobody knows is a device that does not answer at its own number."""
-    for number in found.others:
-        for key, unit in found.units.items():
+def _compare(scan: LineScan, port: LinePort, wires: Wires, survey: LineSurvey) -> None:
+    """Find out whether an unknown unit is a device that does not answer at its own number."""
+    for number in survey.others:
+        for key, unit in survey.units.items():
             if unit.there:
                 continue
             fits = True
@@ -144,11 +144,11 @@ def _compare(scan: LineScan, port: LinePort, wires: Wires, found: LineSurvey) ->
                 answer = asked(scan, port, wires, question, PATIENCE_S)
                 fits = fits and answer.ok and (value is None or int.from_bytes(answer.data[:2], "big") == value)
             if fits:
-                found.looks_like[number] = key
+                survey.looks_like[number] = key
 
 
-def _other_settings(config: LineConfig, name: str, wires: Wires, found: LineSurvey) -> LineConfig | None:
-    """Return the settings at which a device of the line answers, None where there are none, or none to be tried."""
+def _other_settings(config: LineConfig, name: str, wires: Wires, survey: LineSurvey) -> LineConfig | None:
+    """Return the settings at which a device of the line answers, None without any."""
     if config.framing == "socket":
         return None
     for baud in BAUDS:
@@ -161,7 +161,7 @@ def _other_settings(config: LineConfig, name: str, wires: Wires, found: LineSurv
             except BusLost:
                 continue  # an adapter need not have every setting
             scan = LineScan(tried.framing, baud, parity)
-            for unit in found.units.values():
+            for unit in survey.units.values():
                 block = unit.profile.blocks[0]
                 question = RegisterQuestion(unit.config.unit_id, block.function, block.address, block.count)
                 if asked(scan, port, wires, question, PATIENCE_S).there:

@@ -1,4 +1,4 @@
-"""What the devices of a rig are set to: read, written down, and held against what was written down before."""
+"""The device parameters of a rig: reads them, writes them to a file, and compares them with an earlier file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FORMAT = 1
 
 
 class DumpError(ValueError):
-    """A file that is no dump of parameters; the message says why."""
+    """A file is not a dump of parameters; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class ParameterDump:
 
 
 def dumped(e: Examination) -> ParameterDump:
-    """Read what every device of a rig is set to."""
+    """Read the parameters of every device of a rig."""
     devices: dict[str, dict[str, DeviceParameter]] = {}
     silent: list[str] = []
     for name, config in e.rig.drives().items():
@@ -101,9 +101,9 @@ def read_dump(path: Path) -> ParameterDump:
 
 
 def stored_in(rig: Rig, folder: Path) -> Parameters:
-    """Return what a run has stored; raises StoreError, DumpError where it has stored nothing."""
+    """Return a run's stored parameters; raises StoreError, DumpError if it stored none."""
     with RunReader(folder) as reader:
-        found = stored(rig, reader.parameters())
-    if not found:
+        parameters = stored(rig, reader.parameters())
+    if not parameters:
         raise DumpError(f"{folder.name} has no parameters on record: it was never connected")
-    return found
+    return parameters

@@ -1,4 +1,4 @@
-"""Every probe of the doctor in its order, and a file of what they find. A new probe is a function and a line here."""
+"""All probes of the doctor in order, and a file of their findings. A new probe is a function and a line here."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def examined(examination: Examination) -> Iterator[TableEntry]:
 
 
 RUNS_NAMED = 3
-"""Of so many last runs the names of the files are told."""
+"""Number of newest runs whose file names are included."""
 
 
 def written_bundle(path: Path, e: Examination, found: Sequence[TableEntry]) -> None:

@@ -1,4 +1,4 @@
-"""One object of one node, read or written, while no run is under way."""
+"""Reads or writes one object of one node, while no run is under way."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ COMMANDS: Final = frozenset(
 )
 """Objects that command a drive or switch an output: only a run sends them."""
 _OFF = (State.NOT_READY, State.SWITCH_ON_DISABLED, State.READY_TO_SWITCH_ON, State.FAULT)
-"""A drive without power in these states."""
+"""States of a drive without power."""
 
 
 class WriteRefusedError(Exception):
-    """An object is not to be written now; the message says why."""
+    """The object must not be written now; the message gives the reason."""
 
 
 class NodeAccess:
-    """The objects of one node. Raises BusLost where the bus is gone."""
+    """The objects of one node. Raises BusLost if the bus is gone."""
 
     def __init__(self, port: CanPort, wires: Wires, node: int) -> None:
         """``node``: its number, 1..127."""
@@ -51,7 +51,7 @@ class NodeAccess:
         return found or ObjectAnswer(key, error=f"nothing answers at node {self._node} within {PATIENCE_S:g} s")
 
     def may_write(self, key: Key) -> None:
-        """Raise WriteRefusedError for a command, and where the node is a drive that has power."""
+        """Raise WriteRefusedError for a command, and for a drive that has power."""
         if key in COMMANDS:
             raise WriteRefusedError(f"0x{key[0]:04X} commands the drive: only a run sends it")
         statusword = self.read((o.STATUSWORD, 0))
@@ -62,9 +62,9 @@ class NodeAccess:
             raise WriteRefusedError(f"the drive has power ({cia402.decode(word).name}): nothing is written to it now")
 
     def write(self, key: Key, kind: DataType, value: int | str) -> ObjectAnswer:
-        """Download a value and return what the object then reads as, or why it was not taken.
+        """Download a value and return the object's new value, or why the node refused it.
 
-        Raises WriteRefusedError, and ValueError where the value does not fit the type.
+        Raises WriteRefusedError, and ValueError if the value does not fit the type.
         """
         data = o.encode(kind, value)
         self.may_write(key)

@@ -30,7 +30,7 @@ class SerialPortInfo:
 
 
 class ComputerDoor(Protocol):
-    """What the doctor asks the computer for."""
+    """The doctor's access to the computer."""
 
     @property
     def platform(self) -> str:
@@ -38,35 +38,35 @@ class ComputerDoor(Protocol):
         ...
 
     def text(self, path: str) -> str | None:
-        """Return the text of a small file without its last line end; None where it cannot be read."""
+        """Return the text of a small file without its last line end; None if it is unreadable."""
         ...
 
     def names(self, folder: str) -> list[str]:
-        """Return the names in a folder; none where it cannot be read."""
+        """Return the names in a folder; empty if it is unreadable."""
         ...
 
     def exists(self, path: str) -> bool:
-        """Tell whether there is a file of this name."""
+        """Return whether a file of this name exists."""
         ...
 
     def real(self, path: str) -> str:
-        """Return a path without links: of a name in ``/dev/serial/by-id`` the port."""
+        """Return a path without links, for example the port of a name in ``/dev/serial/by-id``."""
         ...
 
     def may_use(self, path: str) -> bool:
-        """Tell whether this user may read and write a file, or make files in a folder."""
+        """Return whether this user may read and write a file, or make files in a folder."""
         ...
 
     def group_of(self, path: str) -> str:
-        """Return the group that a file belongs to; "" where the system has none, or it is not known."""
+        """Return the group of a file; "" if unknown."""
         ...
 
     def free_bytes(self, folder: str) -> int | None:
-        """Return the room on the disk of a folder, or of what is to hold it; None where it cannot be told."""
+        """Return the free space on the disk of a folder, existing or not; None if unknown."""
         ...
 
     def output(self, *command: str) -> str | None:
-        """Return what a program writes; None where there is none of that name, or it fails."""
+        """Return a program's output; None if it is missing or fails."""
         ...
 
     def serial_ports(self) -> list[SerialPortInfo]:
@@ -74,7 +74,7 @@ class ComputerDoor(Protocol):
         ...
 
     def latency_ms(self, port: str) -> int | None:
-        """Return the latency timer of a USB serial adapter, ms; None where it has none, or it cannot be told."""
+        """Return the latency timer of a USB serial adapter, ms; None without one, or if unknown."""
         ...
 
 
@@ -83,51 +83,43 @@ class ThisComputer:
 
     @property
     def platform(self) -> str:
-        """``sys.platform``."""
         return sys.platform
 
     def text(self, path: str) -> str | None:
-        """Return the text of a small file; None where it cannot be read."""
         try:
             return Path(path).read_text(encoding="utf-8", errors="replace").rstrip("\n")
         except OSError:
             return None
 
     def names(self, folder: str) -> list[str]:
-        """Return the names in a folder."""
         try:
             return sorted(path.name for path in Path(folder).iterdir())
         except OSError:
             return []
 
     def exists(self, path: str) -> bool:
-        """Tell whether there is a file of this name."""
         return Path(path).exists()
 
     def real(self, path: str) -> str:
-        """Return a path without links."""
         return os.path.realpath(path)
 
     def may_use(self, path: str) -> bool:
-        """Tell whether this user may read and write it; of what is not there yet, the nearest folder above."""
+        """Return whether this user may read and write a path; for a missing one, the nearest folder above."""
         return os.access(_nearest(path), os.R_OK | os.W_OK)
 
     def group_of(self, path: str) -> str:
-        """Return the group that a file belongs to."""
         try:
             return Path(path).group()
         except (OSError, KeyError, NotImplementedError):
             return ""
 
     def free_bytes(self, folder: str) -> int | None:
-        """Return the room on the disk of a folder."""
         try:
             return shutil.disk_usage(_nearest(folder)).free
         except OSError:
             return None
 
     def output(self, *command: str) -> str | None:
-        """Return what a program writes."""
         try:
             done = subprocess.run(
                 command, capture_output=True, text=True, timeout=COMMAND_AT_MOST_S, check=True, stdin=subprocess.DEVNULL
@@ -137,14 +129,12 @@ class ThisComputer:
         return done.stdout
 
     def serial_ports(self) -> list[SerialPortInfo]:
-        """Return the serial ports of the computer."""
         from serial.tools import list_ports
 
-        found = sorted(list_ports.comports(), key=lambda port: port.device)
-        return [SerialPortInfo(port.device, port.description or "", port.serial_number or "") for port in found]
+        ports = sorted(list_ports.comports(), key=lambda port: port.device)
+        return [SerialPortInfo(port.device, port.description or "", port.serial_number or "") for port in ports]
 
     def latency_ms(self, port: str) -> int | None:
-        """Return the latency timer of a USB serial adapter, ms."""
         if sys.platform == "win32":
             return _latency_on_windows(port)
         name = Path(self.real(port)).name
@@ -153,7 +143,7 @@ class ThisComputer:
 
 
 def _nearest(path: str) -> Path:
-    """Return a path, or the nearest folder above it that is there."""
+    """Return a path, or the nearest existing folder above it."""
     here = Path(path).absolute()
     while not here.exists() and here != here.parent:
         here = here.parent

@@ -1,4 +1,4 @@
-"""Which objects and registers of a device are read: what a set-up writes, and what it is told by."""
+"""The objects and registers of a device to read: its identity and everything that a set-up writes."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ STATE: tuple[Key, ...] = (
 
 
 def objects_of(config: AxisConfig) -> list[Key]:
-    """Return every object of an axis' drive that is looked at, each once."""
+    """Return every object to read from an axis' drive, each once."""
     return list(dict.fromkeys((*IDENTITY, *STATE, *KEPT, *written(config), *mapped(config))))
 
 
 def configuration(profile: DeviceProfile, unit_id: int) -> Iterator[tuple[str, RegisterQuestion]]:
-    """Yield name and question of every register of a device that is configuration: identity, set-up, parameters.
+    """Yield name and question of every configuration register of a device: identity, set-up, parameters.
 
-    A setpoint and a lease are commands, and are left out.
+    Setpoint and lease are commands, and are left out.
     """
     reads = 3 if 3 in profile.functions else 4
     identity = profile.identity

@@ -1,4 +1,4 @@
-"""A minute of watching: every device read as fast as a run reads it, the CAN bus listened to, the computer timed."""
+"""Watches a rig for a minute: reads every device as fast as a run does, listens to the CAN bus, times the computer."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from tester.doctor.wires import Wires
 from tester.inputs.rig import Rig
 
 PATIENCE_S = 0.15
-"""A reading is waited for so long, s: a slow profile's 60 ms, an adapter's latency, and a computer that is busy [A]."""
+"""Patience for a reading, s: a slow profile's 60 ms, an adapter's latency, and a busy computer [A]."""
 
 STEP_S = 0.001
-"""How often the lines are looked at, s."""
+"""Period for reading the lines, s."""
 
 
 @dataclass(slots=True)
 class UnitWatch:
-    """How a device answered, again and again."""
+    """A device's answers over time."""
 
     questions: int = 0
     readings: int = 0
@@ -44,27 +44,27 @@ class UnitWatch:
 
 @dataclass(slots=True)
 class RigWatch:
-    """What a stretch of watching has shown."""
+    """The results of a watch."""
 
     seconds: float = 0.0
     can: Heard = field(default_factory=Heard)
     can_lost: str = ""
     can_errors: dict[str, int] | None = None
-    """Error frames by what they say; None where the adapter passes none on."""
+    """Error frames by kind; None if the adapter reports none."""
     can_state: str = ""
-    """The adapter's own state at the end, "" where it tells none."""
+    """The adapter's own state at the end, "" if it reports none."""
     units: dict[str, UnitWatch] = field(default_factory=dict[str, UnitWatch])
     """By the devices' names in the rig file."""
     lines_lost: dict[str, str] = field(default_factory=dict[str, str])
     late_s: list[float] = field(default_factory=list[float])
-    """By how much each scan came late, s; none where time is simulated."""
+    """Lateness of each scan, s; empty in simulated time."""
 
 
 _KEPT_VALUES = 200
 
 
 class _Line:
-    """A line whose devices are read in turn."""
+    """A line with devices that are read in turn."""
 
     def __init__(self, name: str, rig: Rig, port: LinePort, units: dict[str, UnitWatch]) -> None:
         config = rig.lines[name]
@@ -77,7 +77,7 @@ class _Line:
         self._now = ""
 
     def add(self, key: str, question: RegisterQuestion, period_s: float) -> None:
-        """Read a device in its period, s; 0 = as fast as it goes."""
+        """Read a device with this period, s; 0 = as fast as possible."""
         self._asked.append((key, question, period_s))
         self._due[key] = -inf
 
@@ -122,49 +122,49 @@ class _Line:
 
 
 def watched(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], seconds: float, *, can: bool) -> RigWatch:
-    """RigWatch for ``seconds``; ``lines``: those that were looked at; ``can``: the bus could be opened."""
-    found = RigWatch()
-    opened = _open(rig, wires, lines, found)
-    bus = wire = _bus(rig, wires, found) if can else None
+    """Watch a rig for ``seconds``; ``lines``: the surveyed lines; ``can``: whether the bus could be opened."""
+    result = RigWatch()
+    opened = _open(rig, wires, lines, result)
+    bus = wire = _bus(rig, wires, result) if can else None
     period_s = 1.0 / rig.scan.sliding_hz
     begun_s = wires.now()
     scan_due_s = begun_s + period_s
     while (now := wires.now()) < begun_s + seconds:
         if now >= scan_due_s - 1e-9:
             if wires.real:
-                found.late_s.append(now - scan_due_s)
+                result.late_s.append(now - scan_due_s)
             missed = int((now - scan_due_s) / period_s)
             scan_due_s += period_s * (1 + missed)
-            bus = _listen(bus, now, rig, found)
+            bus = _listen(bus, now, rig, result)
         for line in list(opened):
             try:
                 line.step(now)
             except BusLost as lost:
-                found.lines_lost[line.name] = str(lost)
+                result.lines_lost[line.name] = str(lost)
                 opened.remove(line)
         wires.wait_until(min(now + STEP_S, max(scan_due_s, now)))
         if wires.now() <= now:
             wires.wait_until(now + STEP_S)
     if isinstance(wire, TellingCanPort):
-        found.can_errors, found.can_state = dict(wire.errors), wire.state
-    found.seconds = wires.now() - begun_s
-    found.can.seconds = found.seconds
-    return found
+        result.can_errors, result.can_state = dict(wire.errors), wire.state
+    result.seconds = wires.now() - begun_s
+    result.can.seconds = result.seconds
+    return result
 
 
-def _open(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], found: RigWatch) -> list[_Line]:
+def _open(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], result: RigWatch) -> list[_Line]:
     opened: list[_Line] = []
     for name, survey in lines.items():
         there = {key: unit for key, unit in survey.units.items() if unit.there}
         if survey.lost or not there:
             continue
         try:
-            line = _Line(name, rig, wires.line(name, rig.lines[name]), found.units)
+            line = _Line(name, rig, wires.line(name, rig.lines[name]), result.units)
         except BusLost as lost:
-            found.lines_lost[name] = str(lost)
+            result.lines_lost[name] = str(lost)
             continue
         for key, unit in there.items():
-            found.units[key] = UnitWatch()
+            result.units[key] = UnitWatch()
             block = unit.profile.blocks[0]
             line.add(
                 key, RegisterQuestion(unit.config.unit_id, block.function, block.address, block.count), block.period_s
@@ -173,22 +173,22 @@ def _open(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], found: RigWatch)
     return opened
 
 
-def _bus(rig: Rig, wires: Wires, found: RigWatch) -> CanPort | None:
+def _bus(rig: Rig, wires: Wires, result: RigWatch) -> CanPort | None:
     try:
         bus = wires.can(rig.can.bitrate)
         bus.receive(wires.now())
     except BusLost as lost:
-        found.can_lost = str(lost)
+        result.can_lost = str(lost)
         return None
     return bus
 
 
-def _listen(bus: CanPort | None, now: float, rig: Rig, found: RigWatch) -> CanPort | None:
+def _listen(bus: CanPort | None, now: float, rig: Rig, result: RigWatch) -> CanPort | None:
     if bus is None:
         return None
     try:
-        found.can.take(bus.receive(now), rig.can.node)
+        result.can.take(bus.receive(now), rig.can.node)
     except BusLost as lost:
-        found.can_lost = str(lost)
+        result.can_lost = str(lost)
         return None
     return bus

@@ -1,4 +1,4 @@
-"""The wires to a rig as the doctor opens them: one at a time, with other settings too, real or simulated."""
+"""The doctor's wires to a rig: opened one at a time, with other settings if needed, real or simulated."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from tester.run.simulated import simulated_ports
 BITRATES = (1_000_000, 800_000, 500_000, 250_000, 125_000)
 """Bit rates of CANopen that a rig file can state, bit/s (CiA 301, 5.1)."""
 OUTSIDE = ("socketcan", "socketcand")
-"""Interfaces whose bit rate the system sets, and no program that opens them."""
+"""Interfaces whose bit rate the system sets, not the program that opens them."""
 
 
 class Wires(Protocol):
-    """Wires, and the time that passes on them."""
+    """Wires, and the time on them."""
 
     @property
     def bitrates(self) -> tuple[int, ...]:
-        """Bit rates that ``can`` can open beside the rig file's; none where the system sets it."""
+        """Bit rates that ``can`` can open besides the rig file's; none if the system sets it."""
         ...
 
     @property
     def real(self) -> bool:
-        """Whether time passes by itself: how late the computer is can then be measured."""
+        """Whether time passes by itself, so that the computer's lateness can be measured."""
         ...
 
     def now(self) -> float:
-        """Return the seconds since the look began."""
+        """Return the seconds since the examination began."""
         ...
 
     def wait_until(self, due_s: float) -> None:
@@ -42,15 +42,15 @@ class Wires(Protocol):
         ...
 
     def can(self, bitrate: int) -> CanPort:
-        """Open the CAN bus at a bit rate (bit/s), anew where it is open; raises BusLost."""
+        """Open the CAN bus at a bit rate (bit/s), reopening it if needed; raises BusLost."""
         ...
 
     def line(self, name: str, config: LineConfig) -> LinePort:
-        """Open a Modbus line, anew where it is open; raises BusLost."""
+        """Open a Modbus line, reopening it if needed; raises BusLost."""
         ...
 
     def close(self) -> None:
-        """Give every wire back."""
+        """Close every wire."""
         ...
 
 
@@ -68,15 +68,12 @@ class HardwareWires:
         self.bitrates = () if rig.can.interface in OUTSIDE else BITRATES
 
     def now(self) -> float:
-        """Return the seconds since the look began."""
         return self._pace.now()
 
     def wait_until(self, due_s: float) -> None:
-        """Return at ``due_s`` (s)."""
         self._pace.wait_until(due_s)
 
     def can(self, bitrate: int) -> CanPort:
-        """Open the CAN bus; raises BusLost."""
         if self._can is not None:
             self._can.close()
             self._can = None
@@ -84,7 +81,6 @@ class HardwareWires:
         return self._can
 
     def line(self, name: str, config: LineConfig) -> LinePort:
-        """Open a Modbus line; raises BusLost."""
         before = self._lines.pop(name, None)
         if before is not None:
             before.close()
@@ -97,7 +93,6 @@ class HardwareWires:
         return line
 
     def close(self) -> None:
-        """Give every wire back."""
         if self._can is not None:
             self._can.close()
         for line in self._lines.values():
@@ -105,9 +100,9 @@ class HardwareWires:
 
 
 class SimulatedWires:
-    """The wires of a simulated rig in this process, whose time passes as it is waited for.
+    """The wires of a simulated rig in this process; its time passes only while waiting.
 
-    ``built``: the rig as it stands there, which need not be what the rig file says.
+    ``built``: the rig as simulated, which may differ from the rig file.
     """
 
     real = False
@@ -122,29 +117,28 @@ class SimulatedWires:
         self._now_s = 0.0
 
     def now(self) -> float:
-        """Return the rig's time, s."""
         return self._now_s
 
     def wait_until(self, due_s: float) -> None:
-        """Let the rig live until ``due_s`` (s)."""
+        """Advance the rig to ``due_s`` (s)."""
         if due_s > self._now_s:
             self._now_s = due_s
             self.world.advance(due_s)
 
     def can(self, bitrate: int) -> CanPort:
-        """Return the bus, or what an adapter at another bit rate than the bus's meets."""
+        """Return the bus, or at another bit rate the reception of a mistuned adapter."""
         return self._ports.can if bitrate == self._built.can.bitrate else MistunedCan()
 
     def line(self, name: str, config: LineConfig) -> LinePort:
-        """Return the line, or what a port at other settings than the line's meets."""
+        """Return the line, or at other settings the reception of a mistuned port."""
         built = self._built.lines[name]
         same = (config.baud, config.parity) == (built.baud, built.parity)
         return self._ports.lines[name] if same else MistunedLine()
 
     def close(self) -> None:
-        """Nothing: the rig goes with its last reference."""
+        """Do nothing: the rig is freed with its last reference."""
 
 
 def wires_of(rig: Rig, seed: int = 0) -> Wires:
-    """Return the wires of a rig, simulated in this process or real; nothing of a real one is open yet."""
+    """Return the wires of a rig, simulated in this process or real; real ones are not open yet."""
     return SimulatedWires(rig, seed) if rig.can.interface == "sim" else HardwareWires(rig)

@@ -178,7 +178,7 @@ MISTAKES: tuple[Mistake, ...] = (
     _named("drives without supply", r"CAN bus: silent", hands=_no_supply),
     _named("a second master", r"CAN bus: another master is sending: (SYNC|heartbeat|RPDO1)", hands=_second_master),
     _named("another product than the EDS's", r"(wheel|belt|sideslip): .*another drive", hands=_another_product),
-    _named("a heartbeat that does not come", r"no heartbeat is heard", hands=_no_heartbeat),
+    _named("a heartbeat that does not come", r"no heartbeat arrives", hands=_no_heartbeat),
     _named(
         "rated torque of another motor", r"belt: 0x6076 rated torque is 16 N m", told=("axes.belt.rated_torque=12 N m",)
     ),
@@ -202,7 +202,7 @@ MISTAKES: tuple[Mistake, ...] = (
         told=("devices.jacket.profile=omron_e5cc",),
     ),
     Mistake("word order of the load cell", r"load cell: wrong word order", _other_word_order),
-    _named("thermocouple off", r"jacket: says that its reading is not valid: .*sensor_break", hands=_broken_sensor),
+    _named("thermocouple off", r"jacket: reports an invalid reading: .*sensor_break", hands=_broken_sensor),
     _named(
         "replies held back by 16 ms",
         r"load cell: .*latency timer",
