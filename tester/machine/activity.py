@@ -1,4 +1,4 @@
-"""What a step of the plan is to the scan: something that is stepped until it is done, and may be held meanwhile."""
+"""Activities: a step of the plan as an object that is stepped once a scan until it is done, and may be held."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ ContextT_contra = TypeVar("ContextT_contra", bound=AnyContext, contravariant=Tru
 
 
 class Activity(Protocol[ContextT_contra]):
-    """Something that takes scans; it works in the context of its kind."""
+    """Stepped once a scan, in the context of its kind."""
 
     def step(self, ctx: ContextT_contra) -> bool:
         """Advance by one scan; return True when done."""
@@ -19,12 +19,12 @@ class Activity(Protocol[ContextT_contra]):
 
 @runtime_checkable
 class Resumable(Protocol):
-    """An activity that has to begin something anew after a hold. One that has not goes on where it was."""
+    """An activity that must restart something after a hold. Any other simply continues."""
 
     def resume(self, ctx: Any) -> None:
-        """Go on: the contact is open, and the drives run or stand as the hold has kept them."""
+        """Resume: the contact is open, and the drives run or rest as the hold left them."""
         ...
 
 
 class MoveFailedError(Exception):
-    """A move has not ended in its time: the run stops in a controlled way, with this as its reason."""
+    """A move has exceeded its time: the run stops in a controlled way, with this as its reason."""

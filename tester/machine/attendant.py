@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 
 class NoAttendant:
-    """Does nothing, whatever a kind asks of the hands at its rig: people have answered the prompts."""
+    """Does nothing for every request of a kind: on a real rig, people do the work before they answer the prompt."""
 
     def __getattr__(self, name: str) -> Callable[..., None]:
         """Return a call that does nothing, for any public name."""

@@ -1,6 +1,7 @@
-"""Bring the rig up: listen, configure the drives, hear every device, lift, home, show what must hold.
+"""Connects a rig: listens, configures the drives, waits for every device, lifts, homes, and proves what must hold.
 
-Nothing moves before every device is heard, and nothing but what lifts before the kind has shown that nothing is loaded.
+Nothing moves before every device has answered, and only the lift moves before the kind has shown that nothing is
+loaded.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from tester.machine.wires import CAN_SILENT, STALE_INPUTS_S
 CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
 TIMEOUT_S = 90.0
-"""Everything must be up by then; homing of a slow axis takes the most [A]."""
+"""Time limit for the connection; homing of a slow axis takes the most [A]."""
 RAMP_S = 0.5
-"""After a failure every axis stands by then: the ramp from creep speed takes 25 ms, that of homing 0.2 s [A]."""
+"""Time for every axis to stop after a failure: the ramp from creep speed takes 25 ms, that of homing 0.2 s [A]."""
 RELEASE_S = 3.0
-"""After a failure, drives that were configured are released by then [A]."""
+"""Time limit for releasing configured drives after a failure [A]."""
 
 
 class Stage(Enum):
-    """How far the connection is."""
+    """Stage of the connection."""
 
     LISTEN = "listen for another master"
     CONFIGURE = "configure drives"
@@ -47,20 +48,20 @@ _SCANNING = _MOVING | {Stage.RELEASE}
 
 
 _POWERED = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION)
-"""In these a drive applies torque; one that obeys nothing never leaves its quick stop by itself."""
+"""States in which a drive applies torque; a drive that ignores commands never leaves its quick stop by itself."""
 
 
 class Showing(Protocol):
-    """Something that is tried out before a run may begin, one call of ``step`` a scan."""
+    """A proof before a run may begin, one call of ``step`` a scan."""
 
     @property
     def done(self) -> bool:
-        """It has been shown, or could not be."""
+        """Whether the proof is over, successful or not."""
         ...
 
     @property
     def failure(self) -> str:
-        """Why it could not be shown; "" while nothing speaks against it."""
+        """Why the proof failed; "" while it has not."""
         ...
 
     def step(self, now: float) -> None:
@@ -68,28 +69,28 @@ class Showing(Protocol):
         ...
 
     def stop(self) -> None:
-        """Bring what it has moved to standstill, power off."""
+        """Bring everything it has moved to standstill, power off."""
         ...
 
 
 class Lifting(Showing, Protocol):
-    """Shows that nothing is loaded, and watches that from then on."""
+    """Proves that nothing is loaded, and keeps watching that."""
 
     def trouble(self, now: float) -> str:
-        """Return "" or why the rig, once found unloaded, is not known to be so any more."""
+        """Return "", or why a rig once unloaded is no longer known to be."""
         ...
 
 
 class Proving(Showing, Protocol):
-    """Shows that drives follow, and stop without our heartbeat."""
+    """Proves that drives follow, and that they stop without our heartbeat."""
 
     @property
     def provokes(self) -> bool:
-        """Drives are made to stop by themselves, or have not been reset yet after that."""
+        """Whether drives are made to stop by themselves, or have not been reset since."""
         ...
 
     def proven(self) -> str:
-        """Return a line for the journal: what was shown, and what was not because the rig file says so."""
+        """Return a line for the journal: what was proven, and what the rig file excludes."""
         ...
 
 
@@ -98,23 +99,23 @@ RigT = TypeVar("RigT", bound=Rig)
 
 
 class Arming(Generic[DevicesT, RigT]):
-    """What a machine is asked and shows before a run may begin. A kind says how it lifts, and how its drives follow."""
+    """Checks and proofs before a run may begin. A kind implements the lift and the proof of its drives."""
 
     def __init__(self, devices: DevicesT, rig: RigT) -> None:
-        """Nothing is sent."""
+        """Send nothing."""
         self.devices = devices
         self.rig = rig
         self._stale_s = rig.values()[STALE_INPUTS_S]
 
     def heard(self) -> bool:
-        """Return whether every device and the safety inputs have been heard."""
+        """Return whether every device and the safety inputs have reported."""
         return self.devices.answering() and self.devices.io.inputs_stamp_s > -inf
 
     def renew(self) -> None:
-        """Renew the leases of devices that a program before us left behind; they stay off."""
+        """Renew the leases of devices that an earlier program left behind; they stay off."""
 
     def unfit(self, now: float, configured_s: float) -> str:
-        """Return why no axis may move, "" while all may. The drives send by themselves since ``configured_s``."""
+        """Return why no axis may move, "" if all may. The drives send by themselves since ``configured_s``."""
         io = self.devices.io
         if not io.inputs & INPUT_SAFETY_CHAIN:
             return "safety chain"
@@ -125,26 +126,26 @@ class Arming(Generic[DevicesT, RigT]):
         return ""
 
     def silent(self) -> str:
-        """Return what it means that no drive is heard."""
+        """Return the explanation when no drive responds."""
         return f"{CAN_SILENT.name}: {CAN_SILENT.cause}"
 
     def lift(self) -> Lifting:
-        """Begin to show that nothing is loaded."""
+        """Begin to prove that nothing is loaded."""
         raise NotImplementedError
 
     def prove(self) -> Proving:
-        """Begin to show that drives follow and stop."""
+        """Begin to prove that drives follow and stop."""
         raise NotImplementedError
 
 
 class Connector:
-    """Drives the connection, tick by tick."""
+    """Runs the connection, tick by tick."""
 
     timeout_s: float = TIMEOUT_S
-    """Everything must be up by then; inf where a person takes the time."""
+    """Time limit for the connection; inf if a person takes the time."""
 
     def __init__(self, devices: DeviceList, rig: Rig, arming: Arming[Any, Any], listen_s: float) -> None:
-        """Nothing is sent before the first ``tick``, and on the CAN bus not before the listening is over."""
+        """Send nothing before the first ``tick``, and nothing on the CAN bus before the listening is over."""
         self.devices = devices
         self.rig = rig
         self.listen_s = listen_s
@@ -152,7 +153,7 @@ class Connector:
         self.stage = Stage.LISTEN
         self.failure = ""
         self.shown = ""
-        """What the proof has shown; a line for the journal."""
+        """Result of the proof; a line for the journal."""
         self._lifting: Lifting | None = None
         self._proof: Proving | None = None
         self._configured_s = -inf
@@ -161,21 +162,23 @@ class Connector:
 
     @property
     def finished(self) -> bool:
-        """Ready or failed."""
+        """Whether it is ready or has failed."""
         return self.stage in (Stage.READY, Stage.FAILED)
 
     @property
     def failed(self) -> bool:
-        """Given up; drives may still be being released."""
+        """Whether it has given up; it may still be releasing drives."""
         return self.stage in (Stage.RELEASE, Stage.FAILED)
 
     @property
     def watches_drives(self) -> bool:
-        """Every drive is configured, and one that stops by itself ends the connection at once."""
+        """Whether every drive is configured, so that a drive that stops by itself ends the connection at once."""
         return self.stage in _MOVING and not (self._proof is not None and self._proof.provokes)
 
     def tick(self, now: float) -> float:
-        """Do what is due at ``now``; return when to be called again (s). Raises BusLost: the drives hear no more."""
+        """Do everything due at ``now``; return the time of the next call (s). Raises BusLost if the drives are
+        unreachable.
+        """
         devices = self.devices
         if self._started_s is None:
             self._started_s = now
@@ -185,7 +188,7 @@ class Connector:
         else:
             self._advance(now, now - self._started_s)
         if self.stage is Stage.LISTEN or self.stage is Stage.FAILED:
-            devices.transmit_lines(now)  # who gave up while listening has not spoken on the CAN bus
+            devices.transmit_lines(now)  # stay silent on the CAN bus until the listening has succeeded
         else:
             devices.transmit(now, scan=self.stage in _SCANNING)
         if devices.lost and not devices.can_alive():
@@ -194,13 +197,13 @@ class Connector:
         return now + (line_speed.FINE_S if measuring else CONNECT_S)
 
     def abort(self, why: str) -> None:
-        """Give up: whatever moves stops, and drives that were configured are released."""
+        """Give up: everything moving stops, and configured drives are released."""
         if not self.finished and self.stage is not Stage.RELEASE:
             self._fail(why)
 
     def _advance(self, now: float, elapsed: float) -> None:
         devices = self.devices
-        # While others are still asked, a refusal waits: all of them are told at once.
+        # While other devices are still configured, a refusal waits, so that all are reported together.
         refused = "" if self.stage is Stage.CONFIGURE and devices.busy() else devices.refused()
         unfit = self._unfit(now) if self.stage in _MOVING else ""
         if self.stage in _HEARD:
@@ -231,7 +234,7 @@ class Connector:
         self.stage = Stage.CONFIGURE
 
     def _next(self, now: float) -> None:
-        """Go on: no conversation with a drive is under way."""
+        """Enter the next stage; no conversation with a drive is under way."""
         devices = self.devices
         if self.stage is Stage.CONFIGURE:
             devices.master.sync = True
@@ -275,7 +278,7 @@ class Connector:
             self.stage = Stage.READY
 
     def _unfit(self, now: float) -> str:
-        """Return why no axis may move, or go on moving; "" while all may."""
+        """Return why no axis may move, or keep moving; "" if all may."""
         if all(drive.lost for drive in self.devices.drives):
             return self.arming.silent()
         for drive in self.devices.drives:
@@ -307,7 +310,7 @@ class Connector:
         self.stage = Stage.RELEASE
 
     def _release(self, now: float) -> None:
-        """Let go of every drive that was configured, so that none takes our end for a fault."""
+        """Release every configured drive, so that none takes our end for a fault."""
         devices, master = self.devices, self.devices.master
         if self._released_s is None:
             self._released_s = now
@@ -319,8 +322,8 @@ class Connector:
         elif now - self._released_s > RAMP_S:
             for drive in devices.drives:
                 if drive.state in _POWERED:
-                    drive.goal = Goal.FREE  # it does not come to its standstill
+                    drive.goal = Goal.FREE  # it does not come to rest
 
     def _missing(self) -> str:
-        """Name what has not answered."""
+        """Return the names of devices that have not answered."""
         return ", ".join(self.devices.missing()) or "unknown"

@@ -1,4 +1,4 @@
-"""What a step of the plan may see and do: the context every activity is handed in every scan."""
+"""The context of every activity in every scan: what a step of the plan may read and write."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Progress:
     title: str = "connecting"
     phase: str = ""
     condition: int = 0
-    """Number of the one under way, 0 before the first."""
+    """Number of the present condition, 0 before the first."""
     repeat: int = 0
     repeats: int = 0
     revolutions: float = 0.0

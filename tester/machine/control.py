@@ -1,7 +1,7 @@
 """One control step of any machine: readings and demand in, bounded setpoints out. No I/O, no clock.
 
-Modes, requests, the timing of interlocks and what a trip leads to are the same for every kind. What is commanded in a
-mode is the kind's: it inherits from ``Control`` and fills in what stands under "what a kind says".
+Modes, requests, the timing of interlocks and the consequences of a trip are the same for every kind. A kind inherits
+from ``Control`` and implements the commands of each mode, in the sections "by a kind".
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ InputsT = TypeVar("InputsT", bound=ScanInputs)
 
 
 class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
-    """A machine's control: its state, its interlock table with what the table looks at, and nothing else."""
+    """A machine's control: its state, its interlock table and the inputs of the table."""
 
     def __init__(
         self,
@@ -47,7 +47,8 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         hold_at_most_s: float,
         ack_wait_s: float,
     ) -> None:
-        """Take the kind's parts; two fresh demands serve the modes in which the recipe's does not count.
+        """Take the kind's parts; ``withdrawn`` and ``held`` are fresh demands for the modes that ignore the recipe's
+        demand.
 
         ``hold_at_most_s``: a hold ends in a controlled stop after this. ``ack_wait_s``: an acknowledgement waits this
         long for the last cause to go.
@@ -56,15 +57,15 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         self.view = view
         self.table = table
         self._withdrawn = withdrawn
-        """What is wanted in every mode but RUN and HOLD: nothing. A stop is not watched against the load it lifts."""
+        """The demand in every mode but RUN and HOLD: none. A stop is not judged against the load that it lifts."""
         self._held = held
-        """What is wanted in HOLD."""
+        """The demand in HOLD."""
         self._hold_at_most_s, self._ack_wait_s = hold_at_most_s, ack_wait_s
         self._delays = table.delays_s(view.parameters)
         state.pending_s = table.nothing_pending()
 
     def step(self, demand: DemandT, readings: ReadingsT, scan_s: float) -> None:
-        """Work out ``state.setpoints`` for this scan; ``state.events`` must be journalled before they leave."""
+        """Compute ``state.setpoints`` for this scan; journal ``state.events`` before the setpoints leave."""
         state, now = self.state, readings.now_s
         mode = state.mode
         if mode is not _RUN:
@@ -111,9 +112,9 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
     # -- requests -------------------------------------------------------------------------------------------
 
     def start(self, readings: ReadingsT) -> str:
-        """Arm and enter RUN: one arming edge. Return "" or which levels stand in the way.
+        """Arm and enter RUN: one arming edge. Return "", or the levels that prevent it.
 
-        ``readings`` are of now; every level of the table is evaluated on them.
+        ``readings`` are present ones; every level of the table is evaluated on them.
         """
         state, now = self.state, readings.now_s
         if state.mode is not _IDLE:
@@ -129,36 +130,36 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         demand = self._withdrawn
         demand.enabled = False
         self.look(demand, readings, 0.0, 0.0)
-        holding = self.table.names_of(self.table.held(self.view) & ~self.table.warnings) + self.unfit(readings)
-        if holding:
-            return "not armed: " + ", ".join(holding)
+        blocking = self.table.names_of(self.table.held(self.view) & ~self.table.warnings) + self.unfit(readings)
+        if blocking:
+            return "not armed: " + ", ".join(blocking)
         state.enter(Mode.ARMED, now, "every level clear")
         state.enter(_RUN, now, "start")
         return ""
 
     def request_hold(self, demand: DemandT, now: float, why: str) -> str:
-        """Hold a run: open the contact, keep the heat. Return "" or why not; idempotent."""
+        """Hold a run: open the contact, keep the heat. Return "", or the reason for refusing; idempotent."""
         state = self.state
         if state.mode is _HOLD:
             return ""
         if state.mode is not _RUN:
-            return f"nothing runs that could be held: the rig is in {state.mode.value}"
+            return f"nothing to hold: the rig is in {state.mode.value}"
         self._held.enabled, self._held.attended = demand.enabled, demand.attended
         self.keep(self._held, demand)
         state.enter(_HOLD, now, why)
         return ""
 
     def request_release(self, now: float, why: str) -> str:
-        """Go on after a hold; return "" or why not."""
+        """Resume after a hold; return "", or the reason for refusing."""
         if self.state.mode is not _HOLD:
             return f"nothing to release: the rig is in {self.state.mode.value}"
         self.state.enter(_RUN, now, why)
         return ""
 
     def request_stop(self, now: float, why: str, *, fast: bool = False, cool: bool = True) -> None:
-        """Begin a controlled (or fast) stop; idempotent, and never slows one that is under way.
+        """Begin a controlled (or fast) stop; idempotent, and never slows a stop under way.
 
-        ``cool``: the machine goes on turning, unloaded, while it is too hot to stand.
+        ``cool``: the machine keeps turning, unloaded, while it is too hot to stop.
         """
         state = self.state
         mode = state.mode
@@ -178,7 +179,9 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             state.enter(_STOPPING, now, why)
 
     def request_ack(self, now: float, by: str = "") -> str:
-        """Acknowledge a latched trip: IDLE follows once every cause is gone. Return "" or why not; idempotent."""
+        """Acknowledge a latched trip: IDLE follows once every cause is gone. Return "", or the reason for refusing;
+        idempotent.
+        """
         state = self.state
         if state.mode is not _LATCHED:
             return f"nothing to acknowledge: the rig is in {state.mode.value}"
@@ -188,7 +191,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         return ""
 
     def _acknowledge(self, now: float) -> None:
-        """Leave LATCHED where nothing holds any more; refuse when something still does after a while."""
+        """Leave LATCHED if no level holds any more; refuse if one still does after a while."""
         state, table = self.state, self.table
         holding = (state.held | table.still_there(self.view) & state.tripped) & ~table.warnings
         if not holding:
@@ -199,7 +202,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             state.enter(_IDLE, now, "acknowledged")
         elif now > state.ack_until_s:
             state.ack_until_s = -inf
-            state.tripped &= ~table.at_rest  # what still moves or heats loses its power again
+            state.tripped &= ~table.at_rest  # anything still moving or heating loses its power again
             names = ", ".join(table.names_of(holding))
             state.events.append(ControlEvent(now, "acknowledgement", f"refused, still there: {names}"))
 
@@ -213,7 +216,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             self._time(now_held, readings)
 
     def _time(self, now_held: int, readings: ReadingsT) -> None:
-        """Note since when rows hold, and trip those that have for their delay."""
+        """Update since when rows hold, and trip those that have held for their delay."""
         state, now, delays = self.state, readings.now_s, self._delays
         pending = state.pending_s
         gone = state.held & ~now_held
@@ -234,7 +237,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
                 self._trip(i, lowest, readings)
 
     def _trip(self, i: int, own: int, readings: ReadingsT) -> None:
-        """Act on a row that is due: warn, or stop by its reaction. At rest little is left to stop."""
+        """Act on a due row: warn, or stop by its reaction. At rest there is little left to stop."""
         state, row, now = self.state, self.table.rows[i], readings.now_s
         if row.reaction is Reaction.WARN:
             state.tripped |= own
@@ -244,8 +247,8 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         if resting and not self._acts_at_rest(row):
             return
         state.tripped |= own
-        said = "; ".join(readings.faults())
-        text = row.cause + (f" [{said}]" if said else "") + f" ({self.detail(readings)})"
+        faults = "; ".join(readings.faults())
+        text = row.cause + (f" [{faults}]" if faults else "") + f" ({self.detail(readings)})"
         if state.trip is None:
             compared = row.watch.compared(self.view)
             state.trip = Trip(now, row.name, text, row.reaction, compared)
@@ -262,7 +265,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
                 state.enter(_LATCHED, now, row.name)
 
     def _acts_at_rest(self, row: Interlock[Any]) -> bool:
-        """Tell whether a row trips at rest: something is on that is to be off."""
+        """Return whether a row trips at rest: something is on that should be off."""
         return row.at_rest is not None and row.at_rest(self.view)
 
     def _react(self, reaction: Reaction, now: float, why: str) -> None:
@@ -288,7 +291,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
     # -- holds and stops ------------------------------------------------------------------------------------
 
     def _hold(self, readings: ReadingsT, dt: float) -> None:
-        """Command what a hold wants; one that lasts too long ends in a controlled stop."""
+        """Command the hold's demand; a hold that lasts too long ends in a controlled stop."""
         now = readings.now_s
         if now - self.state.mode_since_s > self._hold_at_most_s:
             self.request_stop(now, "held too long")
@@ -297,7 +300,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             self.run_outputs(self._held, readings, dt)
 
     def _begin_stop(self, now: float) -> None:
-        """Note when a stop began, and what it begins from."""
+        """Record the begin of a stop, and its starting point."""
         stop = self.state.stop
         stop.began_s = now
         stop.fast_s = inf
@@ -305,7 +308,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         self.note_stop()
 
     def _begin_fast(self, now: float) -> None:
-        """Note when the quick stop began, and what it begins from."""
+        """Record the begin of a quick stop, and its starting point."""
         if self.state.stop.fast_s > now:
             self.state.stop.fast_s = now
             self.note_fast_stop()
@@ -326,28 +329,28 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             state.enter(_IDLE, now, "standstill")
         self.rest_outputs()
 
-    # -- what a kind says: the inputs of its rows -------------------------------------------------------------
+    # -- by a kind: the inputs of its rows --------------------------------------------------------------------
 
     def look(self, demand: DemandT, readings: ReadingsT, scan_s: float, dt: float) -> None:
-        """Bring ``view`` up to date with this scan (``ScanInputs.note_times`` is a part of that)."""
+        """Update ``view`` for this scan, including ``ScanInputs.note_times``."""
         raise NotImplementedError
 
     def unfit(self, readings: ReadingsT) -> list[str]:
-        """Return what beside the rows stands in the way of arming."""
+        """Return obstacles to arming beyond the rows."""
         return []
 
     def detail(self, readings: ReadingsT) -> str:
-        """Return the values that a reader of a trip wants first."""
+        """Return the values most useful to a reader of the trip."""
         raise NotImplementedError
 
-    # -- what a kind says: outputs, written to ``state.setpoints`` --------------------------------------------
+    # -- by a kind: outputs, written to ``state.setpoints`` ---------------------------------------------------
 
     def run_outputs(self, demand: DemandT, readings: ReadingsT, dt: float) -> None:
-        """Command what is wanted, within the bounds; in RUN and in HOLD."""
+        """Command the demand, within the bounds; in RUN and in HOLD."""
         raise NotImplementedError
 
     def keep(self, held: DemandT, demand: DemandT) -> None:
-        """Write into ``held`` what a hold wants after ``demand``: no contact."""
+        """Write a hold's demand after ``demand`` into ``held``: no contact."""
         raise NotImplementedError
 
     def stop_outputs(self) -> None:
@@ -355,45 +358,45 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         raise NotImplementedError
 
     def safe_outputs(self) -> None:
-        """Command what is safe at once, without looking: the program cannot go on."""
+        """Command a safe state at once, without reading anything: the program cannot continue."""
         raise NotImplementedError
 
     def emergency_outputs(self) -> None:
-        """Mirror the hardware's emergency stop: nothing may start when it gives the power back."""
+        """Mirror the hardware's emergency stop: nothing may start when the power returns."""
         raise NotImplementedError
 
     def rest_outputs(self) -> None:
-        """Command nothing, want no power. What was escalated stays so until it is acknowledged."""
+        """Command nothing and request no power. An escalation remains until it is acknowledged."""
         raise NotImplementedError
 
     def withdraw_escalation(self) -> None:
-        """Let drives and devices hear from us again: a person has acknowledged, or a run is armed."""
+        """Resume heartbeats to drives and devices: a person has acknowledged, or a run is armed."""
         self.state.setpoints.power_off = False
 
     def end_lease(self, readings: ReadingsT) -> None:
-        """Leave a device that is still on to its lease (``Interlock.ends_lease``)."""
+        """Let the lease of a device that is still on run out (``Interlock.ends_lease``)."""
 
-    # -- what a kind says: its stops --------------------------------------------------------------------------
+    # -- by a kind: its stops ---------------------------------------------------------------------------------
 
     def note_stop(self) -> None:
-        """Note speeds and places that a stop begins from."""
+        """Record the speeds and positions at the begin of a stop."""
 
     def note_fast_stop(self) -> None:
-        """Note speeds that a quick stop begins from."""
+        """Record the speeds at the begin of a quick stop."""
 
     def note_rest(self) -> None:
-        """Note places that everything is to rest at."""
+        """Record the positions to rest at."""
 
     def stop_ended(self) -> bool:
-        """Tell whether the rig stands, unloaded and without heat, or the time for it is over."""
+        """Return whether the rig is at rest, unloaded and without heat, or the time for that is over."""
         raise NotImplementedError
 
     def must_cool(self) -> str:
-        """Return why the machine must not stand yet after a controlled stop; "" where it may."""
+        """Return why the machine must not stop turning yet after a controlled stop; "" if it may."""
         return ""
 
     def cool_outputs(self) -> str:
-        """Command the cool-down; return why it is over, "" while it is not."""
+        """Command the cool-down; return why it is over, "" until then."""
         raise NotImplementedError
 
 
@@ -401,12 +404,12 @@ AnyControl = Control[Any, Any, Any, Any]
 
 
 def may_move(readings: BaseReadings) -> bool:
-    """Tell whether drives may be powered: safety chain and guard closed, every drive without a fault."""
+    """Return whether drives may be powered: safety chain and guard closed, every drive without a fault."""
     return readings.safety_chain and readings.guard_closed and not readings.drive_fault
 
 
 def bounded(value: float, limit: float) -> float:
-    """Clamp to +-limit; what is not a finite number becomes 0."""
+    """Clamp to +-limit; a value that is not finite becomes 0."""
     if -limit <= value <= limit:
         return value
     return copysign(limit, value) if isfinite(value) else 0.0

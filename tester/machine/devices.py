@@ -1,6 +1,6 @@
 """The devices of a rig as lists: drives on CAN, Modbus devices on any number of lines, and their ports.
 
-What a kind of machine reads from them and commands is its own (``fill`` and ``apply`` of its devices).
+A kind implements their readings and commands (``fill`` and ``apply`` of its devices).
 """
 
 from __future__ import annotations
@@ -38,29 +38,30 @@ _FREE: Final = Goal.FREE
 
 
 class CountedInRun(Protocol):
-    """Something that a kind of machine counts while it runs."""
+    """Something that a kind of machine counts during a run."""
 
     def store(self, recorder: Recorder, now_s: float) -> None:
-        """Store what was counted until ``now_s`` s."""
+        """Store the count at ``now_s`` s."""
         ...
 
 
 class DeviceList:
-    """Drivers and the ports they speak through.
+    """Drivers and their ports.
 
-    ``lines``: ports and links in the order of the rig file; ``modbus``: devices on them in the order of the rig file,
-    among them the further sensors (``sensors``), whose channels are recorded, as are those of ``nodes`` on the CAN bus.
-    ``news``: a drive's state, an input or an emergency is new in this scan. ``lost``: why a wire is gone; it is never
-    used again: what waits in its queues must not be sent later. A kind inherits from this: ``fill`` and ``apply``.
+    ``lines``: ports and links in the order of the rig file; ``modbus``: the devices on them in the order of the rig
+    file, including the further sensors (``sensors``), whose channels are recorded, as are those of ``nodes`` on the CAN
+    bus. ``news``: a drive's state, an input or an emergency is new in this scan. ``lost``: why a wire is gone; it is
+    never used again, because its queued requests must not be sent later. A kind inherits from this: ``fill`` and
+    ``apply``.
     """
 
     def __init__(
         self, drivers: RigDrivers, prompts: Sequence[ModbusLink], retracting: ServoDrive | None = None
     ) -> None:
-        """Take the drivers, those of the kind's own devices among them.
+        """Take the drivers, including those of the kind's own devices.
 
-        ``prompts``: the links that may ask for ticks of their own between two scans; ``retracting``: a drive that stays
-        in operation during a quick stop of the others.
+        ``prompts``: the links that may ask for extra ticks between two scans; ``retracting``: a drive that stays in
+        operation during a quick stop of the others.
         """
         self.can: CanPort = drivers.ports.can
         self.master: CanMaster = drivers.master
@@ -74,7 +75,7 @@ class DeviceList:
         self.news = True
         self.lost = ""
         self.counted: list[CountedInRun] = []
-        """What else is counted in a run, and stored with the counters of the buses."""
+        """Further counts of a run, stored with the counters of the buses."""
         self.inspector = Inspector([(device.title, device.driver) for device in self.modbus])
         self._prompts = tuple(prompts)
         self._can_alive = True
@@ -94,13 +95,13 @@ class DeviceList:
         self._watched = tuple((link, port) for _, link, port in self._lines if link in self._prompts)
 
     def rewire(self, can: CanPort, lines: Sequence[LinePort]) -> None:
-        """Speak through other ports from now on; ``lines`` in the order of the ones in use."""
+        """Use other ports from now on; ``lines`` in the order of the present ones."""
         self.can = can
         self.lines = [(port, link) for port, (_, link) in zip(lines, self.lines, strict=True)]
         self._foresee()
 
     def fill(self, r: Any, now: float) -> None:
-        """Bring the kind's readings up to date at ``now`` s."""
+        """Update the kind's readings at ``now`` s."""
         raise NotImplementedError
 
     def apply(self, out: Any) -> None:
@@ -108,7 +109,7 @@ class DeviceList:
         raise NotImplementedError
 
     def fill_common(self, r: BaseReadings, now: float) -> None:
-        """Fill what every machine has: the state of drives and wires, the safety inputs, the further sensors."""
+        """Fill the readings of every machine: the state of drives and wires, the safety inputs, the further sensors."""
         self.news = False
         for drive in self.drives:
             if drive.news:
@@ -164,13 +165,13 @@ class DeviceList:
         r.guard_closed = inputs & INPUT_GUARD != 0
 
     def receive(self, now: float) -> None:
-        """Take in everything that arrived; a wire that is lost is left alone from then on (``lost`` says why)."""
+        """Take in everything that has arrived; a lost wire is ignored from then on (``lost`` has the reason)."""
         try:
             frames = self.can.receive(now)
         except BusLost as error:
             self._lose_can(error)
         else:
-            # What comes over a wire that was lost and came back is taken off it, and not believed.
+            # A wire that was lost and came back is read, but its data is not trusted.
             if frames and self._can_alive:
                 self._can_heard_s = frames[-1][0]
                 self.master.feed(frames, now)
@@ -189,16 +190,16 @@ class DeviceList:
         self._can_alive = False
 
     def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
-        """Go on without a line: what it carried is not valid any more."""
+        """Drop a line: its values are not valid any more."""
         self.lost = self.lost or f"line lost: {name_of(link, self.modbus)}: {error}"
         self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
-        self._watched = tuple((one, None if one is link else port) for one, port in self._watched)
+        self._watched = tuple((other, None if other is link else port) for other, port in self._watched)
         for station in link.stations:
             station.owner.lost(now)
-        link.deadline = inf  # nobody serves it any more, and it must not ask for that either
+        link.deadline = inf  # it is not served any more, and must not ask for extra ticks
 
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
-        """Send what is due and return the next time a driver wants to be served; ``next_scan_s`` if it is known."""
+        """Send everything due and return the next time a driver needs service; ``next_scan_s`` if it is known."""
         deadline = inf
         if self._can_alive:
             try:
@@ -214,8 +215,8 @@ class DeviceList:
             for link in self._prompts:
                 link.scan_s = next_scan_s - now
         self.transmit_lines(now, scan=scan)
-        # Only the load cell's lines may ask for a tick of their own (a retry there has to fit into a scan); the next
-        # request of any other can wait for the next scan. A simulated line knows that the reply will be in time.
+        # Only the load cell's lines may ask for an extra tick (a retry has to fit into a scan); the next request on
+        # any other line can wait for the next scan. A simulated line knows whether the reply will be in time.
         for watch, wire in self._watched:
             wish = watch.deadline
             if wish >= deadline or wish >= next_scan_s > now:
@@ -225,7 +226,7 @@ class DeviceList:
         return deadline
 
     def transmit_lines(self, now: float, *, scan: bool = True) -> None:
-        """Send what is due on the Modbus lines alone."""
+        """Send everything due on the Modbus lines."""
         for port, link, _ in self._lines:
             if now >= link.wants_s:
                 try:
@@ -234,7 +235,7 @@ class DeviceList:
                     self._lose_line(link, error, now)
 
     def fill_channels(self, channels: list[float], now: float) -> None:
-        """Bring the readings of the further sensors up to date, in place: NaN for one that is not fresh and valid."""
+        """Update the readings of the further sensors, in place: NaN for a sensor that is not fresh and valid."""
         place = 0
         for sensor in self.sensors:
             fresh = sensor.fresh(now)
@@ -248,7 +249,7 @@ class DeviceList:
                 place += 1
 
     def busy(self) -> bool:
-        """Tell whether a conversation with a node of the CAN bus is under way."""
+        """Return whether a conversation with a node of the CAN bus is under way."""
         return any(self.master.busy(node) for node in self.master.nodes)
 
     def refused(self) -> str:
@@ -256,11 +257,11 @@ class DeviceList:
         return "; ".join(refusals(self.drives, self.nodes, self.modbus))
 
     def without(self) -> list[str]:
-        """Return what drives are done without, and what is lost by that: a line each."""
-        return [f"{drive.config.name} drive: {one}" for drive in self.drives for one in drive.plan.without]
+        """Return the objects that drives do without, and the consequence: a line each."""
+        return [f"{drive.config.name} drive: {text}" for drive in self.drives for text in drive.plan.without]
 
     def alarm(self) -> bool:
-        """Tell whether a drive has something to report that the next regular scan should not wait for."""
+        """Return whether a drive reports something that should not wait for the next regular scan."""
         for drive in self.drives:
             if drive.stands or drive.state >= State.FAULT_REACTION or drive.lost or drive.rebooted:
                 return True
@@ -269,24 +270,24 @@ class DeviceList:
         return False
 
     def all_off(self) -> bool:
-        """Tell whether no drive's power stage is on."""
+        """Return whether every drive's power stage is off."""
         return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
 
     def real_lines(self) -> bool:
-        """Tell whether a Modbus line is one of which nobody knows when its next bytes come."""
+        """Return whether the arrival of bytes on some Modbus line is unpredictable."""
         return any(foreseen is None for _, _, foreseen in self._lines)
 
     def can_alive(self) -> bool:
-        """Tell whether drives can still be told anything."""
+        """Return whether commands still reach the drives."""
         return self._can_alive
 
     def answering(self) -> bool:
-        """Tell whether every Modbus device, and every node that measures, has reported a valid value."""
+        """Return whether every Modbus device, and every node that measures, has reported a valid value."""
         if any(node.stamp_s == -inf for node in self.nodes):
             return False
         return all(device.driver.stamp_s > -inf and device.driver.valid for device in self.modbus)
 
     def missing(self) -> list[str]:
-        """Name what has not answered."""
+        """Return the names of devices that have not answered."""
         names = [node.name for node in self.master.nodes if self.master.busy(node) or not node.online]
         return names + [device.title for device in self.modbus if not device.driver.valid]

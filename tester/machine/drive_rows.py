@@ -1,7 +1,7 @@
-"""Rows that machines with drives have alike: old data, a drive that drops out, stops that do not work.
+"""Rows shared by machines with drives: old data, a drive that drops out, stops that fail.
 
-What is a kind's own it hands in: how it knows that its drives stand, by when they must, its bounds with the harm that
-they keep away, and what an operator reads.
+A kind supplies the rest: its test for standstill and the deadline, its bounds with the harm they prevent, and the texts
+for the operator.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tester.machine.row import ACK, ENDING, FAST, POWER_OFF, REPAIR, Compared, I
 from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
 
 Tells = Callable[[Any], bool]
-"""Over a kind's inputs."""
+"""Predicate over a kind's inputs."""
 Seconds = Callable[[Any], float]
 
 ACK_WAIT_S: Final = Parameter(
@@ -27,7 +27,8 @@ def _stops(v: Any) -> bool:
 
 
 def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[Any]:
-    """Return the row of data that are too old while drives are on; ``heard_s``: when each came, of the readings."""
+    """Return the row for stale data while drives are on; ``heard_s``: time stamps of the drives' data in the readings.
+    """
 
     def data_old(v: Any) -> bool:
         since = v.readings.now_s - drive_data_allowed_s(v)
@@ -49,7 +50,7 @@ def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[A
 
 
 def drive_dropped_out(delay: Parameter) -> Interlock[Any]:
-    """Return the row of a drive that was in operation, is wanted there, and is not."""
+    """Return the row for a drive that left operation although it is wanted there."""
     return Interlock(
         name="drive dropped out",
         cause="a drive left operation by itself (local control, torque off)",
@@ -64,7 +65,7 @@ def drive_dropped_out(delay: Parameter) -> Interlock[Any]:
 def not_stopping(
     due_s: Seconds, standing: Tells, cause: str, level: str, parameters: tuple[Parameter, ...]
 ) -> Interlock[Any]:
-    """Return the row of a controlled stop that does not bring the drives to a stand ``due_s`` after it began."""
+    """Return the row for a controlled stop that does not bring the drives to rest ``due_s`` after its begin."""
     return Interlock(
         name="not stopping",
         cause=cause,
@@ -78,7 +79,7 @@ def not_stopping(
 
 
 def quick_stop_failed(due_s: Seconds, standing: Tells, cause: str, level: str, margin: Parameter) -> Interlock[Any]:
-    """Return the row of a quick stop that does not bring the drives to a stand ``due_s`` after it began."""
+    """Return the row for a quick stop that does not bring the drives to rest ``due_s`` after its begin."""
     return Interlock(
         name="quick stop failed",
         cause=cause,
@@ -92,7 +93,7 @@ def quick_stop_failed(due_s: Seconds, standing: Tells, cause: str, level: str, m
 
 
 def stop_not_ended(cause: str, level: str, timeout: Parameter, *others: Parameter) -> Interlock[Any]:
-    """Return the row of a stop that has not come to its end; ``others``: bounds by which the end is known."""
+    """Return the row for a stop that does not end; ``others``: bounds that define the end."""
     return Interlock(
         name="stop not ended",
         cause=cause,

@@ -1,4 +1,4 @@
-"""Drivers of everything that a rig file has on its wires: drives, nodes and Modbus devices. Nothing is sent yet."""
+"""Drivers of everything on a rig file's wires: drives, nodes and Modbus devices. Sends nothing yet."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from tester.machine.ports import Ports
 
 
 class RigDrivers:
-    """Drivers by their names in the rig file. A kind adds its own Modbus devices to ``devices``; the rest is there."""
+    """Drivers by their names in the rig file. A kind only adds its own Modbus devices to ``devices``."""
 
     def __init__(self, rig: Rig, ports: Ports, titles: Mapping[str, str] | None = None) -> None:
         """Build the drives, the nodes and the masters of all lines.
 
-        ``titles``: what screens call a device, where that is not its title in the kind's table of devices.
+        ``titles``: a device's name on screens, if not its title in the kind's table of devices.
         """
         self.rig, self.ports = rig, ports
         self._titles = titles or {}
@@ -38,7 +38,7 @@ class RigDrivers:
         self.devices: dict[str, Device] = {}
 
     def sensor(self, name: str, channels: tuple[str, ...] = ()) -> Sensor | None:
-        """Add the driver of one of the kind's sensors and return it; None where the rig has none of that name."""
+        """Add the driver of one of the kind's sensors and return it; None if the rig lacks it."""
         config = self.rig.devices.get(name)
         if config is None:
             return None
@@ -86,16 +86,16 @@ def load_cell_of(
 ) -> tuple[LoadCell, dict[str, Device]]:
     """Return a rig's load cell with these channels, and its drivers by their keys in the rig file.
 
-    ``most_skew_s``: how far the parts of a reading may lie apart, where it has several transmitters.
+    ``most_skew_s``: greatest time between the parts of a reading from several transmitters.
     """
     parts = parts_of(rig, "load_cell")
     if not parts:
         cell = sensor_of(rig.devices["load_cell"], links, tuple(channels))
         return cell, {"load_cell": cell}
-    found = {
+    transmitters = {
         name: Transmitter(
             title_of(rig, name), profile_of(one.profile), one.unit_id, links[one.line], one.channels, one.parameters
         )
         for name, one in parts.items()
     }
-    return JoinedCell(list(found.values()), channels, most_skew_s), dict[str, Device](found)
+    return JoinedCell(list(transmitters.values()), channels, most_skew_s), dict[str, Device](transmitters)

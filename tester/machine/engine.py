@@ -1,4 +1,4 @@
-"""One synchronous scan: take in, decide, send out, record. No awaits, no threads, no clock inside."""
+"""One synchronous scan: read, decide, send, record. No awaits, no threads, no clock inside."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tester.machine.sampler import Sampler
 from tester.machine.state import ACKNOWLEDGED, Mode
 
 SOONEST_S: Final = 5e-4
-"""No tick is asked for sooner after another."""
+"""Shortest time between two ticks, s."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _RUN: Final = Mode.RUN
@@ -22,9 +22,9 @@ _STOPPING: Final = Mode.STOPPING
 _FAST_STOP: Final = Mode.FAST_STOP
 _EMERGENCY: Final = Mode.EMERGENCY
 HOLD_MOVES_S: Final = 3.0
-"""A hold has opened the contact within this, s [A]: scans come at the sliding rate until then."""
+"""Time within which a hold has opened the contact, s [A]: scans come at the sliding rate until then."""
 SEVERITIES: Final = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
-"""Of control's events, by their kind; any other is information."""
+"""Severity of control's events by kind; all others are information."""
 
 
 class Engine:
@@ -33,8 +33,8 @@ class Engine:
     def __init__(
         self, devices: DeviceList, control: AnyControl, executor: Executor[Any], ctx: AnyContext, sampler: Sampler
     ) -> None:
-        """Take the kind's parts; nothing is sent before the first ``tick``."""
-        # Any: who knows the kind finds its own classes here, with all that they have beyond a machine's.
+        """Take the kind's parts; send nothing before the first ``tick``."""
+        # Any: a kind's own code finds its own classes here, with more fields than a machine's.
         self.devices: Any = devices
         self.control: Any = control
         self.executor: Executor[Any] = executor
@@ -50,10 +50,10 @@ class Engine:
         self.scans = 0
         self.finished = False
         self._trip = 0
-        """Number of the trip that is latched, in the record."""
+        """Number in the record of the latched trip."""
 
     def tick(self, now: float) -> float:
-        """Do what is due at ``now`` (s) and return when the next tick is due at the latest."""
+        """Do everything due at ``now`` (s) and return the latest time of the next tick."""
         devices: DeviceList = self.devices
         devices.receive(now)
         scan = now >= self.next_scan_s - 1e-7 or self._urgent()
@@ -65,10 +65,10 @@ class Engine:
         return min(self.next_scan_s, max(deadline, now + SOONEST_S))
 
     def abandon(self) -> None:
-        """Command what is safe at once; send that, and nothing after it.
+        """Command a safe state at once and send it; nothing is sent afterwards.
 
-        What goes over CAN leaves at once. A request on a Modbus line leaves only where that line is free: one into a
-        reply under way would spoil both. Otherwise what is on there ends by its lease.
+        CAN frames leave at once. A Modbus request leaves only on a free line: during a reply it would spoil both. A
+        device that gets no request stops when its lease ends.
         """
         devices: DeviceList = self.devices
         control: AnyControl = self.control
@@ -77,7 +77,7 @@ class Engine:
         devices.transmit(self.ctx.now, scan=True)
 
     def _urgent(self) -> bool:
-        """Tell whether a drive reported a fault or an emergency that the next regular scan should not wait for."""
+        """Return whether a drive reports a fault or an emergency that should not wait for the next regular scan."""
         ctx: AnyContext = self.ctx
         return not ctx.readings.drive_fault and bool(self.devices.alarm())
 
@@ -96,7 +96,7 @@ class Engine:
         ctx.moving = False
         events = state.events
         if events:
-            self._journal()  # commands given since the last scan: before what the executor says in this one
+            self._journal()  # commands since the last scan, before the executor's events of this scan
         if devices.news:
             self._journal_emergencies()
         if state.mode is _RUN:
@@ -111,7 +111,7 @@ class Engine:
         self.sampler.record(ctx, state.setpoints)
 
     def _journal(self) -> None:
-        """Queue control's events in their order; they are queued before this scan's outputs leave."""
+        """Queue control's events in order, before this scan's outputs leave."""
         control: AnyControl = self.control
         ctx: AnyContext = self.ctx
         state, journal = control.state, ctx.journal
@@ -128,12 +128,12 @@ class Engine:
                 self._trip = 0
             journal.event(event.at_s, event.kind, event.text, SEVERITIES.get(event.kind, "info"))
         if state.mode is Mode.LATCHED and not self._trip:
-            # A fast stop that a person has made latches too: who comes next has to know.
+            # A person's fast stop also latches: the next operator has to know.
             self._trip = journal.trip(ctx.now, "fast stop", state.stop_requested)
         state.events.clear()
 
     def _journal_emergencies(self) -> None:
-        """Queue what the drives reported by themselves, before the trip that it leads to."""
+        """Queue the drives' own reports, before the trip that they cause."""
         devices: DeviceList = self.devices
         for drive in devices.drives:
             if drive.emergency_log:
@@ -142,12 +142,12 @@ class Engine:
                     self.ctx.journal.event(emergency.t, "emergency", text, "alarm")
 
     def _choose_rate(self, now: float) -> None:
-        """Set the period of the next scan: it follows the state (docs/decisions/0003)."""
+        """Set the period of the next scan, which depends on the state (docs/decisions/0003)."""
         ctx: AnyContext = self.ctx
         control: AnyControl = self.control
         state = control.state
         mode = state.mode
-        # A level that has yet to stand for its delay is looked at often: the delay is not rounded up to slow scans.
+        # Scan fast while a level's delay runs, so that slow scans do not lengthen the delay.
         pending = state.held & ~state.tripped
         stops = mode is _STOPPING or mode is _FAST_STOP or mode is _EMERGENCY
         if pending or ctx.moving or stops or (mode is _HOLD and now - state.mode_since_s < HOLD_MOVES_S):
@@ -156,6 +156,6 @@ class Engine:
             self.period_s = self.enabled_s
         else:
             self.period_s = self.idle_s
-        # Absolute deadlines: a late scan does not delay the ones after it; an early (urgent) one starts anew.
+        # Absolute deadlines: a late scan does not delay the ones after it; an early (urgent) one restarts them.
         late = now - self.next_scan_s
         self.next_scan_s = (self.next_scan_s if 0.0 <= late < self.period_s else now) + self.period_s

@@ -1,4 +1,4 @@
-"""Walk the plan: one activity after the other, each a small state object stepped once a scan."""
+"""Walks through the plan: one activity after the other, each a small state object stepped once a scan."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ ContextT = TypeVar("ContextT", bound=AnyContext)
 
 
 class Unforeseen(Generic[ContextT]):
-    """What has to be done that the plan does not say: an activity, steps put before those to come, or nothing more."""
+    """Work that the plan does not contain: an activity, steps inserted before the remaining ones, or the end of the
+    run.
+    """
 
     def __init__(
         self,
@@ -23,7 +25,7 @@ class Unforeseen(Generic[ContextT]):
         steps: Sequence[Step] = (),
         failed: str = "",
     ) -> None:
-        """``title``: of the activity, "" where it belongs to the step before. ``failed``: why the run ends here."""
+        """``title``: of the activity, "" if it belongs to the step before. ``failed``: why the run ends here."""
         self.activity = activity
         self.title = title
         self.steps = tuple(steps)
@@ -31,39 +33,39 @@ class Unforeseen(Generic[ContextT]):
 
 
 class Procedures(Generic[ContextT]):
-    """Which activity serves which step: what a kind of machine says."""
+    """Selects the activity for each step; a kind of machine implements it."""
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step does."""
+        """Return a description of a step, in a line."""
         raise NotImplementedError
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: ContextT) -> Activity[ContextT]:
-        """Return what serves a step; ``to_come``: the steps behind it."""
+        """Return the activity for a step; ``to_come``: the steps after it."""
         raise NotImplementedError
 
     def before(self, step: Step, ctx: ContextT) -> Unforeseen[ContextT] | None:
-        """Return what has to be done before a step may begin; None where it may. It is asked again after that."""
+        """Return unplanned work needed before a step; None if it may begin. Called again after that work."""
         return None
 
     def after(
         self, activity: Activity[ContextT], to_come: Sequence[Step], ctx: ContextT
     ) -> Unforeseen[ContextT] | None:
-        """Return what an activity that has ended leads to; None where the plan goes on."""
+        """Return unplanned work that follows an activity; None if the plan continues."""
         return None
 
     def number_after(self, last: int) -> None:
-        """Number what the plan did not foresee from behind ``last``: the plan may be a part of one."""
+        """Number unplanned steps from after ``last``: the plan may be part of a larger one."""
 
     def resumed(self, ctx: ContextT) -> None:
-        """Demand what a step may begin anew from after a hold, before the activity in progress is resumed."""
+        """Set the demand from which a step may resume after a hold, before the present activity resumes."""
 
     def measuring(self, activity: Activity[ContextT]) -> bool:
-        """Tell whether an activity measures repeats at the moment: they tell how long it still takes."""
+        """Return whether an activity is measuring repeats, whose pace shows the time left."""
         return False
 
 
 class Executor(Generic[ContextT]):
-    """The steps still to do, the one in progress, and whether the run is finished."""
+    """The remaining steps, the present activity, and whether the run is finished."""
 
     def __init__(self, plan: Plan, procedures: Procedures[ContextT]) -> None:
         """Begin before the first step."""
@@ -76,15 +78,15 @@ class Executor(Generic[ContextT]):
 
     @property
     def measuring(self) -> bool:
-        """Repeats of a condition are under way."""
+        """Whether repeats of a condition are under way."""
         return self.activity is not None and self.procedures.measuring(self.activity)
 
     def hold(self, ctx: ContextT) -> None:
-        """Note that the rig is held: what is recorded meanwhile belongs to no repeat."""
+        """Note that the rig is held: samples taken meanwhile belong to no repeat."""
         ctx.burst = ctx.repeat_key = 0
 
     def resume(self, ctx: ContextT) -> None:
-        """Go on after a hold: a repeat that was cut off is void and done again."""
+        """Resume after a hold: an interrupted repeat is void and is repeated."""
         self.procedures.resumed(ctx)
         if isinstance(self.activity, Resumable):
             self.activity.resume(ctx)
@@ -110,29 +112,29 @@ class Executor(Generic[ContextT]):
                 self.finished = True
 
     def _begin(self, step: Step, ctx: ContextT) -> Activity[ContextT]:
-        found = self.procedures.before(step, ctx)
-        if found is None:
+        extra = self.procedures.before(step, ctx)
+        if extra is None:
             self._announce(self.procedures.title(step), ctx)
             return self.procedures.activity(step, self.steps, ctx)
         self.steps.appendleft(step)
-        self.steps.extendleft(reversed(found.steps))
-        if found.activity is None:
+        self.steps.extendleft(reversed(extra.steps))
+        if extra.activity is None:
             return self._begin(self.steps.popleft(), ctx)
-        self._announce(found.title, ctx)
-        return found.activity
+        self._announce(extra.title, ctx)
+        return extra.activity
 
     def _end(self, activity: Activity[ContextT], ctx: ContextT) -> None:
-        found = self.procedures.after(activity, self.steps, ctx)
-        if found is None:
+        extra = self.procedures.after(activity, self.steps, ctx)
+        if extra is None:
             return
-        self.failed = found.failed
-        if found.title:
-            self._announce(found.title, ctx)
-        self.steps.extendleft(reversed(found.steps))
-        self.activity = found.activity
+        self.failed = extra.failed
+        if extra.title:
+            self._announce(extra.title, ctx)
+        self.steps.extendleft(reversed(extra.steps))
+        self.activity = extra.activity
 
     def _announce(self, text: str, ctx: ContextT) -> None:
-        """Tell what is done next."""
+        """Report the next activity."""
         ctx.progress.step += 1
         ctx.progress.steps = ctx.progress.step + len(self.steps)
         ctx.progress.repeat = ctx.progress.repeats = 0

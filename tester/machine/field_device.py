@@ -1,4 +1,4 @@
-"""A Modbus device by the names that people, the rig file and its line know it by."""
+"""A Modbus device with its names for people, the rig file and its line."""
 
 from __future__ import annotations
 
@@ -14,6 +14,6 @@ class FieldDevice:
     name: str
     """Its key in the rig file."""
     title: str
-    """What people call it."""
+    """Its name for people."""
     line: str
     driver: Device

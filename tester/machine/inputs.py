@@ -1,7 +1,7 @@
-"""What any interlock's condition may look at: how a scan lies in time, and what is under way.
+"""Common inputs of interlock conditions: the timing of the scan, and the present activity.
 
-A kind's inputs inherit from this and add its readings, demand, setpoints and whatever several conditions ask for.
-What is not known stays NaN, infinite or the value that trips.
+A kind's inputs inherit from this and add its readings, demand, setpoints and whatever several conditions need. Unknown
+values stay NaN, infinite or at the value that trips.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class ScanInputs:
     scan_s: float = 0.0
     """Period of the scan, s."""
     last_s: float = -inf
-    """When the scan before was."""
+    """Time of the scan before."""
     late_s: float = inf
     """How much later than its period this scan is, s."""
     late_before_s: float = 0.0
@@ -47,30 +47,31 @@ class ScanInputs:
     lifting_s: float = -inf
     """How long a stop or a hold has been lifting; -inf while neither is."""
     resting: bool = True
-    """Everything is to rest: idle, armed or latched."""
+    """Everything should be at rest: idle, armed or latched."""
     unpowered: bool = False
-    """A run that wants no drives has seen them without power: until all are in operation again, nothing may move. The
-    kind writes it in every scan."""
+    """A run that wants no drives has seen them without power: nothing may move until all are in operation again. The
+    kind writes it in every scan.
+    """
     confirmed: bool = False
     """Every drive has been in operation since they were last wanted to be, and something commands them. The kind writes
     it in every scan."""
     attended: bool = False
-    """A person was asked to come near; what hands do to sensors is nobody's fault."""
+    """A person was asked to come near; their effect on sensors is no fault."""
 
     further_places: dict[str, int] = field(default_factory=dict[str, int])
     """Place in ``readings.channels`` of each channel of a further sensor, by its name."""
 
     def note_further(self, rig: Rig) -> None:
-        """Take over what a rig's further sensors measure."""
-        self.further_places = {one.name: place for place, one in enumerate(further_channels(rig))}
+        """Store the places of the rig's further channels."""
+        self.further_places = {channel.name: place for place, channel in enumerate(further_channels(rig))}
 
     def further(self, channels: list[float], name: str) -> float:
-        """Return what a further sensor shows now, of ``readings.channels``; NaN, which trips, while that is unknown."""
+        """Return a further sensor's present value from ``readings.channels``; NaN, which trips, while it is unknown."""
         place = self.further_places.get(name, len(channels))
         return channels[place] if place < len(channels) else nan
 
     def note_times(self, state: ControlState[Any], now_s: float, scan_s: float) -> None:
-        """Take over when this scan is, and how long mode and stop have been under way."""
+        """Update the times of this scan, of the mode and of the stop."""
         self.scan_s = scan_s
         self.last_s = last_s = state.last_s
         self.late_s = now_s - last_s - scan_s
@@ -83,7 +84,7 @@ class ScanInputs:
         self.resting = mode is _IDLE or mode is _LATCHED or mode is _ARMED
 
     def note_drives(self, mode: Mode, demand: BaseDemand, readings: BaseReadings) -> bool:
-        """Bring ``confirmed`` and ``unpowered`` up to date; return whether all drives have just come into operation."""
+        """Update ``confirmed`` and ``unpowered``; return whether all drives have just come into operation."""
         working, before = mode is _RUN or mode is _HOLD, self.confirmed
         self.confirmed = working and demand.enabled and (before or readings.drives_enabled)
         if self.confirmed or not working:

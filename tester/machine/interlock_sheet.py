@@ -20,14 +20,14 @@ HEADER = (
 
 @dataclass(frozen=True, slots=True)
 class InterlockSheet:
-    """What a kind's interlocks are, to be written down."""
+    """A kind's interlocks, for writing down."""
 
     rows: Sequence[Interlock[Any]]
     """The table, in its order."""
     others: Sequence[Parameter] = ()
-    """Parameters of the section that no row has."""
+    """Parameters of the section that belong to no row."""
     others_are: str = ""
-    """What those are for, in a few words."""
+    """Their purpose, in a few words."""
 
     def table(self) -> str:
         """Return the table as Markdown, a line a row; names like ``stale_cell`` are keys of the rig file's section."""
@@ -41,10 +41,10 @@ class InterlockSheet:
     def section(self) -> str:
         """Return the section ``interlocks`` with its comments: every parameter under the first row that has it."""
         lines = [*HEADER, f"{SECTION}:"]
-        said: set[Parameter] = set()
+        listed: set[Parameter] = set()
         for row in self.rows:
-            new = [one for one in dict.fromkeys(row.declared()) if one not in said]
-            said.update(new)
+            new = [parameter for parameter in dict.fromkeys(row.declared()) if parameter not in listed]
+            listed.update(new)
             lines += [f"  # {row.name}"] * bool(new) + [key_line(one) for one in new]
         lines += [f"  # no row's: {self.others_are}"] * bool(self.others) + [key_line(one) for one in self.others]
         return "\n".join(lines) + "\n"

@@ -65,14 +65,14 @@ def described(devices: DeviceList) -> str:
     for one in devices.modbus:
         reply = one.driver.station.reply
         parts.append(f"{one.title} {1e3 * reply.least_s:.1f} to {_ms(reply.greatest_s)}")
-    said = "replies beyond the wire: " + ", ".join(parts)
+    text = "replies beyond the wire: " + ", ".join(parts)
     for port, link in devices.lines:
         if link.hears_itself and link.stations:
-            said += "; an adapter hears itself, its echo is taken off"
+            text += "; an adapter hears itself, its echo is taken off"
         flag = getattr(port, "low_latency", None)
         if flag is not None:
-            said += "; low-latency flag " + ("set" if flag else "not offered by the driver")
-    return said
+            text += "; low-latency flag " + ("set" if flag else "not offered by the driver")
+    return text
 
 
 def _limit(one: FieldDevice, limits: Mapping[str, tuple[str, float]]) -> tuple[str, float | None]:

@@ -1,7 +1,7 @@
-"""Manual mode: a person moves the rig in bounded steps. Control's limits and interlocks stand as in a run.
+"""Manual mode: a person moves the rig in bounded steps. Control's limits and interlocks apply as in a run.
 
-A terminal cannot see a key being released, so a key press is one step and nothing moves on by itself. The mode ends by
-itself when nobody has pressed a key for a minute, and when the client that armed it is gone.
+A terminal cannot detect a released key, so a key press is one step, and no motion continues by itself. The mode ends by
+itself after a minute without a key press, and when the client that armed it is gone.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ MOVING_S: Final = 2.0
 
 
 class Hand(Protocol):
-    """What a kind's axes do when a person moves them. Whoever asks gets "" or why not; ``ctx`` is the kind's own."""
+    """Motion of a kind's axes by a person. Methods return "", or the reason for refusing; ``ctx`` is the kind's own."""
 
     @property
     def busy(self) -> str:
-        """Why no step is taken at present, "" where one may be."""
+        """Why no step is possible at present, "" if one is."""
         ...
 
     @property
@@ -36,7 +36,7 @@ class Hand(Protocol):
         ...
 
     def demand(self, ctx: Any) -> None:
-        """Demand what was asked for so far; called in every scan."""
+        """Write the demand of the steps so far; called in every scan."""
         ...
 
     def step(self, ctx: Any, axis: str, sign: float) -> str:
@@ -54,10 +54,10 @@ def _empty_plan() -> Plan:
 
 
 class ManualExecutor(Executor[Any]):
-    """Stands in the executor's place: what it demands is what a person asked for."""
+    """Replaces the executor: its demand follows a person's requests."""
 
     def __init__(self, hand: Hand) -> None:
-        """Nothing is wanted: drives enabled, standing, lifted."""
+        """Begin with the drives enabled, at rest and lifted."""
         super().__init__(_empty_plan(), Procedures())
         self.hand = hand
         self.used_s = float("nan")
@@ -69,7 +69,7 @@ class ManualExecutor(Executor[Any]):
         return ARMED_S if not isfinite(self.used_s) else max(ARMED_S - (now - self.used_s), 0.0)
 
     def step(self, ctx: AnyContext) -> None:
-        """Demand what is wanted; the run ends when nobody has asked for anything for a minute."""
+        """Write the demand; the run ends after a minute without a request."""
         if not isfinite(self.used_s):
             self.used_s = ctx.now
             ctx.progress.title = NAME
@@ -81,7 +81,7 @@ class ManualExecutor(Executor[Any]):
         self.hand.demand(ctx)
 
     def expire(self, now: float) -> None:
-        """End the mode when nobody has asked for anything for a minute, in a hold as well."""
+        """End the mode after a minute without a request, also in a hold."""
         if self.left_s(now) <= 0.0:
             self.disarm()
 
@@ -89,10 +89,10 @@ class ManualExecutor(Executor[Any]):
         """End the mode: a controlled stop follows."""
         self.finished = True
 
-    # -- what a person may do ---------------------------------------------------------------------------------
+    # -- requests ---------------------------------------------------------------------------------------------
 
     def jog(self, ctx: AnyContext, axis: str, direction: int) -> str:
-        """Take one step; return "" or why not."""
+        """Take one step; return "", or the reason for refusing."""
         refusal = self._busy(ctx)
         if refusal:
             return refusal
@@ -104,7 +104,7 @@ class ManualExecutor(Executor[Any]):
         return refusal
 
     def tare(self, ctx: AnyContext) -> str:
-        """Begin a tare; return "" or why not."""
+        """Begin a tare; return "", or the reason for refusing."""
         refusal = self._busy(ctx) or self.hand.tare(ctx)
         if not refusal:
             self.used_s = ctx.now

@@ -1,4 +1,4 @@
-"""How repeats and conditions end, whatever machine they are measured on."""
+"""How repeats and conditions end, on any machine."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Ending(Enum):
 
     COMPLETE = "complete"
     INCOMPLETE = "incomplete"
-    """Less than the window asks for, after all bursts."""
+    """Less than the window requires, after all bursts."""
     CANNOT_HOLD = "temperature cannot be held"
     NOT_REACHED = "not reached"
     ZERO_DRIFT = "load cell zero drifted"
@@ -23,7 +23,7 @@ class Ending(Enum):
 
 @dataclass(frozen=True, slots=True)
 class RepeatOutcome:
-    """What became of a repeat, and its commit."""
+    """The result of a repeat, and its commit."""
 
     status: RepeatStatus
     text: str
@@ -32,7 +32,7 @@ class RepeatOutcome:
 
 @dataclass(frozen=True, slots=True)
 class ConditionEnd:
-    """How a condition was left: None = no further repeat was wanted."""
+    """How a condition ended: None = no further repeat was needed."""
 
     ending: Ending | None = None
     detail: str = ""

@@ -1,7 +1,7 @@
-"""Moves of any machine: one after the other, drives on and off, waiting, asking. Stepped once a scan.
+"""Moves of any machine: sequences, drives on and off, waiting, asking. Each is stepped once a scan.
 
-An activity's ``step`` writes the demand it needs and returns True in the scan in which it is done. It keeps its
-state in plain attributes: a running activity can be copied.
+An activity's ``step`` writes the demand it needs and returns True in the scan in which it is done. It keeps its state
+in plain attributes: a running activity can be copied.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ AGAIN: Final = "the guard is closed now, go on?"
 
 
 class Move:
-    """An activity that has to end in a time of its own."""
+    """An activity with a time limit."""
 
     limit_s: float = inf
     """Longest time the move may take, s."""
@@ -25,7 +25,7 @@ class Move:
 
 
 class Sequence:
-    """Activities one after the other; a move among them that overruns its time raises MoveFailedError."""
+    """Activities in turn; a move among them that overruns its time raises MoveFailedError."""
 
     def __init__(self, *parts: Activity[Any]) -> None:
         """Take the parts in order."""
@@ -33,7 +33,7 @@ class Sequence:
         self.since_s = float("nan")
 
     def resume(self, ctx: AnyContext) -> None:
-        """Give the current part its whole time again."""
+        """Restart the current part's time limit."""
         self.since_s = float("nan")
 
     def step(self, ctx: AnyContext) -> bool:
@@ -52,13 +52,13 @@ class Sequence:
 
 
 class Power(Move):
-    """Enable or disable the drives, and wait until they say so."""
+    """Enable or disable the drives, and wait until they confirm it."""
 
     limit_s = 20.0  # [A]; a drive needs well under a second
     name = "switching the drives"
 
     def __init__(self, on: bool) -> None:
-        """``on``: what is wanted."""
+        """``on``: the wanted state."""
         self.on = on
 
     def step(self, ctx: AnyContext) -> bool:
@@ -72,7 +72,7 @@ class Wait:
     """Let time pass (s)."""
 
     def __init__(self, seconds: float) -> None:
-        """How long."""
+        """``seconds``: how long, s."""
         self.seconds = seconds
         self.began_s = float("nan")
 
@@ -84,14 +84,14 @@ class Wait:
 
 
 class Ask:
-    """Put a question and wait for its answer.
+    """Ask a question and wait for its answer.
 
-    It moves nothing: whoever asks has brought the rig to where a person may go near. An answer counts with the guard
-    closed; one that was given with the guard open is asked for again then, so that closing it starts nothing.
+    It moves nothing: the activity before has made it safe to come near. An answer counts only with the guard closed;
+    after an answer with the guard open the question is asked again, so that closing the guard starts nothing.
     """
 
     def __init__(self, text: str, *, near: bool = True) -> None:
-        """The question as a person reads it; ``near``: it asks a person to come near the machine."""
+        """``text``: the question; ``near``: it asks a person to come near the machine."""
         self.text = text
         self.near = near
         self.number = 0
@@ -99,7 +99,7 @@ class Ask:
         self.heard = False
 
     def step(self, ctx: AnyContext) -> bool:
-        """Done when it is answered; question and answer are journalled."""
+        """Return True once it is answered; journal question and answer."""
         if not self.number:
             self._put(ctx, self.text)
         asked = ctx.prompts.asked[self.number - 1]
@@ -108,7 +108,7 @@ class Ask:
         ctx.demand.attended = not alone
         if answer is None:
             return False
-        # Where nobody is asked, an open guard is a fault: it trips with the next drive switched on.
+        # With automatic answers an open guard is a fault: it trips when the next drive is switched on.
         closed = ctx.readings.guard_closed or alone
         if not self.heard:
             self.heard = True
@@ -131,7 +131,7 @@ class Settle:
     """Wait at the fast scan rate for ``seconds``."""
 
     def __init__(self, seconds: float) -> None:
-        """How long, s."""
+        """``seconds``: how long, s."""
         self.seconds = seconds
         self.left_s = seconds
 

@@ -1,4 +1,4 @@
-"""The wires to a rig, as a run is built on them: simulated, or real."""
+"""The wires to a rig, simulated or real."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tester.base.clock import Pace
 class Ports:
     """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file.
 
-    Real ones come with the clock that stamps what arrives on them (``pace``) and are closed by ``opened``.
+    Real wires have the clock that stamps their arrivals (``pace``); ``opened`` closes them.
     """
 
     can: CanPort
@@ -22,6 +22,6 @@ class Ports:
     opened: ExitStack | None = None
 
     def close(self) -> None:
-        """Give the wires back."""
+        """Close the wires."""
         if self.opened is not None:
             self.opened.close()

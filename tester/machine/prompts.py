@@ -1,11 +1,11 @@
-"""Questions for a person. A prompt waits, drives off, until it is answered."""
+"""Questions for a person. A prompt waits, with the drives off, until it is answered."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 DONE, NOT_YET = "yes", "no"
-"""The words that answer a question, exactly; the second leaves it waiting."""
+"""The exact words that answer a question; the second leaves it waiting."""
 
 
 @dataclass(slots=True)
@@ -17,14 +17,14 @@ class Prompt:
     text: str
     answer: str | None = None
     by: str = ""
-    """Who has answered; "" where nobody says so."""
+    """Who answered; "" if unknown."""
 
 
 @dataclass(slots=True)
 class Prompts:
     """The prompts of a run, oldest first. ``automatic``: answer "yes" at once (``--yes``).
 
-    ``real``: a person really has to come near the machine where a prompt asks for that; only a person can answer it.
+    ``real``: on a real rig, where only a person can answer a prompt that asks them to come near the machine.
     """
 
     automatic: bool = False
@@ -32,11 +32,11 @@ class Prompts:
     asked: list[Prompt] = field(default_factory=list[Prompt])
 
     def answers_itself(self, *, near: bool) -> bool:
-        """Tell whether nobody is asked. ``near``: the question asks a person to come near the machine."""
+        """Return whether the prompt is answered automatically. ``near``: it asks a person to come near the machine."""
         return self.automatic and not (near and self.real)
 
     def ask(self, now: float, text: str, *, near: bool = True) -> Prompt:
-        """Put a question and return it; it may already be answered."""
+        """Ask a question and return its prompt; it may already be answered."""
         answer = "yes (automatic)" if self.answers_itself(near=near) else None
         prompt = Prompt(len(self.asked) + 1, now, text, answer)
         self.asked.append(prompt)

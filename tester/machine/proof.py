@@ -1,7 +1,7 @@
-"""What every machine shows before a run: its drives follow, and stop without our heartbeat.
+"""The proof of every machine before a run: its drives follow, and stop without our heartbeat.
 
-CiA 301 starts watching a heartbeat only with the first one it hears, and a wrong parameter shows only when it is
-needed: so the watchdog is tried out at creep speed, with nothing loaded. How a machine creeps is its kind's.
+A drive watches a heartbeat only from the first one it receives (CiA 301), and a wrong parameter shows only when it
+matters: so the watchdog is tried at creep speed, with nothing loaded. A kind implements the creeping.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from tester.machine.devices import DeviceList
 ENABLE_S = 5.0
 """Brake release and power stage [A]."""
 HEARTBEAT_LOST = 0x8130
-"""EMCY code of a heartbeat that stays away (CiA 301, table 26)."""
+"""EMCY code of a missing heartbeat (CiA 301, table 26)."""
 STILL_S = 1.5
-"""From the end of the withheld heartbeat to standstill, at most [A]."""
+"""Longest time from the end of the withheld heartbeat to standstill [A]."""
 RESTORE_S = 3.0
-"""Faults are reset and every drive is off by then [A]."""
+"""Time limit for resetting faults and switching every drive off [A]."""
 RESET_EVERY_S = 0.2
 
 
@@ -57,7 +57,7 @@ class WatchdogProof:
         self.since_s = nan
         self.reset_s = -inf
         self.reported: dict[str, float] = {}
-        """Who has said so, and when the EMCY arrived, s after the last that was not withheld."""
+        """Drives that reported it, and the arrival of the EMCY, s after the last heartbeat sent."""
         self.withheld_s = nan
         self._asked: set[str] = set()
         self._ran_on: set[str] = set()
@@ -77,7 +77,7 @@ class WatchdogProof:
         raise NotImplementedError
 
     def still(self) -> bool:
-        """Tell whether everything stands."""
+        """Return whether every drive is at rest."""
         raise NotImplementedError
 
     # -- what is withheld -----------------------------------------------------------------------------------
@@ -202,7 +202,7 @@ class WatchdogProof:
         self.enter(ProofStage.STILL, now)
 
     def _bring_back(self) -> None:
-        """Ask a drive that has left OPERATIONAL (it has no 0x1029) how it stands, and start it again, disabled.
+        """Read the state of a drive that has left OPERATIONAL (it has no 0x1029), and start it again, disabled.
 
         Until then it sends no process data: no speed, and no safety inputs.
         """

@@ -1,4 +1,4 @@
-"""From a measured repeat to a committed result: reduction and store behind the executor's one door."""
+"""Reduces a measured repeat and commits its result to the store, for the activity that measures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tester.analysis.blocks import Block
 from tester.analysis.closest import Combining
 from tester.analysis.flags import IMPRECISE, NOT_SHOWN, flags_in, joined
 from tester.analysis.judge import ALONE
-from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_value
+from tester.analysis.reduce import bursts_of, counted, reduce_repeat, withlostvalue
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus
 from tester.analysis.swing import swing_of
@@ -33,7 +33,7 @@ REPEAT_STATUS: dict[Ending, RepeatStatus] = {
     Ending.NOT_REACHED: RepeatStatus.NOT_REACHED,
     Ending.ZERO_DRIFT: RepeatStatus.VOID,
 }
-"""Endings that leave no value, whatever was collected; the others are for the reduction to judge."""
+"""Endings without a value, whatever was collected; the reduction judges the others."""
 
 CONDITION_STATUS: dict[Ending, ConditionStatus] = {
     Ending.CANNOT_HOLD: ConditionStatus.CANNOT_HOLD,
@@ -43,7 +43,7 @@ CONDITION_STATUS: dict[Ending, ConditionStatus] = {
 
 
 class CountedBlocks(Protocol):
-    """What a repeat has counted live."""
+    """The blocks that a repeat has counted live."""
 
     @property
     def blocks(self) -> Sequence[Block]:
@@ -57,7 +57,7 @@ class CountedBlocks(Protocol):
 
 
 class MeasuredRepeat(Protocol):
-    """A repeat that has ended, as the activity that measured it says."""
+    """A repeat that has ended, as its activity reports it."""
 
     @property
     def ending(self) -> Ending | None:
@@ -66,27 +66,27 @@ class MeasuredRepeat(Protocol):
 
     @property
     def detail(self) -> str:
-        """Why, in words."""
+        """The reason, in words."""
         ...
 
     @property
     def counter(self) -> CountedBlocks:
-        """What was counted."""
+        """The blocks it counted."""
         ...
 
     @property
     def rolling_only(self) -> bool:
-        """It was a repeat without slip."""
+        """Whether it was a repeat without slip."""
         ...
 
     @property
     def warming_k_s(self) -> float:
-        """How fast the surface warmed in contact, K/s; NaN where that was not seen."""
+        """How fast the surface warmed in contact, K/s; NaN if not measured."""
         ...
 
     @property
     def holdable_band_k(self) -> float:
-        """The narrowest temperature band that could be held, K; NaN where that was not seen."""
+        """The narrowest temperature band that could be held, K; NaN if not measured."""
         ...
 
 
@@ -94,25 +94,25 @@ ContextT = TypeVar("ContextT", bound=AnyContext)
 
 
 class StoredResults(Generic[ContextT]):
-    """Reduces repeats from the blocks counted live (the stored samples give the same ones), judges, commits."""
+    """Reduces repeats from the blocks counted live (the stored samples give the same ones), judges and commits them."""
 
     def __init__(self, recorder: Recorder, combining: Combining = "mean") -> None:
         """``recorder``: the run's store; ``combining``: how the recipe combines repeats."""
         self.recorder = recorder
         self.combining: Combining = combining
         self.condition = 0
-        """The condition that what follows is of."""
+        """Number of the present condition, which the fields below describe."""
         self.repeats: list[RepeatResult] = []
         self.keys: list[int] = []
         self.blocks: list[Sequence[Block]] = []
-        """Of each repeat, those that count."""
+        """The counted blocks of each repeat."""
         self.judgement = NOT_JUDGED
         self.judged = 0
-        """Repeats that the judgement has seen."""
+        """Number of repeats that the judgement covers."""
         self.pool = Pool()
-        """Repeatability of the conditions that are over."""
+        """Repeatability of the finished conditions."""
         self.earlier: dict[int, ConditionSoFar] = {}
-        """What earlier stretches of an interrupted run committed of conditions that were not over."""
+        """Data that earlier stretches of an interrupted run committed for unfinished conditions."""
 
     def repeats_done(self, step: ConditionStep) -> int:
         """Return how many repeats of a condition an earlier stretch of the run committed."""
@@ -120,7 +120,7 @@ class StoredResults(Generic[ContextT]):
         return len(earlier.results) if earlier is not None else 0
 
     def over(self, step: ConditionStep) -> ConditionEnd | None:
-        """Return how the last of these ended the condition; None where it goes on."""
+        """Return how an earlier stretch ended the condition; None if it continues."""
         earlier = self.earlier.get(step.condition)
         if earlier is None:
             return None
@@ -132,14 +132,14 @@ class StoredResults(Generic[ContextT]):
         return ConditionEnd(ending, detail, earlier.warming_k_s, earlier.holdable_band_k)
 
     def another(self, step: ConditionStep) -> bool:
-        """Tell whether a further repeat is to be made: one is missing or undecided, and there may be one more."""
+        """Return whether to make a further repeat: one is missing or undecided, and one more is allowed."""
         scheme = step.scheme
         made, half = divmod(len(self.repeats), scheme.repeats_each)
         if half or made < step.repeats or made >= step.at_most:
             return half > 0 or made < step.repeats
         counted = len(scheme.values(self.repeats))
         if not counted and not any(result.drifts for result in self.repeats):
-            return False  # none gave a value for reasons that one more would meet, too
+            return False  # no repeat gave a value, and one more would fail for the same reason
         if counted < step.repeats or (step.repeats > ALONE and NOT_SHOWN in flags_in(self.judgement.flags)):
             return True
         return not self._precise(step)
@@ -150,7 +150,7 @@ class StoredResults(Generic[ContextT]):
         return 1 + (earlier.attempts.get(repeat, 0) if earlier is not None else 0)
 
     def begin_repeat(self, ctx: ContextT, step: ConditionStep, repeat: int, attempt: int) -> int:
-        """Open a repeat; return the key that its samples carry."""
+        """Open a repeat; return the key for its samples."""
         self._turn_to(step)
         if repeat == self.repeats_done(step) + 1:
             self.recorder.begin_condition(step.condition, ctx.now)
@@ -159,12 +159,12 @@ class StoredResults(Generic[ContextT]):
     def finish_repeat(
         self, ctx: ContextT, step: ConditionStep, key: int, repeat: int, measured: MeasuredRepeat
     ) -> RepeatOutcome:
-        """Reduce and commit a repeat; with the last that was missing, judge the condition."""
+        """Reduce and commit a repeat; after the last missing one, judge the condition."""
         assert measured.ending is not None
         blocks, window = measured.counter.blocks, step.window
         status = REPEAT_STATUS.get(measured.ending)
         if status is not None:
-            result = without_value(status, measured.detail, ended_s=ctx.now)
+            result = withlostvalue(status, measured.detail, ended_s=ctx.now)
         else:
             result = reduce_repeat(
                 blocks,
@@ -183,18 +183,18 @@ class StoredResults(Generic[ContextT]):
         if isfinite(measured.warming_k_s):
             self.recorder.condition_rate(step.condition, measured.warming_k_s, measured.holdable_band_k)
         ticket = self.recorder.commit_repeat(key, result, bursts_of(blocks), self._for_the_record())
-        said = "".join(f"; repeat {i + 1} {_line(self.repeats[i])}" for i in refused if self.repeats[i] is not result)
-        return RepeatOutcome(result.status, _line(result) + said, ticket)
+        lost = "".join(f"; repeat {i + 1} {_line(self.repeats[i])}" for i in refused if self.repeats[i] is not result)
+        return RepeatOutcome(result.status, _line(result) + lost, ticket)
 
     def void_repeat(self, ctx: ContextT, key: int, reason: str) -> None:
-        """Record that a repeat was cut off; a further attempt follows."""
+        """Record that a repeat was interrupted; a further attempt follows."""
         self.recorder.void_repeat(key, reason, ctx.now)
 
     def finish_condition(self, ctx: ContextT, step: ConditionStep, end: ConditionEnd) -> str:
-        """Sum a condition up from its repeats and commit it; return a line for people.
+        """Combine a condition's repeats and commit the result; return a line for people.
 
-        The line has the coefficient as measured: the one at the temperature that was asked for may rest on conditions
-        that are still to be measured.
+        The line shows the coefficient as measured: the one at the requested temperature may depend on conditions still
+        to be measured.
         """
         self._turn_to(step)
         if not self.repeats:
@@ -206,16 +206,16 @@ class StoredResults(Generic[ContextT]):
         status = CONDITION_STATUS[end.ending] if end.ending is not None else None
         reason = end.detail
         if not self.repeats:
-            found = ConditionResult(status or ConditionStatus.INSUFFICIENT, reason)
+            result = ConditionResult(status or ConditionStatus.INSUFFICIENT, reason)
         else:
-            found = step.scheme.combine(self.repeats, step.repeats, step.min_valid, status or ConditionStatus.OK,
+            result = step.scheme.combine(self.repeats, step.repeats, step.min_valid, status or ConditionStatus.OK,
                                         reason, judged=self.judgement, combining=self.combining)  # fmt: skip
         self.pool = self._pooled(step)
-        left = ConditionStatus.OK if found.ok else found.status
+        stored_status = ConditionStatus.OK if result.ok else result.status
         self.recorder.end_condition(
             step.condition,
-            left,
-            found.reason,
+            stored_status,
+            result.reason,
             ctx.now,
             warming_k_s=end.warming_k_s,
             holdable_band_k=end.holdable_band_k,
@@ -223,16 +223,16 @@ class StoredResults(Generic[ContextT]):
         )
         self.condition = 0
         name = f"condition {step.condition} ({condition_words(step.setpoint)})"
-        if not found.ok:
-            return f"{name}: {left.value}: {found.reason}"
-        flags = f" ({found.flags})" if found.flags else ""
-        mu = f"mu as measured {coefficient(found.mu_resultant)}, s {decimal(found.s, 4)}"
-        return f"{name}: {mu}, valid {found.counts.words}{flags}"
+        if not result.ok:
+            return f"{name}: {stored_status.value}: {result.reason}"
+        flags = f" ({result.flags})" if result.flags else ""
+        mu = f"mu as measured {coefficient(result.mu_resultant)}, s {decimal(result.s, 4)}"
+        return f"{name}: {mu}, valid {result.counts.words}{flags}"
 
     # -- of the present condition -------------------------------------------------------------------------------
 
     def _turn_to(self, step: ConditionStep) -> None:
-        """Begin a condition, with what an earlier stretch of the run committed of it."""
+        """Begin a condition, with the data that an earlier stretch of the run committed for it."""
         if self.condition == step.condition:
             return
         self.condition = step.condition
@@ -240,8 +240,8 @@ class StoredResults(Generic[ContextT]):
         self.repeats = list(earlier.results) if earlier is not None else []
         self.keys = list(earlier.keys) if earlier is not None else []
         window = step.window
-        found = earlier.blocks if earlier is not None else ()
-        self.blocks = [counted(blocks, window.revolutions, window.seconds) for blocks in found]
+        committed = earlier.blocks if earlier is not None else ()
+        self.blocks = [counted(blocks, window.revolutions, window.seconds) for blocks in committed]
         self.judgement = earlier.judged if earlier is not None else NOT_JUDGED
         self.judged = len(self.repeats) if self.judgement.made else 0
         if self._enough_to_judge(step):
@@ -251,7 +251,7 @@ class StoredResults(Generic[ContextT]):
         return not len(self.repeats) % step.scheme.repeats_each and step.scheme.valid(self.repeats) >= step.repeats
 
     def _judge(self, step: ConditionStep) -> list[int]:
-        """Judge the condition by what there is; return the positions of the repeats that are refused now."""
+        """Judge the condition from its present repeats; return the positions of newly rejected ones."""
         window = step.window
         before = self.repeats
         self.repeats, self.judgement = step.scheme.judge(
@@ -269,25 +269,25 @@ class StoredResults(Generic[ContextT]):
         return self.pool.with_condition(step.scheme.values(self.repeats), step.scheme.repeats_each)
 
     def _precise(self, step: ConditionStep) -> bool:
-        """Tell whether the condition's expanded repeatability is what the recipe asks for, if it asks."""
+        """Return whether the condition's expanded repeatability meets the recipe's request, if any."""
         if step.until_percent is None:
             return True
         n, each = len(step.scheme.values(self.repeats)), step.scheme.repeats_each
         return n >= LEAST_REPEATS and self._pooled(step).expanded_percent(n * each) <= step.until_percent
 
-    # -- what a kind says ---------------------------------------------------------------------------------------
+    # -- by a kind ----------------------------------------------------------------------------------------------
 
     def mounted(self, ctx: ContextT) -> int:
-        """Return the number of what is mounted to be measured."""
+        """Return the number of the mounted specimen."""
         raise NotImplementedError
 
     def record_mounted(self, ctx: ContextT) -> None:
-        """Put on record what state a repeat leaves it in."""
+        """Record the specimen's state after a repeat."""
         raise NotImplementedError
 
 
 def condition_records(plan: Plan) -> Iterator[ConditionInfo]:
-    """Yield a plan's conditions as the store keeps them."""
+    """Yield a plan's conditions as records for the store."""
     for step in plan.conditions():
         yield ConditionInfo(
             condition=step.condition,

@@ -1,4 +1,4 @@
-"""One run from connection to standstill: what a ticker drives."""
+"""One run from connection to standstill, driven by a ticker."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from tester.machine.engine import Engine
 from tester.machine.state import Mode, Trip
 
 POWER_OFF_S: Final = 2.0
-"""A drive that has not switched its power off by then is released all the same, s [A]."""
+"""A drive that has not switched its power off after this time is released all the same, s [A]."""
 RELEASE_S: Final = 5.0
-"""The drives have let go of our heartbeat by then, s [A]."""
+"""Time limit for the drives to stop watching our heartbeat, s [A]."""
 
 
 class Outcome(Enum):
@@ -34,14 +34,14 @@ class Run:
     """Connection, recipe, stop, standstill."""
 
     def __init__(self, connector: Connector, engine: Engine) -> None:
-        """Nothing is sent before the first ``tick``."""
+        """Send nothing before the first ``tick``."""
         self.connector = connector
         self.engine = engine
         self.outcome = Outcome.RUNNING
         self.finished = False
         self.reason = ""
         self.stays_latched = False
-        """After a trip the run goes on until it is acknowledged; else it ends, and a new one has to be started."""
+        """After a trip the run waits for the acknowledgement; otherwise it ends, and a new run must be started."""
         self._ended_s: float | None = None
         self._started = False
         self._refused = False
@@ -94,7 +94,7 @@ class Run:
         return refused
 
     def request_ack(self, by: str = "") -> str:
-        """Acknowledge a trip: drives are told to reset their faults, IDLE follows when every cause is gone."""
+        """Acknowledge a trip: drives reset their faults, and IDLE follows when every cause is gone."""
         engine = self.engine
         refused = engine.control.request_ack(engine.ctx.now, by)
         if not refused:

@@ -1,7 +1,6 @@
-"""What a kind brings to a run: how it is built, what is stored beside its scan, what earlier runs make known.
+"""A kind's part of a run: how to build it, what to store beside its scan, what to learn from earlier runs.
 
-Types only. ``tester.run`` carries runs out and asks a kind through ``KindRun``; which kind a rig is, it asks
-``tester.run.kinds``.
+Types only. ``tester.run`` runs recipes through ``KindRun``; ``tester.run.kinds`` finds a rig's kind.
 """
 
 from __future__ import annotations
@@ -34,16 +33,15 @@ class Part:
     number: int
     plan: Plan
     last_mounted: int = 0
-    """The highest number of what is mounted that is taken before this part mounts something that the plan did not
-    foresee."""
+    """The highest specimen number in use before this part mounts one that the plan did not foresee."""
 
 
 @dataclass(frozen=True, slots=True)
 class NoHistory:
-    """The ``History`` of a kind of which earlier runs make nothing known."""
+    """The ``History`` of a kind that learns nothing from earlier runs."""
 
     lines: tuple[Check, ...] = ()
-    """Of the list before a start."""
+    """Lines of the list before a start."""
 
     def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
         """Return these lines, whatever is on the rig."""
@@ -51,21 +49,21 @@ class NoHistory:
 
 
 class KindRun(Protocol):
-    """A kind, for those who carry out a run.
+    """A kind, for running recipes.
 
-    An ``attendant`` is the hands at the rig: what a kind's procedures ask of a person, which a simulated rig does
-    itself. Its methods are the kind's own.
+    An ``attendant`` is the hands at the rig: the kind's requests to a person, which a simulated rig carries out itself.
+    Its methods are the kind's own.
     """
 
     @property
     def plant(self) -> str:
-        """Name of the kind's twin, as ``sim.machines.find`` takes it, whose rig is its own attendant; "" where it has
-        none."""
+        """Name of the kind's twin for ``sim.machines.find``; the twin's rig is its own attendant; "" without a twin."""
         ...
 
     def split(self, plan: Plan) -> tuple[Part, ...]:
-        """Return the parts of a plan, in its order, that may be carried out side by side, each on a simulated rig of
-        its own; at least one."""
+        """Return the parts of a plan, in its order, that may run side by side, each on its own simulated rig; at least
+        one.
+        """
         ...
 
     def build(
@@ -81,28 +79,32 @@ class KindRun(Protocol):
     ) -> Run:
         """Return a run that is ready to be ticked.
 
-        ``plan``: what is left to do; ``point``: where an interrupted run goes on; ``history``: what earlier runs make
-        known, None for nothing.
+        ``plan``: the work to do; ``point``: where an interrupted run resumes; ``history``: facts from earlier runs,
+        None for none.
         """
         ...
 
     def mount(self, attendant: Any, compound: str) -> None:
-        """Put a new specimen on a rig that nobody runs a recipe on: the twin in a process of its own.
+        """Mount a new specimen on a rig without a run: the twin in a process of its own.
 
         ``compound``: "" is the kind's own choice.
         """
         ...
 
     def history(self, runs: Path, rig: Rig) -> History:
-        """Return what the runs in a folder make known of a rig; reads them, so not between two ticks."""
+        """Return the facts about a rig from the runs in a folder; reads files, so not between two ticks."""
         ...
 
     def calibration(self, rig: Rig) -> Iterable[Calibration]:
-        """Return the figures of the kind's own that turn what devices say into quantities; those of devices, nodes
-        and drives are known without it."""
+        """Return the kind's own figures that convert device readings into quantities, besides those of devices, nodes
+        and drives.
+        """
         ...
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
-        """Store what an interruption would lose of the state of the specimen; about once a second of wall time, while
-        the rig is connected, beside the scan. ``now_s``: rig time."""
+        """Store the specimen's state that an interruption would lose; called about once a second of wall time while
+        connected.
+
+        ``now_s``: rig time.
+        """
         ...

@@ -1,4 +1,4 @@
-"""Which scans are recorded: every one in contact, two a second otherwise."""
+"""Selects the scans to record: every scan in contact, otherwise two a second."""
 
 from __future__ import annotations
 
@@ -17,18 +17,20 @@ IDLE_PERIOD_S: Final = 0.5
 
 
 Values: TypeAlias = Callable[[BaseContext[Any, Any, Any]], tuple[float, ...]]
-"""Takes values off the context of a run."""
+"""Function that takes values from the context of a run."""
 
 
 def values_at(sources: Sequence[str]) -> Values:
-    """Return what takes the values at these sources (``Channel.source``), in order: a call in C for each stretch of
-    them that are attributes, or keys of one mapping."""
+    """Return a function that takes the values at these sources (``Channel.source``), in order.
+
+    It makes one call in C for each stretch of attributes, or of keys of one mapping.
+    """
     parts = [_stretch(holder, list(stretch)) for holder, stretch in groupby(sources, _holder)]
     return reduce(_joined, parts)
 
 
 def _holder(source: str) -> str:
-    """Return the mapping that a source is a key of, "" for an attribute."""
+    """Return the mapping that contains a source, "" for an attribute."""
     holder, bracket, _ = source.partition("[")
     return holder if bracket else ""
 
@@ -50,18 +52,18 @@ def _joined(first: Values, then: Values) -> Values:
 
 
 def row_builder(quantities: Quantities) -> Values:
-    """Return what makes a row of a scan, without the last three channels, from the table, once."""
-    own = values_at([one.source for one in quantities.recorded[: -len(LAST) - len(quantities.further)]])
+    """Return a function that makes a row of a scan, without the last three channels."""
+    recorded = values_at([c.source for c in quantities.recorded[: -len(LAST) - len(quantities.further)]])
     if not quantities.further:
-        return own
-    return lambda ctx: (*own(ctx), *ctx.readings.channels)
+        return recorded
+    return lambda ctx: (*recorded(ctx), *ctx.readings.channels)
 
 
 class Sampler:
-    """Picks scans and makes rows of them."""
+    """Selects scans and records them as rows."""
 
     def __init__(self, recorder: Recorder, quantities: Quantities) -> None:
-        """``recorder``: the run's; ``quantities``: what a row is made of."""
+        """``recorder``: the run's; ``quantities``: the channels of a row."""
         self.recorder = recorder
         self._measured = row_builder(quantities)
         self.due_s = float("-inf")

@@ -1,7 +1,7 @@
-"""What a kind answers a service: what it shows of a run, what past runs make known, and a person's hands.
+"""A kind's answers to a service: the view of a run, the facts from past runs, and manual mode.
 
-A service looks at a run between two ticks and changes nothing by it. Types only; ``tester.run.kinds`` knows which kind
-a rig is.
+A service looks at a run between two ticks and changes nothing by it. Types only; ``tester.run.kinds`` finds a rig's
+kind.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """How a device's data are: when the newest came (rig s, -inf: never), whether valid, from what age on stale, s."""
+    """State of a device's data: when the newest came (rig s, -inf: never), whether valid, from what age on stale, s."""
 
     at_s: float
     valid: bool
@@ -34,21 +34,21 @@ class News:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is wanted of a value, in the unit that people read, and half the width of its gate; None: nothing."""
+    """The setpoint of a value, in the unit for people, and half the width of its gate; None without one."""
 
     setpoint: float | None
     band: float | None = None
 
 
 class MachinePanel(Protocol):
-    """One run of the kind, to look at."""
+    """The view of a run of the kind."""
 
     def news(self) -> Mapping[str, News]:
         """Return the news of every device that the table of channels names."""
         ...
 
     def wanted(self) -> Mapping[str, Wanted]:
-        """Return what is wanted of the values, by their keys; those of which nothing is wanted may be missing."""
+        """Return the setpoints of the values, by their keys; values without a setpoint may be missing."""
         ...
 
     def gates(self) -> tuple[Gate, ...]:
@@ -56,11 +56,11 @@ class MachinePanel(Protocol):
         ...
 
     def soak(self, now: float) -> SoakView | None:
-        """Return the soak under way at ``now`` (rig s), None where there is none."""
+        """Return the soak under way at ``now`` (rig s), None without one."""
         ...
 
     def checks(self) -> tuple[Check, ...]:
-        """Return what the connected rig says of its readiness."""
+        """Return the connected rig's own checks before a start."""
         ...
 
     def mounted(self) -> tuple[int, str]:
@@ -73,16 +73,16 @@ class Left(Protocol):
 
     @property
     def known(self) -> bool:
-        """The run mounted something."""
+        """Whether the run mounted something."""
         ...
 
     def usable(self, rig: Rig) -> bool:
-        """Tell whether it may still be worked with on a rig; else it is taken for changed."""
+        """Return whether it may still be used on a rig; otherwise it is treated as changed."""
         ...
 
 
 class History(Protocol):
-    """What the runs in a folder make known of a rig: plain data, which can be hashed and pickled."""
+    """Facts about a rig from the runs in a folder: plain data, which can be hashed and pickled."""
 
     def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
         """Return the kind's part of the pre-flight list before the rig is connected. ``left``: by the newest run."""
@@ -91,7 +91,7 @@ class History(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ByHand:
-    """Manual mode, ready to be ticked; ``mounted``: what is taken to be on the rig, in words."""
+    """Manual mode, ready to be ticked; ``mounted``: the assumed specimen, in words."""
 
     run: Run
     executor: ManualExecutor
@@ -112,7 +112,7 @@ class ServedKind(Protocol):
         ...
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step of a plan does."""
+        """Return a description of a step of a plan, in a line."""
         ...
 
     def panel(self, engine: Engine) -> MachinePanel:
@@ -130,8 +130,8 @@ class ServedKind(Protocol):
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: Any, record: Recorder, left: Left | None, history: History
     ) -> ByHand:
-        """Put a person in the place of a recipe, bounded by the rig alone; ``left``: what is on it, None = new.
+        """Build manual mode, bounded only by the rig; ``left``: the specimen on it, None = new.
 
-        ``attendant``, ``history``: as the kind's ``KindRun`` has them.
+        ``attendant``, ``history``: as in the kind's ``KindRun``.
         """
         ...

@@ -1,4 +1,4 @@
-"""Who is silent, refuses or is at fault, in words: what stands beside whatever trips."""
+"""Texts about devices that are silent, refuse or report a fault; they accompany the trip."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from drivers.servo import ServoDrive
 from tester.machine.field_device import FieldDevice
 
 SPREAD_S: Final = 0.015
-"""Drives answer one SYNC, within 2 ms of each other: one that is further behind the others is missing, s [A]."""
+"""A drive further behind the others than this is missing, s [A]: drives answer one SYNC within 2 ms of each other."""
 
 
 def unheard(drives: Sequence[ServoDrive]) -> str:
-    """Name the drives that are behind the others: of a bus that is silent as a whole, none."""
+    """Return the drives that are behind the others, as text; "" for a bus that is silent as a whole."""
     oldest = newest = drives[0].stamp_s
     for drive in drives:
         stamp_s = drive.stamp_s
@@ -27,11 +27,11 @@ def unheard(drives: Sequence[ServoDrive]) -> str:
     if newest - oldest <= SPREAD_S:
         return ""
     behind = [drive.config for drive in drives if newest - drive.stamp_s > SPREAD_S]
-    return ", ".join(f"{one.name} drive (node {one.node_id}) not heard" for one in behind)
+    return ", ".join(f"{config.name} drive (node {config.node_id}) not heard" for config in behind)
 
 
 def silent_lines(lines: Sequence[tuple[LinePort, ModbusLink]], modbus: Sequence[FieldDevice]) -> str:
-    """Name the Modbus lines on which no device answers, with the devices; "" = none."""
+    """Return the Modbus lines without an answering device, with their devices, as text; "" = none."""
     for _, link in lines:
         for station in link.stations:
             if station.is_lost:
@@ -40,31 +40,31 @@ def silent_lines(lines: Sequence[tuple[LinePort, ModbusLink]], modbus: Sequence[
 
 
 def _silent(lines: Sequence[tuple[LinePort, ModbusLink]], modbus: Sequence[FieldDevice]) -> str:
-    found: list[str] = []
+    texts: list[str] = []
     for _, link in lines:
-        there = [one for one in modbus if one.driver.link is link]
-        stations = [one.driver.station for one in there]
-        # One is lost, and the others have not answered since: their own loss takes as long again.
-        if any(one.is_lost for one in stations) and all(one.misses for one in stations):
-            found.append(f"nobody answers on line {there[0].line}: {', '.join(one.title for one in there)}")
-    return "; ".join(found)
+        there = [device for device in modbus if device.driver.link is link]
+        stations = [device.driver.station for device in there]
+        # One station is lost, and the others have missed a request since: they would count as lost only later.
+        if any(station.is_lost for station in stations) and all(station.misses for station in stations):
+            texts.append(f"no answer on line {there[0].line}: {', '.join(device.title for device in there)}")
+    return "; ".join(texts)
 
 
 def name_of(link: ModbusLink, modbus: Sequence[FieldDevice]) -> str:
-    """Return a line's name in the rig file, with the devices on it."""
-    there = [one for one in modbus if one.driver.link is link]
-    return f"{there[0].line} ({', '.join(one.title for one in there)})" if there else "unnamed"
+    """Return a line's name in the rig file, with its devices."""
+    there = [device for device in modbus if device.driver.link is link]
+    return f"{there[0].line} ({', '.join(device.title for device in there)})" if there else "unnamed"
 
 
 def refusals(drives: Sequence[ServoDrive], nodes: Sequence[SensorNode], modbus: Sequence[FieldDevice]) -> list[str]:
     """Return why devices cannot be used, a text each."""
-    said = [f"{one.config.name} drive (node {one.node_id}): {one.refused}" for one in drives if one.refused]
-    said += [f"{one.name} (node {one.node_id}): {one.refused}" for one in nodes if one.refused]
-    return said + [f"{one.title}: {one.driver.refused}" for one in modbus if one.driver.refused]
+    texts = [f"{drive.config.name} drive (node {drive.node_id}): {drive.refused}" for drive in drives if drive.refused]
+    texts += [f"{node.name} (node {node.node_id}): {node.refused}" for node in nodes if node.refused]
+    return texts + [f"{device.title}: {device.driver.refused}" for device in modbus if device.driver.refused]
 
 
 def fault_text(drive: ServoDrive) -> str:
-    """Describe what is wrong with a drive."""
+    """Return a drive's fault in words."""
     name = f"{drive.config.name} drive"
     if drive.lost:
         return f"{name}: heartbeat lost"

@@ -1,4 +1,4 @@
-"""Control of a machine that is safe once its drives stand: nothing is lifted, nothing has to turn while it cools."""
+"""Control of a machine that is safe once its drives are at rest: no lift, no cool-down."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tester.machine.state import Mode
 
 
 class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
-    """Outputs of every mode but RUN and HOLD. A kind says in ``stand`` what stops."""
+    """Outputs of every mode but RUN and HOLD. A kind implements ``stand``."""
 
     def stand(self) -> None:
         """Command zero to every drive that has a speed, and standby to everything that heats or cools."""
@@ -19,21 +19,17 @@ class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
         out.quick_stop, out.enable = quick_stop, enable
 
     def stop_outputs(self) -> None:
-        """Bring every drive to standstill: by its ramp, or by its quick stop."""
         self._command(quick_stop=self.state.mode is not Mode.STOPPING, enable=self.state.setpoints.enable)
 
     def safe_outputs(self) -> None:
-        """Command standstill and a quick stop."""
         self._command(quick_stop=True, enable=self.state.setpoints.enable)
 
     def emergency_outputs(self) -> None:
-        """Mirror the hardware's emergency stop: nothing starts when it gives the power back."""
         self._command(quick_stop=True, enable=False)
 
     def rest_outputs(self) -> None:
-        """Command nothing, want no power."""
         self._command(quick_stop=False, enable=False)
 
     def cool_outputs(self) -> str:
-        """End a cool-down at once: nothing of the machine is hot."""
+        """End a cool-down at once: nothing on the machine is hot."""
         return "nothing to cool"

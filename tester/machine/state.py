@@ -1,4 +1,4 @@
-"""What control remembers between scans: mode, latched trip, timers of the interlocks, the stop under way."""
+"""Control's memory between scans: mode, latched trip, timers of the interlocks, the stop under way."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ class Mode(Enum):
 
     IDLE = "idle"
     ARMED = "armed"
-    """Every level was found clear; passed through on the way to RUN."""
+    """Every level is clear; passed through on the way to RUN."""
     RUN = "run"
     HOLD = "hold"
     """Contact open, heat held, drives enabled: until the operator releases it."""
     STOPPING = "stopping"
     """Controlled stop: heat off, contact opened, drives ramp down together."""
     COOLDOWN = "cooldown"
-    """Unloaded creep, heat off, on a machine that would be harmed if it stood hot; until it is cool."""
+    """Unloaded creep, heat off, on a machine that a hot stop would harm; until it is cool."""
     FAST_STOP = "fast stop"
     """Contact opened, quick stop of every drive, heat off: all in one scan."""
     EMERGENCY = "emergency stop mirrored"
@@ -45,14 +45,14 @@ class Trip:
 
 
 HELD: Final = "held"
-"""Kind of the event at the end of a hold; its text is how long it lasted."""
+"""Kind of the event at the end of a hold; its text is the duration."""
 ACKNOWLEDGED: Final = "acknowledged"
-"""Kind of the event that ends a trip; its text is who has acknowledged."""
+"""Kind of the event that ends a trip; its text names who acknowledged."""
 
 
 @dataclass(frozen=True, slots=True)
 class ControlEvent:
-    """Something for the journal: a mode change, a command, a trip, an acknowledgement."""
+    """An event for the journal: a mode change, a command, a trip, an acknowledgement."""
 
     at_s: float
     kind: str
@@ -68,7 +68,7 @@ class StopProgress:
     fast_s: float = inf
     """When the quick stop began."""
     creeps: bool = False
-    """Something is meant to turn: cool-down."""
+    """Something turns on purpose: cool-down."""
 
 
 SetpointsT_co = TypeVar("SetpointsT_co", bound=BaseSetpoints, covariant=True)
@@ -78,7 +78,7 @@ class ControlState(Generic[SetpointsT_co]):
     """Everything ``Control.step`` carries from one scan to the next; plain data, copyable. A kind adds its loops."""
 
     def __init__(self, setpoints: SetpointsT_co) -> None:
-        """Begin in idle; ``setpoints``: what the devices are handed."""
+        """Begin in idle; ``setpoints``: the devices' setpoints."""
         self.setpoints = setpoints
         self.mode = Mode.IDLE
         self.mode_since_s = 0.0
@@ -86,11 +86,11 @@ class ControlState(Generic[SetpointsT_co]):
         self.held = 0
         """Levels that hold in this scan, a bit for each row of the interlock table in its order."""
         self.tripped = 0
-        """Rows that have tripped (or warned, while their level stands) since the last acknowledgement."""
+        """Rows that have tripped (or warned, while their level holds) since the last acknowledgement."""
         self.pending_s: list[float] = []
         """Since when each interlock's level has held (inf = it does not hold), in the table's order."""
         self.events: list[ControlEvent] = []
-        """Raised since the last scan, in order; the engine takes them out before the outputs leave."""
+        """Events since the last scan, in order; the engine takes them out before the outputs leave."""
         self.last_s = -inf
         self.last_late_s = 0.0
         """How much later than its period the last scan was, s."""
@@ -99,12 +99,12 @@ class ControlState(Generic[SetpointsT_co]):
         self.cooled = False
         """The cool-down of this run is over (or not wanted), whether everything got cool or not."""
         self.ack_until_s = -inf
-        """An acknowledgement was given: it counts if every cause is gone by then."""
+        """An acknowledgement is pending: it counts if every cause is gone by then."""
         self.ack_by = ""
-        """Who gave it."""
+        """Who acknowledged."""
 
     def enter(self, mode: Mode, now_s: float, why: str) -> None:
-        """Change the mode and journal it; at the end of a hold, how long it lasted, too."""
+        """Change the mode and journal it; at the end of a hold, journal its duration."""
         if self.mode is Mode.HOLD:
             self.events.append(ControlEvent(now_s, HELD, f"HOLD lasted {duration(now_s - self.mode_since_s)}"))
         self.events.append(ControlEvent(now_s, "mode", f"{self.mode.value} -> {mode.value}: {why}"))

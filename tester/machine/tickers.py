@@ -1,4 +1,4 @@
-"""Who calls the tick, and when. Two tickers, one tick: simulated time and real time."""
+"""Tickers: they call a run's tick at the right times, in simulated or real time."""
 
 from __future__ import annotations
 
@@ -15,39 +15,39 @@ from tester.base.clock import Pace
 from tester.base.processes import RealTimePriority
 
 POLL_S: Final = 0.02
-"""Period of ``poll``, s of wall time: a STOP from a screen is heard within it."""
+"""Period of ``poll``, s of wall time: the delay of a STOP from a screen is at most this."""
 LEAVE_S: Final = 0.008
-"""No poll begins this shortly before a tick is due, s: at 100 Hz it follows a tick, and may take long."""
+"""No poll begins within this time before a tick is due, s: at 100 Hz it follows a tick, and may take long."""
 
 
 class Ticked(Protocol):
-    """What a ticker drives."""
+    """Driven by a ticker."""
 
     @property
     def finished(self) -> bool:
-        """Nothing is left to do."""
+        """Whether nothing is left to do."""
         ...
 
     @property
     def waiting(self) -> bool:
-        """A person is asked: simulated time stands still until the answer is there."""
+        """Whether a prompt waits: simulated time stops until the answer."""
         ...
 
     def tick(self, now: float) -> float:
-        """Do what is due at ``now``; return when to be called again at the latest (s)."""
+        """Do everything due at ``now``; return the latest time of the next call (s)."""
         ...
 
 
 class TickedWorld(Protocol):
-    """A simulated rig: it must be brought up to date before each tick."""
+    """A simulated rig, which must be advanced before each tick."""
 
     def advance(self, now: float) -> None:
-        """Let the rig live until ``now`` (s)."""
+        """Advance the rig to ``now`` (s)."""
         ...
 
     @property
     def urgent_s(self) -> float:
-        """When something arrives that the scan should not wait for (inf = nothing on its way)."""
+        """Time of the next arrival that the scan should not wait for (inf = none)."""
         ...
 
 
@@ -61,14 +61,14 @@ class TickStatistics:
     """Ticks that came later than their successor was due."""
 
     def note(self, late_s: float) -> None:
-        """Count a tick that came this late; one that something urgent brought forward is not late."""
+        """Count a tick with its lateness; a tick brought forward by something urgent is not late."""
         self.ticks += 1
         if late_s > self.late_max_s:
             self.late_max_s = late_s
 
 
 def next_tick(now: float, wanted: float, urgent: float) -> float:
-    """Return the next tick's time: the earlier of both, on a grid of microseconds, and always after ``now``.
+    """Return the time of the next tick: the earlier of both, on a grid of microseconds, and always after ``now``.
 
     Simulated time is counted, not measured: on a grid, equal runs have equal times to the last bit.
     """
@@ -80,8 +80,8 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
 def run_simulated(engine: Ticked, world: TickedWorld, *, lapse: float | None, poll: Callable[[float], None]) -> float:
     """Run to the end in simulated time; return the rig seconds.
 
-    ``lapse``: rig seconds per second of wall time, or None for as fast as it goes. ``poll`` is called about every
-    ``POLL_S`` of wall time (display, commands), between two ticks as well; it must not block for long.
+    ``lapse``: rig seconds per second of wall time, or None for as fast as possible. ``poll`` is called about every
+    ``POLL_S`` of wall time (display, commands), also between two ticks; it must not block for long.
     """
     now = 0.0
     origin = clock.monotonic()
@@ -92,7 +92,7 @@ def run_simulated(engine: Ticked, world: TickedWorld, *, lapse: float | None, po
             wanted = engine.tick(now)
             later = next_tick(now, wanted, world.urgent_s)
             wall = clock.monotonic()
-            if wall >= poll_due - LEAVE_S:  # now rather than with a wake-up of its own: never before a tick that is due
+            if wall >= poll_due - LEAVE_S:  # poll now instead of waking up again: never before a tick that is due
                 poll(now)
                 poll_due = wall + POLL_S
             if engine.waiting:
@@ -100,7 +100,7 @@ def run_simulated(engine: Ticked, world: TickedWorld, *, lapse: float | None, po
                 while engine.waiting:
                     poll(now)
                     clock.sleep_until(clock.monotonic() + POLL_S)
-                origin += clock.monotonic() - asked  # a person's time is not made up for
+                origin += clock.monotonic() - asked  # do not catch up on the time a person took
             if lapse is not None:
                 poll_due = _wait(origin + later / lapse, now, poll, poll_due)
             now = later
@@ -115,10 +115,10 @@ def run_real_time(
     statistics: TickStatistics,
     pace: Pace | None = None,
 ) -> float:
-    """Run to the end in real time on absolute deadlines; return the seconds it took.
+    """Run to the end in real time on absolute deadlines; return the duration, s.
 
-    ``world``: a simulated rig in the same process, or None when hardware is on the wire. ``pace``: the clock that
-    stamps what arrives, and what ends a wait early; by default one that starts now.
+    ``world``: a simulated rig in the same process, or None with hardware on the wire. ``pace``: the clock that stamps
+    arrivals and can end a wait early; by default one that starts now.
     """
     pace = pace or Pace()
     now = due = poll_due = pace.now()
@@ -135,19 +135,19 @@ def run_real_time(
             wall = pace.now()
             if due < wall:
                 statistics.overruns += 1
-            if wall >= poll_due - LEAVE_S:  # now rather than with a wake-up of its own
+            if wall >= poll_due - LEAVE_S:  # poll now instead of waking up again
                 poll(now)
                 poll_due = wall + POLL_S
     return pace.now()
 
 
 SWITCH_S: Final = 0.0005
-"""How long another thread (recorder, reception) may keep the interpreter from a scan that is due, s (Python: 5 ms)."""
+"""Longest time that another thread (recorder, reception) may delay a due scan, s (Python: 5 ms)."""
 
 
 @contextmanager
 def scan_first() -> Generator[None, None, None]:
-    """Let the scan have the interpreter soon after it asks for it."""
+    """Give the scan the interpreter soon after it asks for it."""
     before = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_S)
     try:
@@ -158,10 +158,10 @@ def scan_first() -> Generator[None, None, None]:
 
 @contextmanager
 def in_time(lapse: float | None) -> Generator[None, None, None]:
-    """Keep a simulated rig's time as a machine's is kept: before every ordinary process, where that is granted.
+    """Keep a simulated rig punctual with real-time priority, if the system grants it.
 
-    ``lapse`` as in ``run_simulated``. Faster than a machine lives (above 1) nothing is asked for: such a run takes
-    what the processor gives, and would leave nothing to others.
+    ``lapse`` as in ``run_simulated``. Above 1 no priority is requested: such a run uses all the processor's time, and
+    would leave none to others.
     """
     if lapse is None or lapse > 1.0:
         yield
@@ -196,18 +196,18 @@ def _wait_paced(pace: Pace, due: float, now: float, poll: Callable[[float], None
 
 
 class collector_at_rest:  # noqa: N801 - reads as a statement
-    """Keep the cyclic garbage collector away from the scan: what exists is frozen, automatic runs are off.
+    """Keeps the cyclic garbage collector away from the scan: existing objects are frozen, automatic runs are off.
 
-    Reference counting still frees nearly everything; the young generations are collected by hand when the block ends.
+    Reference counting still frees nearly everything; the young generations are collected when the block ends.
     """
 
     def __enter__(self) -> None:
-        """Freeze what exists and stop automatic collection."""
-        gc.collect(1)  # the old ones are many, and STOP would wait for them: what is garbage there stays a while
+        """Freeze existing objects and stop automatic collection."""
+        gc.collect(1)  # skip the many old objects, because STOP would wait: garbage among them stays a while
         gc.freeze()
         gc.disable()
 
     def __exit__(self, *_: object) -> None:
-        """Restore."""
+        """Restore automatic collection."""
         gc.enable()
         gc.unfreeze()

@@ -29,28 +29,28 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 PRIOR_S: Final = 300.0
-"""The estimate of a kind of step counts as much as this long a measurement of it, s [A]."""
+"""Weight of the estimate for a kind of step, as an equivalent duration of measurement, s [A]."""
 OVERRUN: Final = 0.1
-"""A step that takes longer than expected is expected to take this much longer still, share of its time so far [A]."""
+"""A step that overruns is expected to take this much longer, as a share of its time so far [A]."""
 SHOWN: Final = 0.3
-"""A repeat tells how long it takes once this share of it is done [A]."""
+"""A repeat's own pace counts once this share of it is done [A]."""
 SHOWN_S: Final = 30.0
-"""... and not before this long a time of contacts, s [A]."""
+"""... and not before this time of contacts, s [A]."""
 STANDSTILL: Final = "standstill"
-"""Kind of the entry behind the last step of a part: the way to standstill, cooling included."""
+"""Kind of the entry after the last step of a part: the way to standstill, cooling included."""
 
 
 class Doing(Enum):
-    """What a run does with its time."""
+    """How a run uses its time."""
 
     WORKING = "working"
     WAITING = "waiting"
-    """Held, or a person is asked."""
+    """Held, or a prompt waits."""
     GIVEN_UP = "given up"
 
 
 def doing(run: Run) -> Doing:
-    """Return what a run does with its time."""
+    """Return how a run uses its time."""
     executor, state = run.engine.executor, run.engine.control.state
     if run.outcome not in (Outcome.RUNNING, Outcome.DONE) or executor.failed:
         return Doing.GIVEN_UP
@@ -62,14 +62,14 @@ def doing(run: Run) -> Doing:
 
 
 def share_of_repeat(progress: Progress) -> float:
-    """Return the share of the present repeat that is done, 0..1, by its revolutions."""
+    """Return the completed share of the present repeat, 0..1, by its revolutions."""
     wanted = progress.revolutions_wanted
     return min(progress.revolutions / wanted, 1.0) if wanted > 0.0 and progress.burst else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class PartTime:
-    """A part of a run, and what it is expected to take: its steps, and the way to standstill behind them, s."""
+    """A part of a run with the expected durations of its steps and of the way to standstill after them, s."""
 
     plan: Plan
     seconds: tuple[float, ...]
@@ -78,13 +78,13 @@ class PartTime:
 
 @dataclass(frozen=True, slots=True)
 class Earlier:
-    """What earlier stretches of an interrupted run have done; nothing of a run that begins."""
+    """What earlier stretches of an interrupted run completed; empty for a new run."""
 
     seconds: float = 0.0
     over: frozenset[int] = frozenset()
-    """Numbers of the conditions that are over."""
+    """Numbers of the finished conditions."""
     repeats: Mapping[int, int] = field(default_factory=dict[int, int])
-    """Committed repeats of conditions that are not, by their numbers."""
+    """Committed repeats of unfinished conditions, by condition number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ class RunPosition:
     part: int = 1
     parts: int = 1
     beside: bool = False
-    """The figures are of this part alone, which runs beside others."""
+    """The figures cover only this part, which runs beside others."""
 
 
 class TimeLeft:
@@ -115,12 +115,12 @@ class TimeLeft:
         """Begin before the first step of the first part."""
         self._earlier = earlier or Earlier()
         self.steps: list[Step | None] = []
-        """The plan's, and None behind each part's last: the way to standstill."""
+        """The plan's steps, with None after each part's last: the way to standstill."""
         self.estimated: list[float] = []
         self._ends: dict[int, int] = {}
-        """Where each part's way to standstill is listed, by the identity of the part's last step."""
-        for one in parts:
-            self._list(one)
+        """Index of each part's way to standstill, by the identity of the part's last step."""
+        for part in parts:
+            self._list(part)
         self._kinds = [STANDSTILL if step is None else step.kind for step in self.steps]
         self._sorts = list(dict.fromkeys(self._kinds))
         self._sort = np.array([self._sorts.index(kind) for kind in self._kinds], dtype=np.intp)
@@ -128,21 +128,21 @@ class TimeLeft:
         self._places = {id(step): place for place, step in enumerate(self.steps) if step is not None}
         planned = {step.condition for step in self.steps if isinstance(step, ConditionStep)}
         over = accumulate((isinstance(step, ConditionStep) for step in self.steps), initial=0)
-        self._over = [len(self._earlier.over - planned) + one for one in over]
-        """Conditions that are over before each step begins, and behind the last."""
+        self._over = [len(self._earlier.over - planned) + count for count in over]
+        """Conditions that are over before each step begins, and after the last."""
         self._conditions = len(self._earlier.over | planned)
         self.position = -1
-        """Index of the present step; a wheel change that was not planned belongs to the step after it."""
+        """Index of the present step; an unplanned wheel change belongs to the step after it."""
         self.measured: dict[int, float] = {}
-        """What each step took that is over, s of work."""
+        """Duration of each finished step, s of work."""
         self.ahead: NDArray[np.float64] = self._estimated
-        """What each step is expected to take, whole s."""
+        """Expected duration of each step, whole s."""
         self._ahead_s = 0.0
-        """Sum of those behind the present one."""
+        """Sum of those after the present step."""
         self.revision = 0
-        """Counts changes of what the list of steps shows."""
+        """Counts changes of the list of steps."""
         self._took: dict[str, tuple[float, float]] = {}
-        """What the steps that are over took, and what they were estimated at, by kind, s."""
+        """Measured and estimated durations of the finished steps, by kind, s."""
         self._part, self._parts, self._end = 0, len(parts), len(self.steps) - 1
         self._step = self._repeat = 0
         self._open = self._fresh = False
@@ -154,15 +154,15 @@ class TimeLeft:
         self._began_s = 0.0
         """Work when the present step began."""
         self._contact_s: float | None = None
-        """Work when the present repeat had its first contact: before it may wait long for its temperature."""
+        """Work when the present repeat had its first contact: before, it may wait long for its temperature."""
         self._repeats_s: list[float] = []
-        """What the repeats of the present condition took that are over, s."""
+        """Durations of the finished repeats of the present condition, s."""
         self._within, self._to_come = 0.0, 0
         """Share of the present repeat that is done, and repeats behind it."""
         self._expect()
 
     def _list(self, part: PartTime) -> None:
-        """Take in a part: its steps, less the repeats that were committed before, and the way to standstill."""
+        """Add a part: its steps, less the repeats committed before, and the way to standstill."""
         for step, seconds in zip(part.plan.steps, part.seconds, strict=True):
             done = self._earlier.repeats.get(step.condition, 0) if isinstance(step, ConditionStep) else 0
             made = step.repeats * step.scheme.repeats_each if isinstance(step, ConditionStep) else 1
@@ -176,14 +176,14 @@ class TimeLeft:
     # -- looking at a run -------------------------------------------------------------------------------------
 
     def begin_part(self, plan: Plan) -> None:
-        """Begin a part, on a rig of its own whose time starts at 0."""
+        """Begin a part, on its own rig, whose time starts at 0."""
         self._finish()
         self._part += 1
         self._now, self._step, self._doing = 0.0, 0, Doing.WORKING
         self._end = self._ends[id(plan.steps[-1])] if plan.steps else len(self.steps) - 1
 
     def look(self, now: float, run: Run) -> None:
-        """Take in where a run is at a rig time."""
+        """Update from a run at a rig time."""
         executor = run.engine.executor
         self.update(now, run.engine.ctx.progress, executor.steps, doing(run), measuring=executor.measuring,
                     finished=executor.finished and not executor.failed)  # fmt: skip
@@ -198,7 +198,7 @@ class TimeLeft:
         measuring: bool = False,
         finished: bool = False,
     ) -> None:
-        """Take in where the executor is. ``remaining``: its steps to come; ``finished``: there is none any more."""
+        """Update from the executor. ``remaining``: its steps to come; ``finished``: none is left."""
         if state is Doing.WORKING:
             self._worked_s += now - self._now
         self._now, self._doing = now, state
@@ -211,7 +211,7 @@ class TimeLeft:
             self._look_at_repeats(progress)
 
     def _look_at_repeats(self, progress: Progress) -> None:
-        """Take in how far the present condition's repeats are."""
+        """Update the progress of the present condition's repeats."""
         begun = progress.repeat != self._repeat
         if begun and self._contact_s is not None:
             self._repeats_s.append(self._worked_s - self._contact_s)
@@ -230,7 +230,7 @@ class TimeLeft:
             if id(step) in self._places:
                 break
             inserted += 1
-        # With steps inserted, the one that waits behind them is the present one.
+        # With steps inserted, the step that waits behind them is the present one.
         return self._end - (len(remaining) - inserted) - (0 if inserted else 1)
 
     def _move_to(self, position: int) -> None:
@@ -238,22 +238,24 @@ class TimeLeft:
             return
         self._finish()
         for place in range(self.position + 1, position):
-            self.measured[place] = 0.0  # came and went between two looks: its time is told with the step before it
+            self.measured[place] = 0.0  # it came and went between two updates: its time counts with the step before
         self.position, self._open = position, True
         self._repeat, self._to_come, self._repeats_s = 0, 0, []
         self._fresh = self._is_fresh(position)
         self._expect()
 
     def _is_fresh(self, position: int) -> bool:
-        """Return whether a step is the first condition on a piece: its first repeat runs in, and tells nothing."""
+        """Return whether a step is the first condition on a specimen: its first repeat runs in, and its pace does not
+        count.
+        """
         here = self.steps[position]
-        before = next((one for one in reversed(self.steps[:position]) if isinstance(one, ConditionStep)), None)
+        before = next((step for step in reversed(self.steps[:position]) if isinstance(step, ConditionStep)), None)
         return isinstance(here, ConditionStep) and (
             before is None or (before.specimen, before.replicate) != (here.specimen, here.replicate)
         )
 
     def _finish(self) -> None:
-        """Take what the present step took as a measurement of its kind."""
+        """Record the present step's duration as a measurement of its kind."""
         if self._open:
             took_s = self._worked_s - self._began_s
             self.measured[self.position] = took_s
@@ -266,7 +268,7 @@ class TimeLeft:
     # -- what is expected -------------------------------------------------------------------------------------
 
     def _expect(self) -> None:
-        """Work out anew what the steps to come take: their list changes now, and not again before it is seen."""
+        """Recompute the expected durations of all steps; the list changes now, and not again before the next event."""
         here = self._kinds[self.position] if self._open else ""
         paces: list[float] = []
         for kind in self._sorts:
@@ -280,7 +282,7 @@ class TimeLeft:
         self.revision += 1
 
     def _present_s(self) -> float:
-        """Return what is left of the present step, s: by its repeats where they tell, else by its estimate."""
+        """Return the time left in the present step, s: from its repeats if they show it, else from its estimate."""
         if not self._open:
             return 0.0
         so_far_s = self._worked_s - self._began_s

@@ -1,8 +1,8 @@
-"""Commissioning: the guided way from plugged adapters to a first trusted coefficient, kept on record.
+"""Commissioning: the guided way from plugged adapters to a first trustworthy coefficient, with a record.
 
-A kind brings a tuple of ``CommissionStep`` (``step``), data: what each is called, which sections of the rig file it
-depends on, and its procedure. A procedure is a generator: it yields questions for a person and conditions of the rig,
-and is woken between two ticks, so that scans, heartbeats and STOP never wait for a person. Terminal, screen and tests
-are fronts of one interface (``person``). The record (``record``) is appended to and synced, entry by entry: a step
-whose entry stands is not done again, one that was cut off begins anew, and begins only when a person says so.
+A kind supplies a tuple of ``CommissionStep`` (``step``) as data: the name of each step, the sections of the rig file
+that it depends on, and its procedure. A procedure is a generator: it yields questions for a person and conditions of
+the rig, and is resumed between two ticks, so that scans, heartbeats and STOP never wait for a person. Terminal, screen
+and tests implement one interface (``person``). The record (``record``) is appended and synced entry by entry: a step
+with a valid entry is not repeated; an interrupted step starts again, and only after a person agrees.
 """

@@ -1,4 +1,4 @@
-"""The walk through the steps of a commissioning: which stand, which is next, what goes on record."""
+"""Runs the steps of a commissioning: skips those already done, runs the others, and records the results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Ended(Enum):
     """How a commissioning ended."""
 
     DONE = "done"
-    LEFT = "left by the person; it goes on where it stands"
+    LEFT = "left by the person; it resumes at the first open step"
     REFUSED = "refused"
     FAILED = "failed"
     STOPPED = "stopped"
@@ -35,7 +35,7 @@ class Ended(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CommissionOutcome:
-    """How it ended, at which step and with what words; ``rig_s``: rig time of its steps, s, by step in ``took_s``."""
+    """How it ended, at which step, and the text; ``rig_s``: rig time of its steps, s, by step in ``took_s``."""
 
     ended: Ended
     step: str = ""
@@ -45,7 +45,7 @@ class CommissionOutcome:
 
 
 class Commissioning:
-    """Steps, a rig, a person and a record."""
+    """A commissioning of a rig, with its steps, person and record."""
 
     def __init__(
         self,
@@ -59,9 +59,12 @@ class Commissioning:
         onlooker: Onlooker | None = None,
         given: Mapping[str, str] | None = None,
     ) -> None:
-        """``connect``: opens the wires (and the simulated rig behind them, with the hands at it), once a step;
-        raises BusLost. ``lapse``: of simulated time, None as fast as it goes. ``given``: answers that the
-        command line has, by the question's key."""
+        """Take the parts; connect nothing yet.
+
+        ``connect`` opens the wires once a step (and the simulated rig behind them, with the hands at it); raises
+        BusLost. ``lapse``: of simulated time, None as fast as possible. ``given``: the command line's answers, by the
+        question's key.
+        """
         self.steps = tuple(steps)
         self.rig = rig
         self.person = person
@@ -78,23 +81,23 @@ class Commissioning:
         self._stopped = False
 
     def stop(self, *, fast: bool = False) -> None:
-        """STOP: from a signal handler too. The step is given up, and no other begun."""
+        """STOP, even from a signal handler. The present step is given up, and no other begins."""
         self._stopped = True
         if self._walk is not None:
             self._walk.stop(STOPPED, fast=fast)
 
     def run(self) -> CommissionOutcome:
-        """Walk through the steps that do not stand. Raises OSError for a record that cannot be written."""
-        said = self.record.last
+        """Run the steps that are not done. Raises OSError if the record cannot be written."""
+        last = self.record.last
         for number, step in enumerate(self.steps, 1):
             label = f"{number}/{len(self.steps)} {step.title}"
-            stands = self.record.standing(step.name, self._sections(step))
-            if stands is not None:
-                self.person.tell(f"{label}: stands ({stands.at[:10]}, {stands.by}): {stands.text}")
+            done = self.record.standing(step.name, self._sections(step))
+            if done is not None:
+                self.person.tell(f"{label}: stands ({done.at[:10]}, {done.by}): {done.text}")
                 continue
-            before = said(step.name)
+            before = last(step.name)
             if before is not None and before.what == BEGUN:
-                self.person.tell(f"{label}: was cut off; it begins anew")
+                self.person.tell(f"{label}: was cut off; it starts again")
             elif before is not None and before.what == DONE:
                 self.person.tell(f"{label}: the rig file has changed under it since {before.at[:10]}; done again")
             answer = self._ask(Question(f"begin {step.name}", f"{label}: begin?", Asks.CHOICE, ("yes", "no")))
@@ -109,7 +112,7 @@ class Commissioning:
         return CommissionOutcome(ended, step.name, text, self.rig_s, tuple(self._took_s))
 
     def _do(self, step: CommissionStep) -> CommissionOutcome | None:
-        """Do a step; return how the commissioning ends by it, None where it goes on."""
+        """Run a step; return the outcome if it ends the commissioning, None if that continues."""
         self._add(step, BEGUN)
         before_s = self.rig_s
         notes = Notes(
@@ -140,7 +143,7 @@ class Commissioning:
         return ""
 
     def _seated(self, step: CommissionStep, notes: Notes) -> str:
-        """Do a step on the rig; return why it failed. Raises StepRefused."""
+        """Run a step on the rig; return why it failed. Raises StepRefused."""
         assert step.seat is not None and step.procedure is not None
         with ExitStack() as opened:
             try:
@@ -179,7 +182,7 @@ class Commissioning:
             run_real_time(walk, None, poll=poll, statistics=TickStatistics(), pace=ports.pace)
 
     def _ask(self, question: Question) -> str:
-        """Ask while no rig runs."""
+        """Ask a question while no rig runs."""
         self.person.put(question)
         while not self._stopped:
             for command in self.person.poll():
@@ -199,8 +202,8 @@ class Commissioning:
         return sections_sha256(self.rig, step.sections)
 
     def _done(self) -> dict[str, Mapping[str, Any]]:
-        found = {one.name: self.record.standing(one.name, self._sections(one)) for one in self.steps}
-        return {name: entry.values for name, entry in found.items() if entry is not None}
+        entries = {step.name: self.record.standing(step.name, self._sections(step)) for step in self.steps}
+        return {name: entry.values for name, entry in entries.items() if entry is not None}
 
     def _add(
         self, step: CommissionStep, what: str, text: str = "", values: Mapping[str, Any] | None = None

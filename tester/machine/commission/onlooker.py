@@ -1,4 +1,4 @@
-"""Who looks on while a rig is commissioned: a screen that shows the record as it grows, and the rig's readings."""
+"""Onlooker of a commissioning: a screen that shows the growing record and the rig's readings."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class Onlooker(Protocol):
     """Called in the engine's thread, between ticks: must not block, and changes nothing."""
 
     def entered(self, entry: RecordEntry) -> None:
-        """Take note of an entry that is on record now."""
+        """Take an entry that was just recorded."""
         ...
 
     def look(self, step: CommissionStep, walk: Walk) -> None:
-        """Look at the rig in a step; about every tester.machine.tickers.POLL_S of wall time."""
+        """Look at the rig in a step; called about every tester.machine.tickers.POLL_S of wall time."""
         ...

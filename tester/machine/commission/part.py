@@ -1,4 +1,4 @@
-"""What a kind brings to be commissioned."""
+"""A kind's part for commissioning."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from tester.machine.commission.step import CommissionStep
 
 
 class AtTheTwin(Person, Protocol):
-    """A person who reads the truth of a simulated rig."""
+    """A person who reads the true values of a simulated rig."""
 
     def at(self, hands: Any) -> None:
-        """Stand at a rig whose wires were opened anew; ``hands``: the simulated rig."""
+        """Move to a rig with newly opened wires; ``hands``: the simulated rig."""
         ...
 
 
@@ -24,5 +24,5 @@ class CommissionPart:
 
     steps: tuple[CommissionStep, ...]
     compounds: tuple[str, ...]
-    """For these there is a model of what their coefficient is about; another has its own name only."""
+    """Compounds with a model for the expected coefficient; any other is only a name."""
     twin: Callable[[Callable[[str], None]], AtTheTwin]

@@ -1,7 +1,7 @@
-"""Questions to the person who commissions a rig, and the one interface behind which that person is.
+"""Questions to the person who commissions a rig, and the interface that represents the person.
 
-A terminal, a screen and the person of a test are the same to the engine: a question is put, and looked for an answer
-between ticks. Nobody blocks a scan.
+A terminal, a screen and a test's person are the same to the engine: it asks a question, and checks for an answer
+between ticks. A question never blocks a scan.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tester.base.units import UnitError, parse, units_like
 
 
 class Asks(Enum):
-    """What kind of answer a question wants."""
+    """The kind of answer that a question needs."""
 
     CHOICE = "choice"
     """One of ``Question.choices``."""
@@ -25,16 +25,16 @@ class Asks(Enum):
     TEXT = "text"
     """A line of text."""
     KEY = "key"
-    """The word GO: something moves for a short time because of it."""
+    """The word GO: it starts a short motion."""
 
 
 GO = "go"
-"""The word that makes something move."""
+"""The word that starts a motion."""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """One question. ``key``: its name, the same in every commissioning; ``text``: as a person reads it."""
+    """One question. ``key``: its name, the same in every commissioning; ``text``: for the person."""
 
     key: str
     text: str
@@ -43,7 +43,7 @@ class Question:
     unit: str = ""
 
     def refusal(self, answer: str) -> str:
-        """Return why a text is no answer, "" where it is one."""
+        """Return why a text is not a valid answer, "" if it is."""
         text = answer.strip()
         if self.asks is Asks.CHOICE:
             return "" if text in self.choices else f"expected one of: {', '.join(self.choices)}"
@@ -57,7 +57,7 @@ class Question:
         return "" if text else "expected a text"
 
     def value(self, answer: str) -> float:
-        """Return a quantity in ``unit``; a bare number counts in it. Raises UnitError."""
+        """Return a quantity in ``unit``; a bare number counts as in that unit. Raises UnitError."""
         text = answer.strip()
         try:
             bare = float(text)
@@ -69,7 +69,7 @@ class Question:
 
     @property
     def hint(self) -> str:
-        """What may be answered, in words."""
+        """The valid answers, in words."""
         if self.asks is Asks.CHOICE:
             return " / ".join(self.choices)
         if self.asks is Asks.KEY:
@@ -80,50 +80,50 @@ class Question:
 
 
 class Person(Protocol):
-    """Whoever commissions: a front of the engine."""
+    """The person who commissions: a front of the engine."""
 
     @property
     def time_stands(self) -> bool:
-        """A simulated rig's time stands still while this person thinks; a scripted person takes rig time."""
+        """Whether a simulated rig's time stops while this person thinks; a scripted person takes rig time."""
         ...
 
     def tell(self, text: str) -> None:
-        """Say something."""
+        """Show a message."""
         ...
 
     def put(self, question: Question) -> None:
-        """Put a question; the one before is answered or withdrawn."""
+        """Ask a question; the one before is answered or withdrawn."""
         ...
 
     def taken(self, now_s: float) -> str | None:
-        """Return the answer, None while there is none; ``now_s``: rig time, s, infinity where no rig runs."""
+        """Return the answer, None without one; ``now_s``: rig time, s, infinity if no rig runs."""
         ...
 
     def poll(self) -> list[str]:
-        """Look at the keyboard; return the commands (tester.base.keys) that were given: "stop", "fast stop"."""
+        """Return the commands typed since the last call (tester.base.keys): "stop", "fast stop"."""
         ...
 
 
-class StepRefused(Exception):  # noqa: N818 - a finding, said to a person
-    """A step does not pass: what was found, and what to do about it; for people and for the record."""
+class StepRefused(Exception):  # noqa: N818 - a finding for a person
+    """A step does not pass: the finding and the remedy, for people and for the record."""
 
 
 @dataclass(frozen=True, slots=True)
 class AskPerson:
-    """Wait for an answer that fits."""
+    """Wait for a valid answer."""
 
     question: Question
 
 
 Until = Callable[[float], bool]
-"""Wait until something is so: called once a tick with rig time, s."""
+"""Wait for a condition: called once a tick with rig time, s."""
 Waits = AskPerson | Until
 Dialogue = Generator[Waits, str, None]
 Measured = Generator[Waits, str, float]
 
 
 def choose(key: str, text: str, *choices: str) -> Generator[Waits, str, str]:
-    """Ask for one of some words."""
+    """Ask for one of several words."""
     return (yield AskPerson(Question(key, text, Asks.CHOICE, choices))).strip()
 
 
@@ -139,7 +139,7 @@ def line(key: str, text: str) -> Generator[Waits, str, str]:
 
 
 def press(key: str, text: str) -> Dialogue:
-    """Ask for the word that makes something move; raises StepRefused for "no"."""
+    """Ask for the word that starts a motion; raises StepRefused for "no"."""
     answer = (yield AskPerson(Question(key, text, Asks.KEY))).strip()
     if answer != GO:
         raise StepRefused(f"left by the person at: {text}")

@@ -18,10 +18,10 @@ from pathlib import Path
 from typing import Any, Final
 
 BEGUN, READING, DONE, REFUSED = "begun", "reading", "done", "refused"
-"""What an entry is of a step: its begin, something read in it, that it passed, that it did not."""
+"""Kinds of entry about a step: its begin, a reading in it, its success, its refusal."""
 FIRST: Final = "0" * 64
 FOLDER: Final = "commissioning"
-"""Below the folder of the runs: a record for each rig."""
+"""Folder below that of the runs, with a record for each rig."""
 
 
 def record_path(runs: Path, rig: str) -> Path:
@@ -31,19 +31,19 @@ def record_path(runs: Path, rig: str) -> Path:
 
 
 class RecordError(Exception):
-    """The record cannot be read or does not hold together; the message says where."""
+    """The record is unreadable or its chain is broken; the message gives the place."""
 
 
 @dataclass(frozen=True, slots=True)
 class RecordEntry:
-    """One line. ``values``: numbers and texts by name, units in the names."""
+    """One line. ``values``: numbers and texts by name, with units in the names."""
 
     at: str
     by: str
     rig: str
     rig_sha256: str
     sections: str
-    """SHA-256 of what the step depends on in the rig file."""
+    """SHA-256 of the parts of the rig file that the step depends on."""
     step: str
     what: str
     text: str = ""
@@ -68,12 +68,12 @@ class CommissionRecord:
     """The entries of a rig, oldest first."""
 
     def __init__(self, path: Path, utc: Callable[[], str], by: str) -> None:
-        """Read what is there; raises RecordError, OSError. ``by``: who adds to it from now on."""
+        """Read the existing entries; raises RecordError, OSError. ``by``: the author of new entries."""
         self.path = path
         self.by = by
         self.entries: list[RecordEntry] = []
         self.torn = False
-        """The last line was cut off."""
+        """The last line is incomplete."""
         self._utc = utc
         self._read()
 
@@ -89,7 +89,7 @@ class CommissionRecord:
                 continue
             entry = _entry(raw)
             if entry is None:
-                continue  # cut off by a kill; of one that was changed the next line does not follow
+                continue  # cut off by a kill; a changed line would show in the next line's hash
             if entry.previous != last:
                 raise RecordError(f"{self.path}: line {number} does not follow from the one before: one was changed")
             last = entry.sha256
@@ -127,28 +127,28 @@ class CommissionRecord:
         return entry
 
     def last(self, step: str) -> RecordEntry | None:
-        """Return the newest entry of a step that says how it stands: readings are passed over."""
-        return next((one for one in reversed(self.entries) if one.step == step and one.what != READING), None)
+        """Return the newest entry of a step, ignoring readings."""
+        return next((entry for entry in reversed(self.entries) if entry.step == step and entry.what != READING), None)
 
     def standing(self, step: str, sections: str) -> RecordEntry | None:
-        """Return the entry by which a step has passed with these sections of the rig file; None: it is to be done."""
-        found = self.last(step)
-        return found if found is not None and found.what == DONE and found.sections == sections else None
+        """Return the entry with which a step passed with these sections of the rig file; None if it is not done."""
+        entry = self.last(step)
+        return entry if entry is not None and entry.what == DONE and entry.sections == sections else None
 
 
 def _entry(raw: bytes) -> RecordEntry | None:
-    """Return a line's entry, None where it is none or its hash is not its own."""
+    """Return a line's entry, None if the line is not an entry or its hash is wrong."""
     try:
-        found: dict[str, Any] = json.loads(raw)
-        sha256 = str(found.pop("sha256"))
-        entry = RecordEntry(**found, sha256=sha256)
+        fields: dict[str, Any] = json.loads(raw)
+        sha256 = str(fields.pop("sha256"))
+        entry = RecordEntry(**fields, sha256=sha256)
     except (ValueError, TypeError, KeyError, AttributeError):
         return None
     return entry if hashlib.sha256(entry.body().encode()).hexdigest() == sha256 else None
 
 
 def _sync_folder(folder: Path) -> None:
-    """Let a new file's name reach the disk, where the system can be asked to (POSIX)."""
+    """Sync a new file's name to the disk, on systems that support it (POSIX)."""
     if os.name != "posix":
         return
     descriptor = os.open(folder, os.O_RDONLY)

@@ -1,4 +1,4 @@
-"""Steps of a commissioning as data, the rig as a step sees it, and the walk of one procedure between ticks."""
+"""Steps of a commissioning as data, the rig as a step sees it, and the execution of a procedure between ticks."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from tester.machine.ports import Ports
 
 
 class Seat(Protocol):
-    """A rig on its wires for one step: what a ticker drives, and what a procedure is handed."""
+    """A rig on its wires for one step: driven by a ticker, and handed to a procedure."""
 
     @property
     def ready(self) -> bool:
-        """The procedure may begin."""
+        """Whether the procedure may begin."""
         ...
 
     @property
     def finished(self) -> bool:
-        """At rest, everything released."""
+        """Whether everything is at rest and released."""
         ...
 
     @property
     def reason(self) -> str:
-        """Why it ended by itself; "" where it was told to."""
+        """Why it ended by itself; "" after a request."""
         ...
 
     def tick(self, now: float) -> float:
-        """Do what is due at ``now`` s; return when to be called again."""
+        """Do everything due at ``now`` s; return the time of the next call."""
         ...
 
     def stop(self, why: str, *, fast: bool = False) -> None:
@@ -42,29 +42,29 @@ class Seat(Protocol):
         ...
 
     def abandon(self) -> None:
-        """Send what is safe once: nobody ticks after this."""
+        """Send a safe state once: no tick follows."""
         ...
 
 
 @dataclass(slots=True)
 class Notes:
-    """What a procedure leaves: told to the person, and on record."""
+    """A procedure's output: messages to the person, and entries for the record."""
 
     tell: Callable[[str], None]
     read: Callable[[str, Mapping[str, Any]], object]
-    """Put a reading on record at once."""
+    """Record a reading at once."""
     done: Mapping[str, Mapping[str, Any]]
-    """Values of the steps that stand, by step."""
+    """Values of the finished steps, by step."""
     given: Mapping[str, str] = field(default_factory=dict[str, str])
-    """What the command line has said already, by the key of the question."""
+    """The command line's answers, by the question's key."""
     values: dict[str, Any] = field(default_factory=dict[str, Any])
-    """Of the entry by which the step passes."""
+    """Values of the entry with which the step passes."""
     text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class StepReading:
-    """What the rig shows at present, for a person: ``value`` in ``unit``, NaN where there is none; ``words`` beside."""
+    """A present reading of the rig, for a person: ``value`` in ``unit``, NaN without one; ``words`` beside it."""
 
     label: str
     value: float
@@ -75,21 +75,23 @@ class StepReading:
 
 @dataclass(frozen=True, slots=True)
 class Alone:
-    """What a step without a seat may use."""
+    """The tools of a step without a seat."""
 
     rig: Rig
     person: Person
     run_recipe: Callable[[str, str], Mapping[str, Any]]
-    """Run a recipe (its name and text) on the rig as a run like any other; return its results as plain data. Raises
-    StepRefused where it did not go through."""
+    """Run a recipe (its name and text) on the rig as an ordinary run; return its results as plain data.
+
+    Raises StepRefused if it did not complete.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class CommissionStep:
-    """One step. ``sections``: dotted keys of the rig file on which its result depends; a change of them undoes it.
+    """One step. ``sections``: dotted keys of the rig file that its result depends on; a change of them invalidates it.
 
-    ``needs``: steps whose results it takes. Of ``seat`` and ``alone`` one: whether it has the rig on its wires, or
-    runs a recipe or nothing. ``readings``: from a seat, what a person wants to see meanwhile; looks only.
+    ``needs``: steps whose results it uses. Either ``seat`` or ``alone`` is set: the step has the rig on its wires, or
+    it runs a recipe or nothing. ``readings``: reads values for the person from a seat; changes nothing.
     """
 
     name: str
@@ -97,17 +99,17 @@ class CommissionStep:
     sections: tuple[str, ...]
     needs: tuple[str, ...] = ()
     seat: Callable[[Any, Ports, Any], Any] | None = None
-    """From rig, wires and the hands at the rig."""
+    """Makes a seat from rig, wires and the hands at the rig."""
     procedure: Callable[[Any, Notes], Dialogue] | None = None
     alone: Callable[[Alone, Notes], None] | None = None
     readings: Callable[[Any], Sequence[StepReading]] | None = None
 
 
 def sections_sha256(rig: Rig, sections: tuple[str, ...]) -> str:
-    """Return the hash of what stands in a rig file under some dotted keys; what is not there counts as nothing."""
+    """Return the hash of a rig file's content under some dotted keys; missing keys count as nothing."""
     tree = as_tree(rig)
-    found = {key: _at(tree, key.split(".")) for key in sections}
-    text = json.dumps(found, sort_keys=True, ensure_ascii=False, default=str)
+    sections_found = {key: _at(tree, key.split(".")) for key in sections}
+    text = json.dumps(sections_found, sort_keys=True, ensure_ascii=False, default=str)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -124,11 +126,11 @@ class Walk:
     """A seat and a procedure, ticked together (tester.machine.tickers.Ticked)."""
 
     def __init__(self, seat: Seat, procedure: Dialogue, person: Person) -> None:
-        """Nothing happens before the first tick."""
+        """Do nothing before the first tick."""
         self.seat = seat
         self.person = person
         self.ended = False
-        """The procedure came to its end, or gave up."""
+        """The procedure has ended, or given up."""
         self.error: Exception | None = None
         self.now_s = 0.0
         self._procedure = procedure
@@ -137,17 +139,17 @@ class Walk:
 
     @property
     def finished(self) -> bool:
-        """The rig is at rest."""
+        """Whether the rig is at rest."""
         return self.seat.finished
 
     @property
     def waiting(self) -> bool:
-        """Simulated time stands still while a person thinks."""
+        """Whether simulated time stops because a person thinks."""
         asked = isinstance(self._awaited, AskPerson) and not self.ended and not self.seat.finished
         return asked and self.person.time_stands and self.seat.ready and self.person.taken(inf) is None
 
     def tick(self, now: float) -> float:
-        """Tick the rig, then go on with the procedure as far as it goes."""
+        """Tick the rig, then resume the procedure as far as possible."""
         self.now_s = now
         due = self.seat.tick(now)
         if self.seat.ready and not self.seat.finished and not self.ended:
@@ -160,7 +162,7 @@ class Walk:
         self.seat.stop(why, fast=fast)
 
     def _go_on(self, now: float) -> None:
-        """Wake the procedure for as long as what it waits for is there already."""
+        """Resume the procedure as long as its condition is already met."""
         try:
             if not self._begun:
                 self._begun = True
@@ -169,7 +171,7 @@ class Walk:
                 self._await(self._procedure.send(answer))
         except StopIteration:
             self._end("step done")
-        except Exception as error:  # noqa: BLE001 - whatever a procedure raises, the rig is stopped first; raised again later
+        except Exception as error:  # noqa: BLE001 - whatever it raises, the rig stops first; raised again later
             self.error = error
             self._end("step given up")
 
@@ -179,7 +181,7 @@ class Walk:
             self.person.put(awaited.question)
 
     def _answer(self, now: float) -> str | None:
-        """Return what the procedure is woken with; None while it has to wait."""
+        """Return the value to resume the procedure with; None while it has to wait."""
         if not isinstance(self._awaited, AskPerson):
             return "" if self._awaited(now) else None
         answer = self.person.taken(now)

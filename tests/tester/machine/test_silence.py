@@ -39,7 +39,7 @@ def test_a_line_is_silent_where_one_is_lost_and_no_other_has_answered_since() ->
     assert silent_lines(lines, there) == ""
     for one in there:
         one.driver.station.misses = 1
-    assert silent_lines(lines, there) == "nobody answers on line climate: sensor 1, sensor 2"
+    assert silent_lines(lines, there) == "no answer on line climate: sensor 1, sensor 2"
 
 
 def test_a_line_has_the_name_of_the_rig_file_and_its_devices() -> None:

@@ -17,7 +17,7 @@ STEP = CommissionStep("jog", "a jog", ("can",))
 @pytest.mark.parametrize(
     ("what", "same", "words"),
     [
-        (DONE, True, "stands since 2026-11-23, me: told"),
+        (DONE, True, "done on 2026-11-23, me: told"),
         (DONE, False, "to be done again (the rig file has changed under it, 2026-11-23): told"),
         (BEGUN, True, "to be done again (was cut off, 2026-11-23): told"),
         (REFUSED, True, "to be done again (refused, 2026-11-23): told"),
