@@ -11,7 +11,7 @@ from tester.analysis.blocks import Block
 from tester.analysis.closest import Combining
 from tester.analysis.flags import IMPRECISE, NOT_SHOWN, flags_in, joined
 from tester.analysis.judge import ALONE
-from tester.analysis.reduce import bursts_of, counted, reduce_repeat, withlostvalue
+from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_value
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus
 from tester.analysis.swing import swing_of
@@ -164,7 +164,7 @@ class StoredResults(Generic[ContextT]):
         blocks, window = measured.counter.blocks, step.window
         status = REPEAT_STATUS.get(measured.ending)
         if status is not None:
-            result = withlostvalue(status, measured.detail, ended_s=ctx.now)
+            result = without_value(status, measured.detail, ended_s=ctx.now)
         else:
             result = reduce_repeat(
                 blocks,
