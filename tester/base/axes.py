@@ -1,8 +1,8 @@
-"""The axes of a condition: what is held while it is measured, and the one way to say it in words and columns.
+"""The axes of a condition: its setpoints, and their single wording for texts and columns.
 
-An axis is one row of a kind's table, the table is an ``Axes``, what is held is a ``Setpoint``: the compound and a value
-for each axis, looked up by the axis's name. Two conditions that differ in any axis read differently everywhere, because
-every line, table and plot asks here.
+An axis is a row of a kind's table, the table is an ``Axes``, and the state during a condition is a ``Setpoint``: the
+compound and a value for each axis, looked up by the axis's name. Two conditions that differ in any axis read
+differently everywhere, because every line, table and plot takes its words from here.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from operator import itemgetter
 from typing import NamedTuple, TypeAlias, cast
 
 AxisValue: TypeAlias = float | str
-"""What an axis is held at: a number in the axis's ``recipe_unit``, or one of its ``choices``."""
+"""Value of an axis: a number in the axis's ``recipe_unit``, or one of its ``choices``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,10 +21,10 @@ class Axis:
     """One axis.
 
     ``name`` is its key in a recipe, in ``recipe_unit``; ``field`` its column in the record of a run, in the same unit,
-    which ``scale`` turns into ``unit``, as people read it. ``column`` is its column in the project's tables, ``header``
-    in the paper's table, ``title`` on a narrow screen. ``word`` stands before the value where the unit does not tell
-    which axis it is. ``default`` is a value (in ``unit``) that needs no words and may be left out of a recipe; None:
-    there is none. ``paper``: the paper's table has a column for it.
+    which ``scale`` converts to ``unit``, the unit for people. ``column`` is its column in the project's tables,
+    ``header`` in the paper's table, ``title`` on a narrow screen. ``word`` comes before the value where the unit does
+    not identify the axis. ``default`` is a value (in ``unit``) that needs no words and may be left out of a recipe;
+    None: there is none. ``paper``: the paper's table has a column for it.
     """
 
     name: str
@@ -39,24 +39,24 @@ class Axis:
     default: AxisValue | None
     paper: bool
     plotted: int = 0
-    """Its turn among those that the coefficient is plotted against, from the least on."""
+    """Its turn on the abscissa of plots, lowest first; 0: never."""
     ge: float | None = None
     gt: float | None = None
     le: float | None = None
-    """What a recipe may ask for on any rig, in ``recipe_unit``: at least, more than, at most."""
+    """Range in any recipe, in ``recipe_unit``: at least, more than, at most."""
     choices: tuple[str, ...] = ()
     """The values of an axis that is not a number."""
     in_measure: bool = False
-    """A recipe says it in ``measure``, for all grids that do not say it themselves."""
+    """Whether a recipe sets it in ``measure``, for all grids without their own value."""
     limit: str = ""
-    """The key of the rig's limit on it, such as ``limits.load``; "" where the kind knows what limits it."""
+    """Key of the rig's limit on it, such as ``limits.load``; "" where the kind defines the limit."""
     drive: str = ""
-    """The rig's drive that holds it, such as ``axes.camber``, where a person may set it instead; only 0 is then held
-    without it. "" where it is always held by a device."""
+    """The rig's drive for it, such as ``axes.camber``, where a person may set it instead; only 0 is then possible
+    without the drive. "" where a device always sets it."""
 
     @property
     def recipe_default(self) -> AxisValue | None:
-        """The default in ``recipe_unit``."""
+        """Return the default in ``recipe_unit``."""
         return self.default / self.scale if isinstance(self.default, float) else self.default
 
     def of(self, held: Setpoint) -> AxisValue:
@@ -69,7 +69,7 @@ class Axis:
         return _number(self.of(held), self.name)
 
     def at_default(self, held: Setpoint) -> bool:
-        """Tell whether a condition needs no words for this axis."""
+        """Return whether a condition needs no words for this axis."""
         return self.default is not None and self.of(held) == self.default
 
     def words(self, held: Setpoint) -> str:
@@ -78,9 +78,9 @@ class Axis:
 
 
 class Setpoint(NamedTuple):
-    """What is held during a condition: the compound, and a value for each axis of a table.
+    """The state during a condition: the compound, and a value for each axis of a table.
 
-    A tuple: plans have tens of thousands of them and look conditions up by setpoint. ``values`` lie in the order of
+    A tuple: plans have tens of thousands of them and look conditions up by setpoint. ``values`` are in the order of
     ``Axes.nested``, which only ``Axes`` and ``value`` need to know.
     """
 
@@ -89,27 +89,27 @@ class Setpoint(NamedTuple):
     axes: Axes
 
     def value(self, name: str) -> AxisValue:
-        """Return what an axis is held at, in its ``recipe_unit``; raises KeyError."""
+        """Return the value of an axis, in its ``recipe_unit``; raises KeyError."""
         return self.values[self.axes.places[name]]
 
     def number(self, name: str) -> float:
-        """Return what an axis of numbers is held at; raises KeyError, and TypeError for an axis of choices."""
+        """Return the value of a numeric axis; raises KeyError, and TypeError for an axis of choices."""
         return _number(self.value(name), name)
 
     def numbers(self) -> dict[str, float]:
-        """Return what the axes of numbers are held at, in their ``recipe_unit``, by name."""
-        return {one.name: self.number(one.name) for one in self.axes if not one.choices}
+        """Return the values of the numeric axes, in their ``recipe_unit``, by name."""
+        return {axis.name: self.number(axis.name) for axis in self.axes if not axis.choices}
 
     def but(self, compound: str | None = None, /, **values: AxisValue) -> Setpoint:
         """Return the setpoint with other values, by axis name; raises KeyError."""
-        mine = list(self.values)
+        changed = list(self.values)
         for name, value in values.items():
-            mine[self.axes.places[name]] = value
-        return Setpoint(self.compound if compound is None else compound, tuple(mine), self.axes)
+            changed[self.axes.places[name]] = value
+        return Setpoint(self.compound if compound is None else compound, tuple(changed), self.axes)
 
 
 class Axes:
-    """A kind's table of axes, in the order in which they are told.
+    """A kind's table of axes, in the order of their words.
 
     ``blocks`` is the axis by which conditions are measured in blocks, ascending, because it changes slowest; in a
     recipe's rows it is innermost. Tables with the same names in the same order are equal: a record's and its kind's.
@@ -118,14 +118,14 @@ class Axes:
     __slots__ = ("blocks", "nested", "places", "table")
 
     def __init__(self, table: Iterable[Axis], blocks: str) -> None:
-        """Make a table; raises ValueError where a name stands twice or ``blocks`` is not in it."""
+        """Make a table; raises ValueError for a repeated name, or if ``blocks`` is not in it."""
         self.table = tuple(table)
         self.blocks = blocks
         names = [one.name for one in self.table]
         if len(set(names)) < len(names) or blocks not in names:
             raise ValueError(f"axes {', '.join(names)}: each once, and {blocks} among them")
         self.nested = (*(name for name in names if name != blocks), blocks)
-        """Names in the order in which a grid's values nest, and in which a setpoint's values lie."""
+        """Names in the order in which a grid's values nest, which is the order of a setpoint's values."""
         self.places: Mapping[str, int] = {name: place for place, name in enumerate(self.nested)}
 
     def __iter__(self) -> Iterator[Axis]:
@@ -136,9 +136,9 @@ class Axes:
 
     def __getitem__(self, name: str) -> Axis:
         """Return the axis of a name; raises KeyError."""
-        for one in self.table:
-            if one.name == name:
-                return one
+        for axis in self.table:
+            if axis.name == name:
+                return axis
         raise KeyError(name)
 
     def __eq__(self, other: object) -> bool:
@@ -154,33 +154,33 @@ class Axes:
         return Axes, (self.table, self.blocks)
 
     def setpoint(self, compound: str, /, **values: AxisValue) -> Setpoint:
-        """Return a setpoint of values by axis name; what is left out is at its default. Raises KeyError."""
+        """Return a setpoint of values by axis name; missing axes are at their defaults. Raises KeyError."""
         unknown = values.keys() - self.places.keys()
         if unknown:
             raise KeyError(f"no axis {', '.join(sorted(unknown))} (expected {', '.join(self.nested)})")
         defaults = {one.name: one.recipe_default for one in self.table if one.recipe_default is not None}
-        found: Mapping[str, AxisValue] = defaults | values
-        return Setpoint(compound, tuple(found[name] for name in self.nested), self)
+        complete: Mapping[str, AxisValue] = defaults | values
+        return Setpoint(compound, tuple(complete[name] for name in self.nested), self)
 
     def numbers_of(self, *names: str) -> Callable[[tuple[AxisValue, ...]], tuple[float, ...]]:
-        """Return what takes the numbers of these axes (two or more) out of a setpoint's ``values``, fast."""
-        taken = itemgetter(*(self.places[name] for name in names))
-        return cast("Callable[[tuple[AxisValue, ...]], tuple[float, ...]]", taken)
+        """Return a fast getter of the numbers of these axes (two or more) from a setpoint's ``values``."""
+        getter = itemgetter(*(self.places[name] for name in names))
+        return cast("Callable[[tuple[AxisValue, ...]], tuple[float, ...]]", getter)
 
     def number_of(self, name: str) -> Callable[[tuple[AxisValue, ...]], float]:
-        """Return what takes the number of an axis out of a setpoint's ``values``, fast."""
+        """Return a fast getter of the number of an axis from a setpoint's ``values``."""
         return cast("Callable[[tuple[AxisValue, ...]], float]", itemgetter(self.places[name]))
 
     def as_data(self) -> list[dict[str, object]]:
-        """Return the table as plain data, from which ``axes_from`` makes one that tells conditions in the same words.
+        """Return the table as plain data, from which ``axes_from`` makes a table with the same words.
 
-        What a recipe may ask for on a rig of the kind is left out: it says nothing of what was held.
+        The ranges for recipes are left out: they do not describe setpoints.
         """
-        found: list[dict[str, object]] = []
-        for one in self.table:
-            row: dict[str, object] = {name: getattr(one, name) for name in TOLD}
-            found.append(row | {"choices": list(one.choices), "blocks": one.name == self.blocks})
-        return found
+        rows: list[dict[str, object]] = []
+        for axis in self.table:
+            row: dict[str, object] = {name: getattr(axis, name) for name in TOLD}
+            rows.append(row | {"choices": list(axis.choices), "blocks": axis.name == self.blocks})
+        return rows
 
     def differing(self, conditions: Iterable[Setpoint]) -> tuple[Axis, ...]:
         """Return the axes in which conditions differ from each other."""
@@ -198,7 +198,7 @@ class Axes:
 
 TOLD = ("name", "recipe_unit", "field", "unit", "scale", "column", "header", "title", "word", "default", "paper",
         "plotted")  # fmt: skip
-"""Fields of an axis that say how it is told; with its choices and which one is of blocks, a table as plain data."""
+"""Fields of an axis that determine its words; with its choices and the axis of blocks, a table as plain data."""
 
 
 def axes_from(rows: Iterable[Mapping[str, object]]) -> Axes:
@@ -243,33 +243,34 @@ def plain(value: AxisValue) -> str:
 def condition_words(held: Setpoint, axes: Sequence[Axis] | None = None, *, compound: bool = True) -> str:
     """Return a condition in words: ``1#, 300 mm/s, 200 N, sideslip 10 deg, 40 degC``.
 
-    An axis at its default is left out, any other is told. In a list of conditions ``axes`` says which are told of each,
-    at their default or not: those in which they differ.
+    An axis at its default is left out. In a list of conditions ``axes`` are those to name for each, at their default or
+    not: those that differ within the list.
     """
-    told = [one for one in held.axes if not one.at_default(held)] if axes is None else axes
-    return ", ".join([*([held.compound] if compound else []), *(one.words(held) for one in told)])
+    named = [axis for axis in held.axes if not axis.at_default(held)] if axes is None else axes
+    return ", ".join([*([held.compound] if compound else []), *(one.words(held) for one in named)])
 
 
 class ListWords:
-    """How the conditions of one list are told: by what differs between them, which fits where all of it would not."""
+    """Wording of the conditions of one list: by their differences, which fit where the full words would not."""
 
     def __init__(self, conditions: Iterable[Setpoint]) -> None:
-        """Find out what differs; all conditions have the same axes."""
+        """Find the differences; all conditions have the same axes."""
         listed = list(conditions)
         self.compound = len({held.compound for held in listed}) > 1
         self.first = listed[0] if listed else None
         self.axes = self.first.axes.differing(listed) if self.first is not None else ()
 
     def of(self, held: Setpoint) -> str:
-        """Return what tells a condition from the others; all of it where it is the only one."""
+        """Return the words that distinguish a condition from the others; all of them where it is the only one."""
         if not self.axes and not self.compound:
             return condition_words(held)
         return condition_words(held, self.axes, compound=self.compound)
 
     @property
     def common(self) -> str:
-        """What all of them share, for the list's heading; "" where ``of`` tells everything."""
+        """Return the words that all of them share, for the list's heading; "" where ``of`` already includes everything.
+        """
         if self.first is None or not (self.axes or self.compound):
             return ""
-        shared = [one for one in self.first.axes if one not in self.axes and not one.at_default(self.first)]
+        shared = [axis for axis in self.first.axes if axis not in self.axes and not axis.at_default(self.first)]
         return condition_words(self.first, shared, compound=not self.compound)

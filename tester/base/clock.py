@@ -1,4 +1,4 @@
-"""The only place that reads a clock or sleeps, and the pace of a run by it. Everything else is handed its time."""
+"""The only place that reads a clock or sleeps, and the pace of a run by it. All other code receives its time."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ def local_stamp() -> str:
 
 
 def utc_in(seconds: float) -> str:
-    """Return the wall clock in so many seconds from now as ISO 8601 text in UTC, for people only."""
+    """Return the wall clock ``seconds`` from now as ISO 8601 text in UTC, for people only."""
     return (datetime.now(UTC) + timedelta(seconds=seconds)).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
 LATE_S = 0.005
-"""A wait that ends this late has seen the whole process stand still, s: its other threads are as late [A]."""
+"""A wait that ends this late shows that the whole process was suspended, s: its other threads are as late [A]."""
 
 
 class Pace:
@@ -59,25 +59,26 @@ class Pace:
         return monotonic() - self._origin_s
 
     def wait_until(self, due_s: float) -> bool:
-        """Return at ``due_s`` (s); True where something urgent has ended the wait."""
+        """Return at ``due_s`` (s); True where an urgent event has ended the wait."""
         sleep_until(self._origin_s + due_s)
         return False
 
 
 class UrgentPace(Pace):
-    """The pace of a run on a machine: edges stamp what arrives by its clock, and something urgent ends a wait."""
+    """The pace of a run on a machine: receivers stamp arrivals by its clock, and an urgent event ends a wait."""
 
     def __init__(self, catch_up_s: float = 0.0) -> None:
-        """Start at 0. ``catch_up_s``: what threads that receive need to fetch what came while the process stood."""
+        """Start at 0. ``catch_up_s``: time that receiving threads need to fetch the data that arrived during a
+        suspension."""
         super().__init__()
         self._urgent = Event()
         self._catch_up_s = catch_up_s
 
     def wait_until(self, due_s: float) -> bool:
-        """Return at ``due_s`` (s), or with True as soon as something urgent has arrived since the last wait began.
+        """Return at ``due_s`` (s), or with True as soon as an urgent event has arrived since the last wait began.
 
-        After a wait that ended late the receiving threads get a moment first: the scan would take data for stale that
-        is there already.
+        After a late wait the receiving threads get a moment first: otherwise the scan would take data for stale that
+        has already arrived.
         """
         delay = due_s - self.now()
         if delay > 0.0 and not self._urgent.is_set():
@@ -89,5 +90,5 @@ class UrgentPace(Pace):
         return urgent
 
     def hurry(self) -> None:
-        """End the wait under way, or the next one: from any thread."""
+        """End the present wait, or the next one: from any thread."""
         self._urgent.set()

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 Config = TypeVar("Config", bound="DataclassInstance")
 
 FURTHER_KEYS: Final = "further keys"
-"""Marks the one field of a dataclass that takes the keys that no other field has:
-``Annotated[Mapping[str, float], FURTHER_KEYS]``. Each is a bare number; in the file they stand beside the others."""
+"""Marks the one field of a dataclass that takes all keys without a field of their own: ``Annotated[Mapping[str, float],
+FURTHER_KEYS]``. Each is a bare number; in the file they are beside the others."""
 
 LEFT_OUT: Final = {"left out": True}
 """Metadata of a field that is written only where it differs from its default."""
@@ -42,7 +42,7 @@ SUFFIXES: dict[str, str] = {
     "mm3/(N m)": "_mm3_per_n_m", "mm/K": "_mm_per_k", "%": "_percent", "bit/s": "_bit_s",
     "kg/m3": "_kg_m3", "J/(kg K)": "_j_kg_k", "W/(m K)": "_w_m_k", "W/(m2 K)": "_w_m2_k",
 }  # fmt: skip
-"""What a field's name ends with for its unit. The list is closed: another unit's field keeps its name as its key."""
+"""Suffix of a field's name for its unit. The list is closed: a field with another unit keeps its name as its key."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,14 +56,14 @@ class Range:
 
 
 def key_of(kind: type[DataclassInstance], name: str) -> str:
-    """Return the key that a field of a configuration class has in the file."""
+    """Return the key of a configuration class's field in the file."""
     return _key(name, _hints(kind)[name])
 
 
 def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
     """Return a file's tree as an instance of ``kind``; raises InvalidSource with every problem.
 
-    ``missing`` is said of every key that has to be there, beside that it is not.
+    ``missing`` is added to the message for every missing key.
     """
     from pydantic import TypeAdapter, ValidationError  # only commands that read a file pay for it
 
@@ -74,7 +74,7 @@ def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
 
 
 def as_tree(config: DataclassInstance) -> dict[str, object]:
-    """Return a configuration as it could stand in a file: every key, quantities as text with their unit."""
+    """Return a configuration as data for a file: every key, quantities as text with their unit."""
     hints = _hints(type(config))
     tree: dict[str, object] = {}
     for field in fields(config):
@@ -101,7 +101,7 @@ def _takes_rest(hint: object) -> bool:
 
 
 def _may_be_empty(field: Field[Any]) -> bool:
-    """Tell whether a field is left out where it is empty: a mapping, or one that says so."""
+    """Return whether an empty field is left out: a mapping, or one marked so."""
     return get_origin(field.default_factory) is dict or "left out" in field.metadata
 
 
@@ -112,7 +112,7 @@ def _unit(hint: object) -> str | None:
     """
     if get_origin(hint) is not Annotated or _takes_rest(hint):
         return None
-    unit = next((one for one in get_args(hint)[1:] if isinstance(one, str)), None)
+    unit = next((argument for argument in get_args(hint)[1:] if isinstance(argument, str)), None)
     if unit is not None:
         unit = unit.replace(".", " ")
         units_like(unit)
@@ -125,7 +125,7 @@ def _key(name: str, hint: object) -> str:
 
 @cache
 def _base(*, further: bool) -> type[BaseModel]:
-    """Return what every model inherits: a text is no number, true is not 1, an unknown key is an error or a number."""
+    """Return the base of every model: a text is no number, true is not 1, an unknown key is an error or a number."""
     from pydantic import BaseModel, ConfigDict
 
     strict = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, protected_namespaces=())
@@ -166,7 +166,7 @@ def _field(field: Field[Any], key: str) -> object:
 
 
 def _built(kind: type[DataclassInstance]) -> Any:
-    """Return the type that validates a mapping and gives an instance of ``kind``.
+    """Return the type that validates a mapping and yields an instance of ``kind``.
 
     A ValueError of the dataclass itself becomes a problem at the mapping's place.
     """
@@ -191,16 +191,16 @@ def _type(hint: Any) -> Any:
 
     unit = _unit(hint)
     if unit is not None:
-        bounds = next((one for one in get_args(hint) if isinstance(one, Range)), Range())
+        bounds = next((argument for argument in get_args(hint) if isinstance(argument, Range)), Range())
         return Annotated[float, Quantity(unit, True, bounds.gt, bounds.ge, bounds.lt, bounds.le)]
     if isinstance(hint, type) and is_dataclass(hint):
         return _built(hint)
     origin, arguments = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
-        return Union[tuple(_type(one) for one in arguments)]  # noqa: UP007 - made of a tuple
+        return Union[tuple(_type(argument) for argument in arguments)]  # noqa: UP007 - made of a tuple
     if origin is tuple:
         # A file has lists only; their items stay strict.
-        return Annotated[tuple[tuple(_type(one) for one in arguments)], Strict(False)]
+        return Annotated[tuple[tuple(_type(argument) for argument in arguments)], Strict(False)]
     if origin in (dict, Mapping):
         return dict[str, _type(arguments[1])]
     return cast("object", hint)
@@ -215,10 +215,10 @@ def _plain(value: object, hint: object) -> object:
     arguments = get_args(hint)
     if isinstance(value, Mapping):
         entries = cast("Mapping[str, object]", value)
-        return {key: _plain(one, arguments[1]) for key, one in entries.items()}
+        return {key: _plain(entry, arguments[1]) for key, entry in entries.items()}
     if isinstance(value, tuple):
         items = cast("tuple[object, ...]", value)
-        return [_plain(one, None) for one in items]
+        return [_plain(item, None) for item in items]
     return value
 
 

@@ -1,8 +1,9 @@
-"""What a key means, in every front end: `tester run` in a terminal, the operator's screen, the pages that name them.
+"""Keys and their meanings, in every front end: `tester run` in a terminal, the operator's screen, the pages that name
+them.
 
-A terminal may take function keys for itself, so what stops has a key of each kind. Ctrl+C is no row: it asks a program
-to leave. Of a run in the foreground that is a controlled stop (a second one a fast stop), of a screen it is nothing to
-the run.
+A terminal may take function keys for itself, so each stop has a function key and a control key. Ctrl+C is no entry: it
+asks a program to leave. For a run in the foreground that is a controlled stop (a second one a fast stop), and a screen
+leaves without any effect on the run.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """One meaning. ``keys``: as screens name them; ``typed``: what a terminal sends; ``shown``: for people."""
+    """One meaning. ``keys``: names for screens; ``typed``: a terminal's characters; ``shown``: for people."""
 
     command: str
     keys: tuple[str, ...]
@@ -27,28 +28,28 @@ FAST_STOP: Final = Meaning("fast stop", ("f9", "ctrl+f"), ("\x1b[20~", "\x06"), 
 HOLD: Final = Meaning("hold", ("space",), (" ",), "space", "HOLD")
 RELEASE: Final = Meaning("release", ("r",), ("r", "R"), "r", "go on")
 MEANINGS: Final = (STOP, FAST_STOP, HOLD, RELEASE)
-"""Those that work wherever a run is seen."""
+"""Meanings that work wherever a run is shown."""
 HELP: Final = "   ".join(f"{one.shown} {one.does}" for one in MEANINGS)
 
 
 def pieces_of(typed: str) -> list[tuple[str, Meaning | None]]:
-    """Return what a terminal has sent key by key, each with its meaning, None where it has none."""
-    found: list[tuple[str, Meaning | None]] = []
+    """Return a terminal's input key by key, each with its meaning, None where it has none."""
+    keys: list[tuple[str, Meaning | None]] = []
     at = 0
     while at < len(typed):
         meaning, length = _first(typed[at:])
-        found.append((typed[at : at + length], meaning))
+        keys.append((typed[at : at + length], meaning))
         at += length
-    return found
+    return keys
 
 
 def commands_of(typed: str) -> list[str]:
-    """Return the commands in what a terminal has sent; other keys mean nothing, whatever they send."""
+    """Return the commands in a terminal's input; other keys mean nothing, whatever they send."""
     return [meaning.command for _, meaning in pieces_of(typed) if meaning is not None]
 
 
 def _first(typed: str) -> tuple[Meaning | None, int]:
-    """Return what the first key means, and how many characters it has sent."""
+    """Return the meaning of the first key, and its number of characters."""
     for meaning in MEANINGS:
         for text in meaning.typed:
             if typed.startswith(text):
@@ -57,7 +58,7 @@ def _first(typed: str) -> tuple[Meaning | None, int]:
 
 
 def _length(typed: str) -> int:
-    """Return how long the first key's text is: of a control sequence (ECMA-48) up to its final byte."""
+    """Return the length of the first key's text: of a control sequence (ECMA-48) up to its final byte."""
     if typed[0] != "\x1b" or len(typed) == 1:
         return 1
     if typed[1] == "O":

@@ -1,7 +1,7 @@
-"""Exclusive use of a rig: one lock a bus, held by the operating system, released by it when a process dies.
+"""Exclusive use of a rig: one lock for each bus, held by the operating system, released by it when a process dies.
 
-The locks are filelock's: flock on POSIX, a locked first byte on Windows. The lock files stay where they are, but for a
-run's own. What is in one, from its second byte on, says who holds it.
+The locks are filelock's: flock on POSIX, a locked first byte on Windows. Lock files remain, except for a run's own.
+From its second byte on, a lock file describes its holder.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ if TYPE_CHECKING:
     from filelock import FileLock
 
 FOLDER_VARIABLE = "TESTER_LOCKS"
-"""Environment variable that names another folder for lock files; everybody at one rig has to use the same."""
+"""Environment variable that names another folder for lock files; all users of one rig must use the same."""
 
 RUN_LOCK = ".lock"
-"""Name of the lock file in the folder of a run that is under way."""
+"""Name of the lock file in the folder of a run in progress."""
 
 _TEXT_AT_MOST = 4096
-"""Bytes of a lock file that say who holds it, behind the first, which nobody else can read on Windows."""
+"""Bytes of a lock file that describe its holder, after the first, which no other process can read on Windows."""
 
 _SETTLES_S = 0.02
-"""By when a lock file is gone whose holder is just removing it, s [A]; whoever holds one for longer has it."""
+"""Time for a releasing holder to remove its lock file, s [A]; after that the lock counts as held."""
 
 
 @dataclass(frozen=True, slots=True)
 class Holder:
-    """Who uses a bus: process, user, since when (UTC), for which run."""
+    """The user of a bus: process, user, since when (UTC), for which run."""
 
     pid: int
     user: str
@@ -52,40 +52,40 @@ class Holder:
 
 
 class RigInUseError(Exception):
-    """Somebody else uses the rig; the message says who."""
+    """Another process uses the rig; the message names it."""
 
 
 class ExclusiveUse:
     """Locks, held until ``release`` or the end of the process; use in a ``with`` block."""
 
     def __init__(self, folder: Path | None = None) -> None:
-        """Hold nothing yet. ``folder``: of the lock files, by default one for the whole machine."""
+        """Start without locks. ``folder``: of the lock files, by default one for the whole machine."""
         self._folder = folder
         self._held: list[tuple[FileLock, Path | None]] = []
 
     def lock(self, resources: Sequence[str], run: str) -> None:
         """Lock the buses of a rig (texts such as ``can socketcan:can0``); raises RigInUseError at once, OSError.
 
-        ``run`` is told to whoever is refused.
+        ``run`` is shown to processes that are refused.
         """
         for resource in sorted(set(resources)):
             self.lock_file(resource, (self._folder or lock_folder()) / _file_name(resource), run)
 
     def lock_file(self, resource: str, path: Path, run: str, *, lasting: bool = True) -> None:
-        """Lock one file; one that is not ``lasting`` goes when it is released. Raises RigInUseError, OSError."""
+        """Lock one file; one that is not ``lasting`` is removed at its release. Raises RigInUseError, OSError."""
         from filelock import FileLock, Timeout  # only commands that lock pay for it
 
-        said = json.dumps(asdict(Holder(os.getpid(), user(), clock.utc_now(), run)), ensure_ascii=False).encode()
+        holder = json.dumps(asdict(Holder(os.getpid(), user(), clock.utc_now(), run)), ensure_ascii=False).encode()
 
         def say(descriptor: int) -> None:
             os.ftruncate(descriptor, 0)
-            os.write(descriptor, b"\n" + said[:_TEXT_AT_MOST])
+            os.write(descriptor, b"\n" + holder[:_TEXT_AT_MOST])
 
         lock = FileLock(
             path,
-            mode=0o666 if lasting else 0o644,  # one for the whole machine may be locked by everybody, whoever made it
+            mode=0o666 if lasting else 0o644,  # a lock for the whole machine must be open to all users, whoever made it
             thread_local=False,
-            fallback_to_soft=False,  # a file that merely exists would outlive a process that is killed
+            fallback_to_soft=False,  # a file that merely exists would outlive a killed process
             preserve_lock_file=lasting,
             on_acquired=say,
         )
@@ -98,7 +98,7 @@ class ExclusiveUse:
         self._held.append((lock, None if lasting else path))
 
     def release(self) -> None:
-        """Let go of every lock."""
+        """Release every lock."""
         while self._held:
             lock, path = self._held.pop()
             if path is not None:
@@ -111,12 +111,12 @@ class ExclusiveUse:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Let go of every lock."""
+        """Release every lock."""
         self.release()
 
 
 def user_of(path: Path) -> Holder | None:
-    """Return who holds a lock file at present, None where nobody does."""
+    """Return the present holder of a lock file, None without one."""
     try:
         descriptor = os.open(path, os.O_RDONLY)
     except OSError:
@@ -140,22 +140,22 @@ def lock_folder() -> Path:
 
 
 def holder_of(path: Path) -> Holder | None:
-    """Return who last wrote into a lock file, None where that cannot be read."""
+    """Return the last holder described in a lock file, None where it cannot be read."""
     try:
         with path.open("rb") as file:
             file.seek(1)
-            said = cast(object, json.loads(file.read(_TEXT_AT_MOST)))
+            stored = cast(object, json.loads(file.read(_TEXT_AT_MOST)))
     except (OSError, ValueError):
         return None
-    if not isinstance(said, dict):
+    if not isinstance(stored, dict):
         return None
-    texts = {str(key): str(value) for key, value in cast(dict[object, object], said).items()}
+    texts = {str(key): str(value) for key, value in cast(dict[object, object], stored).items()}
     pid = texts.get("pid", "")
     return Holder(int(pid) if pid.isdecimal() else 0, *(texts.get(key, "") for key in ("user", "since_utc", "run")))
 
 
 def _file_name(resource: str) -> str:
-    """Return the name of a resource's lock file; the short hash keeps names apart that differ in odd characters."""
+    """Return the name of a resource's lock file; the short hash separates names that differ in odd characters."""
     name = re.sub(r"[^A-Za-z0-9]+", "-", resource).strip("-")[:40]
     return f"friction-tester-{name}-{sha256(resource.encode()).hexdigest()[:8]}.lock"
 

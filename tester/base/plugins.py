@@ -1,13 +1,13 @@
-"""Extensions of a laboratory's own, from installed packages: profiles of devices, export formats, laws, kinds.
+"""A laboratory's extensions from installed packages: profiles of devices, export formats, laws, kinds.
 
-An extension is asked for by name and found in one of two ways. A package declares an entry point of that name in the
+An extension is requested by name and found in one of two ways. A package declares an entry point of that name in the
 group ``friction_tester.profiles``, ``.drives``, ``.formats``, ``.laws`` or ``.kinds``; or the name is dotted,
-``package.module:object``. A path is refused. Nothing is imported before it is asked for, and what was loaded is kept
-for the run's record.
+``package.module:object``. A path is refused. Nothing is imported before it is requested, and every loaded extension is
+kept for the run's record.
 
-A command that a person starts loads what that person's rig file names. A service is handed names by its clients, so it
-loads those only that its own start allowed (``tester serve --allow NAME``, or ``TESTER_ALLOW=NAME,NAME``). The
-variable is inherited: what counts for a process counts for those it starts.
+A command that a person starts loads the extensions that the rig file names. A service receives names from its clients,
+so it loads only those that its own start allowed (``tester serve --allow NAME``, or ``TESTER_ALLOW=NAME,NAME``). Child
+processes inherit the variable and its restriction.
 """
 
 from __future__ import annotations
@@ -28,31 +28,31 @@ from typing import Literal
 Group = Literal["profiles", "drives", "formats", "laws", "kinds"]
 
 ALLOW_VARIABLE = "TESTER_ALLOW"
-"""Environment variable: names, separated by commas, of the extensions that may be loaded; empty for none. Where it is
-not set, all that is asked for."""
+"""Environment variable: names, separated by commas, of the extensions that may be loaded; empty for none. Without it,
+any may be loaded."""
 
 _DOTTED = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
 _NAME = re.compile(r"\w[\w.-]*")
 
 
 class PluginError(ValueError):
-    """An extension that is not there, not allowed, or not what it should be; the message is for people."""
+    """An extension that is missing, not allowed, or of the wrong type; the message is for people."""
 
 
 @dataclass(frozen=True, slots=True)
 class Extension:
-    """What was loaded, and where it came from."""
+    """A loaded extension, and its origin."""
 
     group: Group
     name: str
-    """As it was asked for."""
+    """The requested name."""
     target: str
-    """Where it was found: ``module:object``."""
+    """Location: ``module:object``."""
     distribution: str
-    """Name of the installed package, "" for a module that belongs to none."""
+    """Name of the installed package, "" for a module outside packages."""
     version: str
     sha256: str
-    """Of the file that was read (a profile's TOML, else the module's), "" where there is none."""
+    """Hash of the file that was read (a profile's TOML, else the module's), "" where there is none."""
 
     def describe(self) -> str:
         """Return a line for people and for the record."""
@@ -61,16 +61,16 @@ class Extension:
 
 
 class Plugins:
-    """Finds and loads extensions, and keeps what it loaded."""
+    """Finds and loads extensions, and keeps the loaded ones."""
 
     def __init__(self, allowed: Collection[str] | None = None) -> None:
-        """``allowed``: names that may be loaded; None = all that is asked for."""
+        """``allowed``: names that may be loaded; None = any."""
         self.allowed = None if allowed is None else frozenset(allowed)
         self._loaded: dict[tuple[Group, str], tuple[Extension, object]] = {}
 
     @property
     def loaded(self) -> tuple[Extension, ...]:
-        """Return what was loaded, in that order."""
+        """Return the loaded extensions, in order of loading."""
         return tuple(extension for extension, _ in self._loaded.values())
 
     def names(self, group: Group) -> tuple[str, ...]:
@@ -79,7 +79,7 @@ class Plugins:
         return tuple(sorted(declared if self.allowed is None else declared & self.allowed))
 
     def load(self, group: Group, name: str) -> object:
-        """Return the object of an extension. Raises PluginError; what its module raises on import passes."""
+        """Return the object of an extension. Raises PluginError; errors of its module's import pass through."""
         return self._kept(group, name, ending="")
 
     def text(self, group: Group, name: str, ending: str) -> str:
@@ -99,20 +99,20 @@ class Plugins:
                 if ending:
                     file = files(module) / f"{attribute or name}{ending}"
                     content = file.read_bytes()
-                    found: object = content.decode()
+                    extension: object = content.decode()
                 else:
                     place = import_module(module)
-                    found = attrgetter(attribute)(place) if attribute else place
+                    extension = attrgetter(attribute)(place) if attribute else place
                     content = Path(place.__file__).read_bytes() if place.__file__ else b""
             except (ImportError, SyntaxError, AttributeError, OSError, TypeError, ValueError) as error:
                 raise PluginError(f'extension "{name}" ({target}) cannot be loaded: {error}') from error
             known = version(distribution) if distribution else ""
             digest = sha256(content).hexdigest() if content else ""
-            self._loaded[group, name] = Extension(group, name, target, distribution, known, digest), found
+            self._loaded[group, name] = Extension(group, name, target, distribution, known, digest), extension
         return self._loaded[group, name][1]
 
     def _check(self, name: str) -> None:
-        """Refuse a name that is none, or not allowed. Nothing has been imported."""
+        """Refuse an invalid name, or one that is not allowed. Nothing has been imported."""
         if "/" in name or "\\" in name or name.endswith(".py"):
             raise PluginError(
                 f'"{name}" is a path: an extension is the name of an entry point, or package.module:object of an'
@@ -131,12 +131,12 @@ class Plugins:
 def _declared(group: Group, name: str) -> tuple[str, str, str]:
     """Return module, object ("" for the module itself) and distribution of an entry point; raises PluginError."""
     points = entry_points(group=f"friction_tester.{group}")
-    found = {point.value: point for point in points if point.name == name}
-    if len(found) == 1:
-        (point,) = found.values()
+    declaring = {point.value: point for point in points if point.name == name}
+    if len(declaring) == 1:
+        (point,) = declaring.values()
         return point.module, point.attr, _package(point)
-    if found:
-        packages = " and ".join(sorted(map(_package, found.values())))
+    if declaring:
+        packages = " and ".join(sorted(map(_package, declaring.values())))
         raise PluginError(f'extension "{name}": {packages} both declare it: name it package.module:object')
     known = ", ".join(sorted(points.names)) or "none"
     raise PluginError(
@@ -155,16 +155,16 @@ def _package(point: EntryPoint) -> str:
 
 
 def allow_only(names: Collection[str]) -> None:
-    """Let this process, and those it starts, load only these extensions, and what ``TESTER_ALLOW`` names already."""
+    """Restrict this process, and its children, to these extensions and those already in ``TESTER_ALLOW``."""
     os.environ[ALLOW_VARIABLE] = ",".join([*filter(None, [os.environ.get(ALLOW_VARIABLE)]), *names])
     plugins.cache_clear()
 
 
 @cache
 def plugins() -> Plugins:
-    """Return the extensions of this process, with what its environment allows."""
-    said = os.environ.get(ALLOW_VARIABLE)
-    return Plugins(None if said is None else [name.strip() for name in said.split(",") if name.strip()])
+    """Return the extensions of this process, as allowed by its environment."""
+    allowed = os.environ.get(ALLOW_VARIABLE)
+    return Plugins(None if allowed is None else [name.strip() for name in allowed.split(",") if name.strip()])
 
 
 class MissingExtraError(Exception):

@@ -1,9 +1,7 @@
-"""Processes of ours: how one starts, its real-time priority, the signals that ask it to end, its exit codes.
+"""Processes of ours: starting one, its real-time priority, the signals that ask it to end, its exit codes.
 
-The signals are INT, TERM, and HUP where the system has it (not Windows).
-
-A process that was started with HUP ignored (nohup, a service) goes on ignoring it: somebody wanted it to outlive its
-terminal.
+The signals are INT, TERM, and HUP where the system has it (not Windows). A process started with HUP ignored (nohup, a
+service) keeps ignoring it: it must outlive its terminal.
 """
 
 from __future__ import annotations
@@ -20,13 +18,13 @@ from typing import Final, TypeAlias
 Handler: TypeAlias = Callable[[int, FrameType | None], object]
 
 HANG_UP: Final[int] = getattr(signal, "SIGHUP", 0)
-"""The terminal is gone; 0 where there is no such signal."""
+"""The terminal is gone; 0 where the system has no such signal."""
 QUIT: Final[int] = getattr(signal, "SIGQUIT", 0)
-"""Ctrl+\\: out, at once; 0 where there is no such signal."""
+"""Ctrl+\\: leave at once; 0 where the system has no such signal."""
 SUSPENDING: Final = tuple(
     int(getattr(signal, name)) for name in ("SIGTSTP", "SIGTTIN", "SIGTTOU") if hasattr(signal, name)
 )
-"""What would suspend a process in the middle of a motion (Ctrl+Z, and a terminal that another one has)."""
+"""Signals that would suspend a process in the middle of a motion (Ctrl+Z, and a terminal in use by another process)."""
 
 
 def asking_to_end() -> list[int]:
@@ -39,7 +37,7 @@ def asking_to_end() -> list[int]:
 
 @contextmanager
 def handled(handler: Handler) -> Generator[None]:
-    """Have a handler called with what asks this process to end, and do not be suspended, while the block lasts.
+    """Call a handler for signals that ask this process to end, and ignore those that suspend it, within the block.
 
     Main thread only.
     """
@@ -54,7 +52,7 @@ def handled(handler: Handler) -> Generator[None]:
 
 @contextmanager
 def not_inherited() -> Generator[None]:
-    """Let a process that is started in the block ignore Ctrl+C and a hang-up: both reach its parent (main thread)."""
+    """Let a process started in the block ignore Ctrl+C and a hang-up: both reach its parent (main thread)."""
     numbers = [number for number in asking_to_end() if number != signal.SIGTERM]
     before = {number: signal.signal(number, signal.SIG_IGN) for number in numbers}
     try:
@@ -65,7 +63,7 @@ def not_inherited() -> Generator[None]:
 
 
 def leave_to_parent() -> None:
-    """Ignore Ctrl+C and a hang-up from now on: the parent hears them too, and says what is to be done."""
+    """Ignore Ctrl+C and a hang-up from now on: the parent receives them as well, and decides."""
     for number in (int(signal.SIGINT), HANG_UP, QUIT, *SUSPENDING):
         if number:
             signal.signal(number, signal.SIG_IGN)
@@ -89,10 +87,12 @@ LEVEL = 10
 
 
 class RealTimePriority:
-    """What this process was granted; ``refused`` says why nothing, "" where it was. ``close`` gives it back."""
+    """Real-time priority of this process; ``refused`` is why it was not granted, "" where it was. ``close`` returns it.
+    """
 
     def __init__(self) -> None:
-        """Ask for every thread that runs now: one left behind would keep the others waiting for the interpreter."""
+        """Request it for every running thread: a thread without it would keep the others waiting for the interpreter.
+        """
         self.refused = ""
         self._threads: list[int] = []
         if sys.platform != "linux":
@@ -111,7 +111,7 @@ class RealTimePriority:
             self._threads.append(thread.native_id)
 
     def close(self) -> None:
-        """Be an ordinary process again; threads that have ended need nothing."""
+        """Return to normal priority; threads that have ended need nothing."""
         if sys.platform != "linux":
             return
         for number in self._threads:
@@ -127,11 +127,12 @@ EXIT_FAILED = 1
 """A run failed, a service refused, a record differs."""
 EXIT_USAGE = 2
 EXIT_INVALID = 3
-"""Recipe or rig file; or recipe, rig or calibration are not those of the run that is to go on."""
+"""Invalid recipe or rig file; or recipe, rig or calibration differ from those of the run to be resumed."""
 EXIT_UNREACHABLE = 4
 EXIT_TRIPPED = 5
 """Tripped or stopped."""
 EXIT_INCOMPLETE = 6
 EXIT_INTERRUPTED = 130
 EXIT_READER_GONE = 141
-"""Nobody reads the output any more (`tester runs | head -1`): what a shell calls the end by SIGPIPE."""
+"""The reader of the output is gone (`tester runs
+head -1`): a shell's code for the end by SIGPIPE."""

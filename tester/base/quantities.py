@@ -1,7 +1,7 @@
-"""Quantities: the channels of a kind of rig, in one ordered table from which everybody reads off what he needs.
+"""Quantities: the channels of a kind of rig, in one ordered table for all code.
 
-Every channel of the table is sampled, stored, averaged, exported and shown; nothing else keeps a list or an order of
-channels. This module holds the types. Each kind has its own table, to which the further sensors of a rig add rows
+Every channel of the table is sampled, stored, averaged, exported and shown; no other list or order of channels exists.
+This module defines the types. Each kind has its own table, to which the further sensors of a rig add rows
 (tester.inputs.rig.sensors). A run's record keeps a copy of it, so that a stored run can be read without its kind.
 """
 
@@ -16,24 +16,24 @@ _NAN: Final = float("nan")
 TIME: Final = "time_s"
 """Channel of the rig time, s: the first of every table."""
 GATE: Final = "gate"
-"""Channel of the gates that are closed, a mask: 0 = the sample is accepted."""
+"""Channel of the closed gates, a mask: 0 = the sample is accepted."""
 BURST: Final = "burst"
 """Channel that counts the contacts within a repeat; 0 = outside a burst."""
 KEY: Final = "repeat_key"
 """Channel of the repeat's row in the store, 0 = none."""
 LAST: Final = (GATE, BURST, KEY)
-"""The last channels of a sample, which the scan itself says."""
+"""The last channels of a sample, which the scan itself sets."""
 FURTHER: Final = "readings.channels"
-"""Source of the channels that a rig's further sensors measure; ``readings.channels.0`` is the first of them. They
-stand in that order, before the last three."""
+"""Source of the channels of a rig's further sensors; ``readings.channels.0`` is the first. They are in that order,
+before the last three."""
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A number for a screen: ``scale`` times a key of the rig file, plus ``offset``; of no key the offset alone.
+    """A number for a screen: ``scale`` times a key of the rig file, plus ``offset``; without a key the offset alone.
 
-    ``key`` is dotted (``limits.load_n``), a number in it is a position in a list. ``otherwise`` stands for a key that
-    the rig file leaves empty.
+    ``key`` is dotted (``limits.load_n``), a number in it is a position in a list. ``otherwise`` replaces a key that the
+    rig file leaves empty.
     """
 
     key: str = ""
@@ -43,23 +43,23 @@ class Figure:
 
     def of(self, rig: object) -> float:
         """Return the number for a rig; raises AttributeError for a key that rigs do not have."""
-        found: Any = rig
+        node: Any = rig
         for part in self.key.split(".") if self.key else ():
-            if found is None:
+            if node is None:
                 break
-            found = found[int(part)] if part.isdigit() else getattr(found, part)
-        if found is None and self.otherwise is not None:
+            node = node[int(part)] if part.isdigit() else getattr(node, part)
+        if node is None and self.otherwise is not None:
             return self.otherwise
-        return self.offset + (self.scale * found if self.key and isinstance(found, int | float) else 0.0)
+        return self.offset + (self.scale * node if self.key and isinstance(node, int | float) else 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Screen:
-    """How a channel stands on screens and in the protocol; all numbers in the unit that people read.
+    """Appearance of a channel on screens and in the protocol; all numbers in the unit for people.
 
-    ``key`` is its name there, ``rank`` its row, from 1 (the last are left out where the screen is low). ``device`` is
-    whose news it is: its age is the channel's. ``low`` and ``high`` are the ends of its bar. ``limit`` is where
-    something happens, an interlock or a hard limit of the rig; ``both``: its negative is one, too.
+    ``key`` is its name there, ``rank`` its row, from 1 (low screens leave out the last). ``device`` is the source of
+    its data, whose age is the channel's. ``low`` and ``high`` are the ends of its bar. ``limit`` is the threshold of an
+    interlock or a hard limit of the rig; ``both``: its negative is a limit as well.
     """
 
     key: str
@@ -70,13 +70,13 @@ class Screen:
     limit: Figure | None = None
     both: bool = False
     watched: bool = False
-    """An alarm tells when its news does not come."""
+    """Whether an alarm reports missing data."""
     setpoint: str = ""
-    """Channel that records what is wanted of it."""
+    """Channel that records its setpoint."""
     axis: str = ""
-    """Axis of a condition that says what is wanted of it."""
+    """Axis of a condition with its setpoint."""
     trend: str = ""
-    """Its column in the trend, with the unit that people read; "" = none."""
+    """Its column in the trend, with the unit for people; "" = none."""
     setpoint_trend: str = ""
     """Column of its setpoint in the trend; "" = none."""
 
@@ -85,15 +85,15 @@ class Screen:
 class Channel:
     """One quantity.
 
-    ``name`` is its column in samples and in the store, with its unit (``force_z_n``); ``unit`` that unit as people
-    write it, ``label`` what people read. ``source`` says where the scan reads it: the path from the run's
-    context (``readings.force_z_n``, ``demand.load_n``, ``setpoints.hub_c``, ``gate``), a number in it a position in a
-    list, a name in brackets at its end (``readings.positions[lift]``) a key of a mapping; "" = it is not recorded but
-    worked out for screens.
+    ``name`` is its column in samples and in the store, with its unit (``force_z_n``); ``unit`` that unit for people,
+    ``label`` its name for people. ``source`` is where the scan reads it: the path from the run's context
+    (``readings.force_z_n``, ``demand.load_n``, ``setpoints.hub_c``, ``gate``), a number in it a position in a list, a
+    name in brackets at its end (``readings.positions[lift]``) a key of a mapping; "" = it is not recorded but computed
+    for screens.
 
     ``mean`` is its place among the means over a block, from 1, and so among the measured columns of the results'
-    tables; 0 = it is not averaged. Where people read another unit than is recorded, ``shown_unit`` is theirs,
-    ``scale`` turns values into it and ``column`` is the name with it.
+    tables; 0 = it is not averaged. Where the unit for people differs from the recorded one, ``shown_unit`` is that
+    unit, ``scale`` converts values to it and ``column`` is the name with it.
     """
 
     name: str
@@ -103,7 +103,7 @@ class Channel:
     mean: int = 0
     decimals: int = 3
     whole: bool = False
-    """Its values are whole numbers."""
+    """Whether its values are whole numbers."""
     column: str = ""
     shown_unit: str = ""
     scale: float = 1.0
@@ -111,7 +111,7 @@ class Channel:
 
     @property
     def read_as(self) -> str:
-        """Return the unit that people read."""
+        """Return the unit for people."""
         return self.shown_unit or self.unit
 
     @property
@@ -120,18 +120,18 @@ class Channel:
         return f"measured_{self.column or self.name}"
 
     def scaled(self, value: float | None) -> float | None:
-        """Return a value in the unit that people read."""
+        """Return a value in the unit for people."""
         return value if value is None or self.scale == 1.0 else self.scale * value
 
 
 @dataclass(frozen=True, slots=True)
 class Roles:
-    """Which channels the analysis works with.
+    """Channels that the analysis uses.
 
     ``friction``: the horizontal force along the sliding, and the one across it where it is measured (N). ``normal``:
-    the force that presses (N). ``turn``: the position by which blocks are counted, a whole turn, a stretch of way or of
-    time, and ``block`` how much of it is one block, in its unit. ``temperature``: of the rubber's surface (degC), which
-    friction depends on, and ``sliding`` the speed with which it slides (m/s); "" where neither is measured.
+    the pressing force (N). ``turn``: the position that counts blocks, a whole turn, a length of travel or a time, and
+    ``block`` the size of a block, in its unit. ``temperature``: of the rubber's surface (degC), on which friction
+    depends, and ``sliding`` the sliding speed (m/s); "" where it is not measured.
     """
 
     friction: tuple[str, ...]
@@ -143,35 +143,37 @@ class Roles:
 
 
 class Quantities:
-    """An ordered table of channels, with look-ups. Not changed once made."""
+    """An immutable, ordered table of channels, with look-ups."""
 
     __slots__ = ("_index", "averaged", "channels", "further", "names", "recorded", "roles", "shown")
 
     def __init__(self, channels: tuple[Channel, ...], roles: Roles) -> None:
-        """Take in the table; raises ValueError where it is none."""
+        """Store the table; raises ValueError for an invalid one."""
         self.channels: Final = channels
         self.roles: Final = roles
-        self.recorded: Final = tuple(one for one in channels if one.source)
+        self.recorded: Final = tuple(channel for channel in channels if channel.source)
         """The channels of a sample, in order."""
-        self.names: Final = tuple(one.name for one in self.recorded)
+        self.names: Final = tuple(channel_.name for channel_ in self.recorded)
         """The columns of a sample, all float64, in order."""
-        self.averaged: Final = tuple(sorted((one for one in self.recorded if one.mean), key=lambda one: one.mean))
+        self.averaged: Final = tuple(
+            sorted((channel_ for channel_ in self.recorded if channel_.mean), key=lambda channel_: channel_.mean)
+        )
         """The channels that a block averages, in the order of the results' tables."""
-        self.further: Final = tuple(one for one in self.recorded if one.source.startswith(f"{FURTHER}."))
+        self.further: Final = tuple(channel_ for channel_ in self.recorded if channel_.source.startswith(f"{FURTHER}."))
         """The channels of a rig's further sensors, in order."""
-        ranked = [(one.screen.rank, one) for one in channels if one.screen is not None]
-        self.shown: Final = tuple(one for _, one in sorted(ranked, key=lambda pair: pair[0]))
+        ranked = [(channel.screen.rank, channel) for channel in channels if channel.screen is not None]
+        self.shown: Final = tuple(channel_ for _, channel_ in sorted(ranked, key=lambda pair: pair[0]))
         """The channels of the screens, the most important first."""
         self._index: Final = {name: i for i, name in enumerate(self.names)}
         self._check()
 
     def _check(self) -> None:
-        means = {one.name for one in self.averaged}
+        means = {quantity.name for quantity in self.averaged}
         roles = self.roles
         wanted = {*roles.friction, roles.normal, roles.temperature, roles.sliding} - {""}
-        if len({one.name for one in self.channels}) != len(self.channels):
+        if len({channel.name for channel in self.channels}) != len(self.channels):
             raise ValueError("two channels of one name")
-        if strange := [one.name for one in self.channels if not one.name.isidentifier()]:
+        if strange := [channel.name for channel in self.channels if not channel.name.isidentifier()]:
             raise ValueError(f"a channel's name is letters, digits and _: {strange}")
         if self.names[:1] != (TIME,) or self.names[-3:] != LAST:
             raise ValueError(f"a sample begins with {TIME} and ends with {', '.join(LAST)}: {self.names}")
@@ -188,13 +190,13 @@ class Quantities:
 
     def __getitem__(self, name: str) -> Channel:
         """Return the channel of that name; raises KeyError."""
-        for one in self.channels:
-            if one.name == name:
-                return one
+        for channel in self.channels:
+            if channel.name == name:
+                return channel
         raise KeyError(name)
 
     def __deepcopy__(self, memo: dict[int, object]) -> Quantities:
-        """Return itself: it does not change."""
+        """Return itself: it is immutable."""
         return self
 
     def index(self, name: str) -> int:
@@ -202,15 +204,15 @@ class Quantities:
         return self._index[name]
 
     def with_further(self, channels: Sequence[Channel]) -> Quantities:
-        """Return the table of a rig that has these channels more; raises ValueError where it is none."""
-        at = next(place for place, one in enumerate(self.channels) if one.name == LAST[0])
+        """Return the table of a rig with these further channels; raises ValueError for an invalid one."""
+        at = next(place for place, channel in enumerate(self.channels) if channel.name == LAST[0])
         return Quantities((*self.channels[:at], *channels, *self.channels[at:]), self.roles) if channels else self
 
 
 class Means(Mapping[str, float]):
     """Means of the averaged channels, over a block, a repeat or a condition: by name, and by their roles.
 
-    NaN for what was not measured. Without a table: of nothing.
+    NaN for channels that were not measured. Without a table it is empty.
     """
 
     __slots__ = ("_given", "table")
@@ -218,7 +220,7 @@ class Means(Mapping[str, float]):
     def __init__(self, table: Quantities | None = None, given: Iterable[float] = ()) -> None:
         """``given``: a value for each of the table's averaged channels, in order; raises ValueError."""
         self.table: Final = table
-        names = (one.name for one in table.averaged) if table is not None else ()
+        names = (quantity.name for quantity in table.averaged) if table is not None else ()
         self._given: Final = dict(zip(names, given, strict=True))
 
     def __getitem__(self, name: str) -> float:
@@ -234,7 +236,7 @@ class Means(Mapping[str, float]):
         return len(self._given)
 
     def __hash__(self) -> int:
-        """Return a hash: means do not change."""
+        """Return a hash: means are immutable."""
         return hash(tuple(self._given.items()))
 
     def __repr__(self) -> str:
@@ -258,7 +260,7 @@ class Means(Mapping[str, float]):
 
     @property
     def normal(self) -> float:
-        """Return the force that presses, N."""
+        """Return the pressing force, N."""
         return self._role(self.table.roles.normal) if self.table is not None else _NAN
 
     @property
@@ -273,7 +275,7 @@ class Means(Mapping[str, float]):
 
 
 def mean_of(given: Iterable[Means]) -> Means:
-    """Return the means of at least one, each of equal weight."""
+    """Return the mean of at least one ``Means``, each of equal weight."""
     listed = list(given)
     columns = zip(*(one.values() for one in listed), strict=True)
     return Means(listed[0].table, [sum(column) / len(column) for column in columns])
@@ -281,4 +283,4 @@ def mean_of(given: Iterable[Means]) -> Means:
 
 def temperatures(given: Iterable[Means]) -> list[float]:
     """Return the surface temperatures of means, degC; zeros where the table has none: nothing depends on it then."""
-    return [one.temperature if one.table is None or one.table.roles.temperature else 0.0 for one in given]
+    return [block.temperature if block.table is None or block.table.roles.temperature else 0.0 for block in given]

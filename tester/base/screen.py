@@ -1,7 +1,7 @@
-"""What a screen shows of a kind of machine, and what of it a person may move by hand: plain values, types only.
+"""Screen content for a kind of machine, and its manual controls: plain values, types only.
 
-The tables are a kind's own (``tester/kinds/<kind>/screen``). A service tells them to its clients, so that a client
-draws any kind; what changes from scan to scan is told apart from them, four times a second.
+The tables belong to the kind (``tester/kinds/<kind>/screen``). A service sends them to its clients, so that a client
+draws any kind; values that change from scan to scan are sent separately, four times a second.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ Quality = Literal["good", "stale", "bad", "none"]
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """One measured value beside what is wanted and what is allowed.
+    """One measured value beside its setpoint and its limits.
 
     ``key``, ``label``, ``unit``, ``decimals`` and the ends of a bar (``scale_low``, ``scale_high``), fixed for a rig,
-    are those of a channel in the kind's table. ``low``, ``high``: the limits at which something happens (an interlock,
-    a hard limit of the rig). ``band_low``, ``band_high``: the gate around the setpoint, inside which samples count.
+    are those of a channel in the kind's table. ``low``, ``high``: thresholds of an interlock, or hard limits of the
+    rig. ``band_low``, ``band_high``: the gate around the setpoint, inside which samples count.
     """
 
     key: str
@@ -51,7 +51,7 @@ class Gate:
 
 @dataclass(frozen=True, slots=True)
 class SoakView:
-    """A soak under way: 39.6 of 40.0 +- 1.0 degC, in band 190 s of 600 s, given up after ``at_most_s``."""
+    """A soak in progress: 39.6 of 40.0 +- 1.0 degC, in band 190 s of 600 s, given up after ``at_most_s``."""
 
     surface_c: float | None
     target_c: float
@@ -64,7 +64,7 @@ class SoakView:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One line of the pre-flight list: ``ok`` None where nobody can know before the rig is connected."""
+    """One line of the pre-flight list: ``ok`` None where the rig must be connected first."""
 
     name: str
     ok: bool | None
@@ -73,7 +73,7 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class PlotView:
-    """A trend that is drawn: the value, its column in the trend, the narrowest range drawn, in its unit."""
+    """A plotted trend: the value, its column in the trend, the narrowest range, in its unit."""
 
     key: str
     column: str
@@ -82,7 +82,7 @@ class PlotView:
 
 @dataclass(frozen=True, slots=True)
 class HandAxis:
-    """What a person may move: its name in ``jog``, its title, one step of it and its condition in words."""
+    """A manual movement: its name in ``jog``, its title, its step and its condition in words."""
 
     name: str
     title: str
@@ -91,9 +91,9 @@ class HandAxis:
 
 @dataclass(frozen=True, slots=True)
 class AxisView:
-    """An axis of a condition: key in a recipe, unit that people read, column in tables, title, word before its number.
+    """An axis of a condition: key in a recipe, unit for people, column in tables, title, word before its number.
 
-    A value that is ``default`` needs no words; None: there is none.
+    A value equal to ``default`` needs no words; None: there is none.
     """
 
     name: str
@@ -106,11 +106,11 @@ class AxisView:
 
 @dataclass(frozen=True, slots=True)
 class MachineView:
-    """What stays the same of a kind of machine, for whoever draws it.
+    """Constants of a kind of machine, for clients that draw it.
 
     ``trend``: columns of a row of the trend; the first two are seconds, of the service and of the run, a column with
-    ``_setpoint`` in it is what was wanted. ``plots``: trends to draw, the most important first. ``by_hand``: keys of
-    the values that belong to moving it by hand, ``hand``: what a person may move.
+    ``_setpoint`` in it is a setpoint. ``plots``: trends to plot, the most important first. ``by_hand``: keys of the
+    values for manual movement, ``hand``: the manual movements.
     """
 
     kind: str
@@ -120,22 +120,22 @@ class MachineView:
     hand: tuple[HandAxis, ...] = ()
     axes: tuple[AxisView, ...] = ()
     specimen: str = "specimen"
-    """What people call the part that wears and is changed."""
+    """Name for people of the part that wears and is changed."""
     moves: str = "the machine"
-    """What turns or travels, and must be seen to stand."""
+    """The part that turns or travels, and must be seen at standstill."""
     look: tuple[str, ...] = ()
-    """What else a person looks after at the machine when nobody controls it, a sentence each."""
+    """Further checks by a person at a machine without a controller, a sentence each."""
     ring: str = ""
-    """What people call the ring over which a device on a turning part is reached; "" where there is none."""
+    """Name for people of the slip ring to a device on a turning part; "" where there is none."""
 
 
 def axis_views(axes: Axes) -> tuple[AxisView, ...]:
-    """Return a table of axes as screens have it."""
-    return tuple(AxisView(one.name, one.unit, one.column, one.title, one.word, one.default) for one in axes)
+    """Return a table of axes in the form for screens."""
+    return tuple(AxisView(axis.name, axis.unit, axis.column, axis.title, axis.word, axis.default) for axis in axes)
 
 
 UNKNOWN = MachineView("", ("wall_s", "t_s"))
-"""A machine while none was told."""
+"""A machine before its description has arrived."""
 
 
 def trend_columns(quantities: Quantities) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""A strict section of a file that people write, and the JSON Schema by which editors know it."""
+"""A strict section of a file that people write, and its JSON Schema for editors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def editor_text(model: type[BaseModel]) -> str:
 
 
 def _tidy(node: object) -> object:
-    """Drop what misleads an editor: generated titles, null for "left out", defaults without their unit."""
+    """Drop entries that mislead an editor: generated titles, null for "left out", defaults without their unit."""
     if isinstance(node, list):
         return [_tidy(one) for one in cast("list[object]", node)]
     if not isinstance(node, dict):

@@ -1,11 +1,10 @@
-"""Read YAML written by people: strictly, with the position of everything, all problems at once.
+"""Reads YAML written by people: strictly, with the position of everything, all problems at once.
 
-Recipes and rig files come from editors and USB sticks (safety.md, "Bad input"), so this accepts a small,
-plain part of YAML: mappings, lists and scalars by the YAML 1.2 core schema (``NO`` is a text, ``1e3`` a
-number, ``1:30`` a text). Refused, with line and column: anchors, aliases, tags, merges, directives, several
-documents, duplicate keys, control and bidirectional characters, more than 256 kB or 20 levels. PyYAML
-supplies the events, from libyaml where its installation has that, else from its own parser; nothing is
-ever constructed from a tag.
+Recipes and rig files come from editors and USB sticks (safety.md, "Bad input"), so this accepts a small, plain part of
+YAML: mappings, lists and scalars by the YAML 1.2 core schema (``NO`` is a text, ``1e3`` a number, ``1:30`` a text).
+Refused, with line and column: anchors, aliases, tags, merges, directives, several documents, duplicate keys, control
+and bidirectional characters, more than 256 kB or 20 levels. PyYAML supplies the events, from libyaml where its
+installation has that, else from its own parser; nothing is ever constructed from a tag.
 """
 
 from __future__ import annotations
@@ -32,14 +31,14 @@ if TYPE_CHECKING:
 MAX_BYTES = 256 * 1024
 MAX_DEPTH = 20
 MAX_PROBLEMS = 100
-"""Problems listed of one file; more than this helps nobody."""
+"""Most problems listed for one file: a longer list is no use to a reader."""
 
 _LOADER = cast("type[yaml.SafeLoader]", getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 """Only its events are used. libyaml is missing where PyYAML was built without it."""
 
 Value: TypeAlias = "bool | int | float | str | list[Value] | dict[str, Value] | None"
 Location: TypeAlias = tuple[str | int, ...]
-"""Where something is in the tree: keys and list indices from the top."""
+"""Place in the tree: keys and list indices from the top."""
 
 _NULL = frozenset({"", "~", "null", "Null", "NULL"})
 _BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -50,7 +49,7 @@ _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 @dataclass(frozen=True, slots=True, order=True)
 class Problem:
-    """One thing wrong with a file; line and column count from 1. ``str`` gives ``file:line:col: message``."""
+    """One fault of a file; line and column count from 1. ``str`` gives ``file:line:col: message``."""
 
     file: str
     line: int
@@ -62,7 +61,7 @@ class Problem:
 
 
 class InvalidSource(Exception):  # noqa: N818 - it is the file that is invalid, not the program
-    """A file that cannot be used; ``problems`` says why, sorted by position, at least one."""
+    """A file that cannot be used; ``problems`` lists the reasons, sorted by position, at least one."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         listed = sorted(set(problems))
@@ -85,11 +84,11 @@ class Tree:
     keys: dict[Location, tuple[int, int]] = field(default_factory=dict[Location, tuple[int, int]])
 
     def position(self, location: Location) -> tuple[int, int]:
-        """Return (line, column) of the value at a location, or of what is nearest above it."""
+        """Return (line, column) of the value at a location, or of the nearest value above it."""
         for length in range(len(location), -1, -1):
-            found = self.positions.get(location[:length])
-            if found is not None:
-                return found
+            place = self.positions.get(location[:length])
+            if place is not None:
+                return place
         return 1, 1
 
     def key_position(self, location: Location) -> tuple[int, int]:
@@ -102,9 +101,9 @@ class Tree:
 
 
 def load_tree(source: Path | str, name: str | None = None) -> Tree:
-    """Read a file (Path) or a text (str) into a Tree; ``name`` is what messages call it.
+    """Read a file (Path) or a text (str) and return its Tree; ``name`` names it in messages.
 
-    Raises InvalidSource with every problem that can be told; a syntax error ends the reading.
+    Raises InvalidSource with every problem that can be found; a syntax error ends the reading.
     """
     tree, problems = read_tree(source, name)
     if problems:
@@ -113,10 +112,10 @@ def load_tree(source: Path | str, name: str | None = None) -> Tree:
 
 
 def read_tree(source: Path | str, name: str | None = None) -> tuple[Tree, list[Problem]]:
-    """Return a Tree with the problems that leave it readable, for a caller who goes on to find more.
+    """Return a Tree with the problems that leave it readable, for a caller that continues to look for more.
 
-    Such a tree has null, or the first of two values, where something was refused. Raises InvalidSource for what
-    cannot be read at all.
+    Such a tree has null, or the first of two values, where a value was refused. Raises InvalidSource for an unreadable
+    file.
     """
     called = printable(name if name is not None else str(source) if isinstance(source, Path) else "<text>")
     text = _read(source, called) if isinstance(source, Path) else source
@@ -130,7 +129,7 @@ def read_tree(source: Path | str, name: str | None = None) -> tuple[Tree, list[P
 
 
 def printable(text: str) -> str:
-    """Return a text that can go to a terminal: everything that could steer one is a question mark."""
+    """Return a text that is safe on a terminal: characters that could steer it become question marks."""
     return harmless(text).replace("\n", "?").replace("\t", "?")
 
 
@@ -139,8 +138,8 @@ def problems_from_validation(
 ) -> list[Problem]:
     """Return a pydantic error as problems with positions in the file.
 
-    With ``model`` (the class that was validated) unknown and missing keys name the valid ones. ``missing`` is said
-    of a missing key, too.
+    With ``model`` (the validated class) unknown and missing keys name the valid ones. ``missing`` is added to the
+    message for a missing key.
     """
     from tester.base.validation import problems_of
 
@@ -199,7 +198,7 @@ class _Builder:
         self._reached = (1, 1)
 
     def build(self) -> None:
-        """Fill the tree and the list of problems; raises InvalidSource where reading cannot go on."""
+        """Fill the tree and the list of problems; raises InvalidSource where reading cannot continue."""
         try:
             self._document()
         except MarkedYAMLError as error:
@@ -268,7 +267,7 @@ class _Builder:
             first = self.tree.keys.get(here) if key in items else None
             if first is not None:
                 self._refuse(event, f"duplicate key {shown(key)}: it is in line {first[0]} already")
-                here = (*here, -1)  # read past the value without touching what the first one left
+                here = (*here, -1)  # read past the value without touching the first one's positions
             self.tree.keys[here] = _place(event)
             value = self._node(self._following(), here, depth + 1)
             items.setdefault(key, value)
@@ -310,10 +309,10 @@ class _Builder:
         return text
 
     def _refuse_escaped(self, event: ev.ScalarEvent) -> None:
-        """Refuse by their code what a quoted text brings in by an escape such as "\\u202e"."""
-        found = FORBIDDEN.search(event.value)
-        if found is not None:
-            self._refuse(event, f"the character U+{ord(found.group()):04X} is not accepted, even as an escape")
+        """Refuse, by their code, forbidden characters that a quoted text contains as an escape such as "\\u202e"."""
+        forbidden = FORBIDDEN.search(event.value)
+        if forbidden is not None:
+            self._refuse(event, f"the character U+{ord(forbidden.group()):04X} is not accepted, even as an escape")
 
     def _refuse(self, event: ev.Event, message: str) -> None:
         self.problems.append(Problem(self.tree.name, *_place(event), message))

@@ -1,4 +1,4 @@
-"""What the operating system refuses, in words: which file, why, and what to do about it. No number of an error."""
+"""Errors of the operating system in words: which file, why, and the remedy. Without error numbers."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ _IN_WORDS: Final[Mapping[int, tuple[str, str]]] = {
     errno.ECONNREFUSED: ("nobody listens there", "start what should"),
     errno.EPIPE: ("its reader is gone", ""),
 }
-"""Of an errno: why, and what to do."""
+"""Reason and remedy by errno."""
 _OF_SQLITE: Final[Mapping[int, int]] = {sqlite3.SQLITE_FULL: errno.ENOSPC, sqlite3.SQLITE_IOERR: errno.EIO}
-"""What SQLite's codes say of a disk."""
+"""Disk errors by SQLite's code."""
 
 
 def in_words(error: BaseException) -> str:
-    """Return an error as a person reads it: ``FILE: why: what to do``; one that is none of the system's as it is.
+    """Return an error in words: ``FILE: why: what to do``; any other than the system's unchanged.
 
-    Others get the system's own words for them, as far as there are any.
+    System errors without an entry get the system's own words.
     """
     if isinstance(error, sqlite3.Error):
         code = getattr(error, "sqlite_errorcode", 0) & 0xFF  # of an extended code the primary one

@@ -1,9 +1,8 @@
 """Quantities as text: ``"0.8 m/s"`` to a float in the unit that the caller asks for.
 
-A table of the units of this domain, not a unit system: what is not in the table is refused, and the message names what
-would be accepted. A kind of rig with a quantity of another kind adds it (``add_kind``). Conversions are exact (rational
-arithmetic, rounded once), so ``parse("800 mm/s", "m/s") == 0.8``. SI units: BIPM, The International System of Units,
-9th edition (2019).
+Accepts only the units listed here; anything else is rejected with the list. A kind of rig with a new kind of quantity
+adds it (``add_kind``). Conversions are exact (rational arithmetic, rounded once), so ``parse("800 mm/s", "m/s") ==
+0.8``. SI units: BIPM, The International System of Units, 9th edition (2019).
 
 Absolute temperatures and temperature differences are two different kinds of field: ``Quantity("degC")`` is a
 temperature, ``Quantity("K")`` a difference (where ``2 degC`` and ``2 K`` are the same).
@@ -27,12 +26,12 @@ if TYPE_CHECKING:
 
 
 class UnitError(ValueError):
-    """A text that is not a quantity of the kind asked for; the message says what is accepted."""
+    """A text that is not a quantity of the required kind; the message lists the accepted units."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """A kind of quantity: what it is called, an example, its units as multiples of the first of them."""
+    """A kind of quantity: its name, an example, its units as multiples of the first."""
 
     name: str
     example: str
@@ -42,7 +41,7 @@ class _Kind:
 _ONE = Fraction(1)
 _K = Fraction(1000)
 _MILLI = Fraction(1, 1000)
-_DEGREE_PER_RADIAN = Fraction(180 / math.pi)  # as near as a float comes: the only inexact factor here
+_DEGREE_PER_RADIAN = Fraction(180 / math.pi)  # to a float's precision: the only inexact factor here
 
 _KINDS: tuple[_Kind, ...] = (
     _Kind("a speed", "0.8 m/s", {"m/s": _ONE, "mm/s": _MILLI}),
@@ -87,7 +86,7 @@ _KINDS: tuple[_Kind, ...] = (
 
 
 def _kinds_by_unit() -> dict[str, _Kind]:
-    """Map the unit asked for to its kind: "K" asks for a difference, "%" for a percentage."""
+    """Return the kind of each unit: "K" means a difference, "%" a percentage."""
     table: dict[str, _Kind] = {}
     for kind in _KINDS:
         for unit in kind.units:
@@ -99,11 +98,11 @@ _KIND_OF = _kinds_by_unit()
 
 
 def add_kind(name: str, example: str, units: Mapping[str, float]) -> None:
-    """Add a kind of quantity to the table, before anything asks for its unit.
+    """Add a kind of quantity to the table, before its unit is first used.
 
     ``name`` with its article, such as "a viscosity"; ``example`` such as "50 mPa s"; ``units`` with the factor to the
     first of them, which is 1: {"mPa s": 1, "Pa s": 1000}. The same kind may be added again. Raises UnitError for a unit
-    that is there already as another kind's, and for a factor that is not above 0.
+    of another kind in the table, and for a factor that is not above 0.
     """
     factors = {unit: Fraction(factor) for unit, factor in units.items() if factor > 0.0 and math.isfinite(factor)}
     if len(factors) < len(units) or next(iter(factors.values()), None) != 1:
@@ -116,7 +115,7 @@ def add_kind(name: str, example: str, units: Mapping[str, float]) -> None:
 
 
 def known_unit(unit: str, of: str) -> None:
-    """Raise UnitError unless a unit is in the table; ``of``: what has it, for the message."""
+    """Raise UnitError unless a unit is in the table; ``of``: its user, for the message."""
     if unit not in _KIND_OF:
         near = difflib.get_close_matches(unit, [*_KIND_OF], n=1, cutoff=0.6)
         meant = f", did you mean {near[0]}?" if near else ""
@@ -138,7 +137,7 @@ _SPELLINGS: dict[str, str] = {
     "W/m2/K": "W/(m2 K)", "W/m2K": "W/(m2 K)", "W/(m2K)": "W/(m2 K)", "W/m2 K": "W/(m2 K)",
     "mm3/Nm": "mm3/(N m)", "mm3/(Nm)": "mm3/(N m)", "mm3/N m": "mm3/(N m)", "mm3/N/m": "mm3/(N m)",
 }  # fmt: skip
-"""Other ways in which people write a unit of the table."""
+"""Other spellings of the table's units."""
 
 _TYPOGRAPHY = str.maketrans(
     {"·": " ", "⋅": " ", "*": " ", "²": "2", "³": "3", "^": None, "μ": "µ", "\u00a0": " ", "\u202f": " "}
@@ -149,9 +148,10 @@ _HUGE = re.compile(r"\s*[+\-−]?[0-9.]+[eE][+\-]?[0-9]{3}")
 """A number with more digits in its exponent than any quantity has."""
 _DECIMAL_COMMA = re.compile(r"\s*[+\-−]?[0-9]+,[0-9]")
 _LONGEST = 80
-"""Longest text that is looked at, in characters: any real quantity is a quarter of this."""
+"""Longest text that is parsed, in characters: any real quantity is a quarter of this."""
 _REMEMBERED = 32_768
-"""Texts whose value is remembered: a file's quantities are read by the schema and again against the rig's limits."""
+"""Number of texts whose value is cached: a file's quantities are read by the schema and again against the rig's limits.
+"""
 
 
 def shown(text: str) -> str:
@@ -161,13 +161,13 @@ def shown(text: str) -> str:
 
 
 def units_like(unit: str) -> tuple[str, ...]:
-    """Return the units accepted where ``unit`` is asked for; raises KeyError if it is not in the table."""
+    """Return the units accepted for ``unit``; raises KeyError if it is not in the table."""
     return tuple(_KIND_OF[unit].units)
 
 
 @cache
 def expected(*units: str) -> str:
-    """Say what is expected, e.g. ``a speed such as "0.8 m/s"; units accepted: m/s, mm/s``."""
+    """Return the expected form, e.g. ``a speed such as "0.8 m/s"; units accepted: m/s, mm/s``."""
     kinds = list(dict.fromkeys(_KIND_OF[unit].name for unit in units))
     example = _KIND_OF[units[0]].example
     accepted = dict.fromkeys(one for unit in units for one in units_like(unit) if one != "1")
@@ -177,9 +177,8 @@ def expected(*units: str) -> str:
 def parse(text: str, unit: str) -> float:
     """Return a quantity's value in ``unit``.
 
-    ``unit`` is one of the table; the text may use any unit of the same kind and its usual spellings. A ratio
-    (unit "1") may stand without a unit. Raises UnitError with a message for the user, KeyError for an unknown
-    ``unit`` asked for.
+    ``unit`` is in the table; the text may use any unit of the same kind and its usual spellings. A ratio (unit "1")
+    needs no unit. Raises UnitError with a message for the user, KeyError for an unknown ``unit``.
     """
     return parse_one_of(text, (unit,))[0]
 
@@ -187,7 +186,7 @@ def parse(text: str, unit: str) -> float:
 def parse_one_of(text: str, units: tuple[str, ...]) -> tuple[float, str]:
     """Return (value, unit) of a quantity that may be of several kinds, e.g. ``("rev", "s")``.
 
-    The unit returned is the one of ``units`` whose kind fits; the value is in it. Raises as ``parse`` does.
+    The returned unit is the one of ``units`` whose kind fits; the value is in it. Raises as ``parse`` does.
     """
     if len(text) > _LONGEST:
         raise UnitError(f"{shown(text)} is too long for a quantity (expected {expected(*units)})")
@@ -212,8 +211,8 @@ def _parsed(text: str, units: tuple[str, ...]) -> tuple[float, str]:
         kind = _KIND_OF[unit]
         factor = kind.units.get(name or "1")
         if factor is not None:
-            own = kind.units[unit]
-            exact = float(number) if factor is own else float(Fraction(number) * factor / own)
+            target = kind.units[unit]
+            exact = float(number) if factor is target else float(Fraction(number) * factor / target)
             # + 0.0 turns a negative zero into zero: -0 mm/s is the same condition as 0 mm/s.
             return exact + 0.0, unit
     if not written:
@@ -223,7 +222,7 @@ def _parsed(text: str, units: tuple[str, ...]) -> tuple[float, str]:
 
 @lru_cache(maxsize=256)
 def _canonical(written: str) -> str:
-    """Return the table's spelling of a unit; a unit that is not in the table comes back as it was written."""
+    """Return the table's spelling of a unit; a unit outside the table comes back unchanged."""
     tidy = re.sub(r"\s*([/()])\s*", r"\1", written.translate(_TYPOGRAPHY))
     tidy = re.sub(r"\s+", " ", tidy).strip()
     tidy = re.sub(r"/\((\w+)\)$", r"/\1", tidy)
@@ -231,7 +230,7 @@ def _canonical(written: str) -> str:
 
 
 def _unit_problem(written: str, name: str, units: tuple[str, ...]) -> str:
-    """Say what is wrong with a unit: of another kind, misspelt, or unknown."""
+    """Return the fault of a unit: of another kind, misspelt, or unknown."""
     if name == "K" and "degC" in units:
         return "the unit K, which is for temperature differences here"
     if name in _KIND_OF:
@@ -244,12 +243,12 @@ def _unit_problem(written: str, name: str, units: tuple[str, ...]) -> str:
 
 
 def show(value: float, unit: str) -> str:
-    """Return a value with its unit as people read it, with at most six significant digits."""
+    """Return a value with its unit for people, with at most six significant digits."""
     return f"{value:.6g} {unit}"
 
 
 def as_text(value: float, unit: str) -> str:
-    """Return a value as ``parse`` reads it back without loss: ``as_text(0.3, "m/s") == "0.3 m/s"``."""
+    """Return a value in a form that ``parse`` reads back without loss: ``as_text(0.3, "m/s") == "0.3 m/s"``."""
     return f"{int(value) if value == int(value) and abs(value) < 1e15 else value} {unit}"
 
 
@@ -269,7 +268,7 @@ class Quantity:
     le: float | None = None
 
     def read(self, value: object) -> float:
-        """Return the value in ``unit`` of what the file holds; raises UnitError."""
+        """Return the value in ``unit`` of a file's entry; raises UnitError."""
         if isinstance(value, str):
             number = parse(value, self.unit)
         elif isinstance(value, bool) or not isinstance(value, int | float):
@@ -283,32 +282,32 @@ class Quantity:
 
     def _bound(self, number: float) -> None:
         unit = "" if self.unit == "1" else f" {self.unit}"
-        given = f"{number:.6g}{unit}"
+        text = f"{number:.6g}{unit}"
         if not math.isfinite(number):
-            raise UnitError(f"{given} is not a finite number (expected {expected(self.unit)})")
+            raise UnitError(f"{text} is not a finite number (expected {expected(self.unit)})")
         if self.gt is not None and number <= self.gt:
-            raise UnitError(f"{given} is too small (expected more than {self.gt:g}{unit})")
+            raise UnitError(f"{text} is too small (expected more than {self.gt:g}{unit})")
         if self.ge is not None and number < self.ge:
-            raise UnitError(f"{given} is too small (expected at least {self.ge:g}{unit})")
+            raise UnitError(f"{text} is too small (expected at least {self.ge:g}{unit})")
         if self.lt is not None and number >= self.lt:
-            raise UnitError(f"{given} is too large (expected less than {self.lt:g}{unit})")
+            raise UnitError(f"{text} is too large (expected less than {self.lt:g}{unit})")
         if self.le is not None and number > self.le:
-            raise UnitError(f"{given} is too large (expected at most {self.le:g}{unit})")
+            raise UnitError(f"{text} is too large (expected at most {self.le:g}{unit})")
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Give pydantic a validator that reads text; imported here so that units cost no pydantic."""
+        """Return a validator of text for pydantic, imported here so that units cost no pydantic."""
         from pydantic_core import PydanticCustomError, core_schema
 
         def validate(value: object) -> float:
             try:
                 return self.read(value)
             except UnitError as error:
-                # The text goes in as a value: a user's braces never reach a format string.
+                # The text is passed as a value: a user's braces never reach a format string.
                 raise PydanticCustomError("quantity", "{message}", {"message": str(error)}) from error
 
         if self.bare or self.unit == "1":
             return core_schema.no_info_plain_validator_function(validate)
-        # In JSON a quantity is written as the file has it.
+        # In JSON a quantity has the form of the file.
         in_json = core_schema.plain_serializer_function_ser_schema(self._written, when_used="json")
         return core_schema.no_info_plain_validator_function(validate, serialization=in_json)
 
@@ -316,7 +315,7 @@ class Quantity:
         return as_text(value, self.unit)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """Describe the field to editors: a text with a number and a unit, or a number where one will do."""
+        """Return the schema for editors: a text with a number and a unit, or a number where it needs no unit."""
         quantity: JsonSchemaValue = {
             "type": "string",
             "pattern": rf"^\s*{_NUMBER}\s*[^0-9\s].*$",

@@ -1,4 +1,4 @@
-"""A pydantic error in the words of the file: where it is, what was expected, which key was probably meant."""
+"""Pydantic errors in the words of the file: the place, the expected value, the key that was probably meant."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 NEARLY, SOMEWHAT = 0.75, 0.6
-"""How like a key has to be to one that it is taken for (difflib), before and after what its words mean."""
+"""Least similarity of a key to the one it is taken for (difflib), before and after the comparison of words."""
 SHORTEST = 3
-"""A word of fewer letters says too little."""
+"""Shortest word that is compared."""
 
 _EXPECTED = {
     "int_type": "a whole number",
@@ -37,23 +37,21 @@ _EXPECTED = {
     "model_type": "keys with values",
     "model_attributes_type": "keys with values",
 }
-"""What pydantic's type errors mean to somebody who writes YAML."""
+"""Pydantic's type errors in words for authors of YAML."""
 
 
-def problems_of(
-    error: ValidationError, tree: Tree, model: type[BaseModel] | None, missing: str = ""
-) -> list[Problem]:
+def problems_of(error: ValidationError, tree: Tree, model: type[BaseModel] | None, missing: str = "") -> list[Problem]:
     """Return the errors as problems, sorted by position; see ``tester.base.source.problems_from_validation``."""
     details = islice(error.errors(include_url=False), MAX_PROBLEMS + 1)
-    found = list(details)
-    meant = {(at[:-1], near) for at, near in _misspelt(found, tree, model)}
-    return sorted({_problem(one, tree, model, missing) for one in found if not _is_meant(one, tree, meant)})
+    errors_found = list(details)
+    meant = {(at[:-1], near) for at, near in _misspelt(errors_found, tree, model)}
+    return sorted(
+        {_problem(detail, tree, model, missing) for detail in errors_found if not _is_meant(detail, tree, meant)}
+    )
 
 
-def _misspelt(
-    details: list[ErrorDetails], tree: Tree, model: type[BaseModel] | None
-) -> Iterator[tuple[Location, str]]:
-    """Yield where a key is unknown, and the key that it was probably meant to be."""
+def _misspelt(details: list[ErrorDetails], tree: Tree, model: type[BaseModel] | None) -> Iterator[tuple[Location, str]]:
+    """Yield the place of each unknown key, and the key that was probably meant."""
     for detail in details:
         if detail["type"] == "extra_forbidden":
             at, _ = _locate(detail["loc"], tree.data)
@@ -64,7 +62,7 @@ def _misspelt(
 
 
 def _is_meant(detail: ErrorDetails, tree: Tree, meant: set[tuple[Location, str]]) -> bool:
-    """Return whether a missing key is there, misspelt: one mistake is one problem."""
+    """Return whether a missing key is present but misspelt: one mistake is one problem."""
     if detail["type"] != "missing" or not detail["loc"]:
         return False
     return (_locate(detail["loc"], tree.data)[0], str(detail["loc"][-1])) in meant
@@ -76,15 +74,16 @@ def _problem(detail: ErrorDetails, tree: Tree, model: type[BaseModel] | None, mi
     if kind == "extra_forbidden":
         return Problem(tree.name, *tree.key_position(at), _unknown(key, model, at, tree))
     if kind == "missing":
-        said = _missing(key, _fields(model, at).get(key)) + (f"; {missing}" if missing else "")
-        return Problem(tree.name, *tree.key_position(at), said)
+        words = _missing(key, _fields(model, at).get(key)) + (f"; {missing}" if missing else "")
+        return Problem(tree.name, *tree.key_position(at), words)
     message = _message(detail, value)
     names = [piece for piece in at if isinstance(piece, str)]
     return tree.problem(at, f"{names[-1]}: {message}" if names else message)
 
 
 def _locate(loc: Location, data: Value) -> tuple[Location, Value]:
-    """Follow pydantic's location into the file as far as it goes, past the names of validators in between."""
+    """Return pydantic's location as far as it exists in the file, without the names of validators in between, and its
+    value."""
     at: list[str | int] = []
     for piece in loc:
         if isinstance(data, dict) and isinstance(piece, str) and piece in data:
@@ -97,18 +96,18 @@ def _locate(loc: Location, data: Value) -> tuple[Location, Value]:
 
 
 def _fields(model: type[BaseModel] | None, at: Location) -> dict[str, FieldInfo]:
-    """Return the fields that the mapping at a location may have, by the key they have in the file."""
+    """Return the fields of the mapping at a location, by their keys in the file."""
     models = [] if model is None else [model]
     for piece in at:
         below = [
-            found
-            for one in models
-            for name, info in one.model_fields.items()
+            inner
+            for each in models
+            for name, info in each.model_fields.items()
             if (info.alias or name) == piece
-            for found in _models_in(info.annotation)
+            for inner in _models_in(info.annotation)
         ]
         models = below or models
-    return {info.alias or name: info for one in models for name, info in one.model_fields.items()}
+    return {info.alias or name: info for each in models for name, info in each.model_fields.items()}
 
 
 def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
@@ -119,9 +118,9 @@ def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
 
 
 def _meant(key: str, model: type[BaseModel] | None, at: Location, tree: Tree) -> list[str]:
-    """Return the keys that an unknown one at a location was probably meant to be; none where none is like it.
+    """Return the keys that were probably meant by an unknown one at a location; empty where none is similar.
 
-    Keys that are not written yet come before those that are, and of them those that have to be there.
+    Keys that are not yet in the file come first, and of them the required ones.
     """
     valid = _fields(model, at[:-1])
     free = {name: info for name, info in valid.items() if (*at[:-1], name) not in tree.keys}
@@ -129,10 +128,11 @@ def _meant(key: str, model: type[BaseModel] | None, at: Location, tree: Tree) ->
 
 
 def _nearest(key: str, free: Mapping[str, FieldInfo]) -> list[str]:
-    """Return the keys of ``free`` that are most like one; required ones come first.
+    """Return the keys of ``free`` that are most similar to one; required ones come first.
 
-    One that is spelt nearly so; else those whose name, or whose quantity's, has all of its words: ``slip_speed`` is a
-    slip velocity, which is a speed, and ``angle`` the sideslip or the camber; else one that is spelt somewhat so.
+    A key with nearly the same spelling; else those whose name, or whose quantity's, has all of its words:
+    ``slip_speed`` is a slip velocity, which is a speed, and ``angle`` the sideslip or the camber; else a key with a
+    somewhat similar spelling.
     """
     due = {name: info for name, info in free.items() if info.is_required()}
     for like in (_spelt_nearly, _of_the_words, _spelt_somewhat):
@@ -150,16 +150,16 @@ def _spelt_somewhat(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
 
 
 def _of_the_words(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
-    """Return the keys that have all words of one, or the beginnings of theirs, in their name or their quantity's."""
+    """Return the keys that have all words of one, or their beginnings, in their name or their quantity's."""
     words = tuple(word for word in _tidy(key).split("_") if word)
     if not words or any(len(word) < SHORTEST for word in words):
         return []
-    found: list[str] = []
+    matching: list[str] = []
     for name, info in fields.items():
         known = [*name.split("_"), *_quantity_in(info).partition(" such as")[0].split()]
-        if all(any(one.startswith(word) for one in known) for word in words):
-            found.append(name)
-    return found[:2]
+        if all(any(part.startswith(word) for part in known) for word in words):
+            matching.append(name)
+    return matching[:2]
 
 
 def _tidy(key: str) -> str:
@@ -167,14 +167,14 @@ def _tidy(key: str) -> str:
 
 
 def _elsewhere(key: str, near: list[str], model: type[BaseModel] | None) -> list[str]:
-    """Return the sections that have the very key, where none is nearly spelt so here."""
+    """Return the sections that have the exact key, where no key here has nearly the same spelling."""
     if model is None or difflib.get_close_matches(_tidy(key), near, cutoff=NEARLY):
         return []
     return list(dict.fromkeys(_sections_with(key, model)))
 
 
 def _sections_with(key: str, model: type[BaseModel], section: str = "") -> Iterator[str]:
-    """Yield the names of the sections of a file, itself left out, that have a key."""
+    """Return the sections of a file, except itself, that have a key."""
     for name, info in model.model_fields.items():
         if section and (info.alias or name) == key:
             yield section
@@ -198,27 +198,27 @@ def _missing(key: str, info: FieldInfo | None) -> str:
 
 
 def _quantity_in(info: FieldInfo) -> str:
-    """Return what a field's quantity expects, wherever in its annotation that stands, or an empty text."""
+    """Return the expected form of a field's quantity, anywhere in its annotation, or an empty text."""
     waiting: list[object] = [*info.metadata, info.annotation]
     while waiting:
-        one = waiting.pop()
-        if isinstance(one, Quantity):
-            return expected(one.unit)
-        waiting.extend(get_args(one))
+        item = waiting.pop()
+        if isinstance(item, Quantity):
+            return expected(item.unit)
+        waiting.extend(get_args(item))
     return ""
 
 
 def _message(detail: ErrorDetails, value: Value) -> str:
     kind, message = detail["type"], detail["msg"]
-    given = "nothing" if value is None else shown(str(value)) if not isinstance(value, list | dict) else "this"
+    value_words = "nothing" if value is None else shown(str(value)) if not isinstance(value, list | dict) else "this"
     if kind in _EXPECTED:
-        return f"{given} is not accepted (expected {_EXPECTED[kind]})"
+        return f"{value_words} is not accepted (expected {_EXPECTED[kind]})"
     if kind in ("literal_error", "enum"):
-        return _choice(str(value), str(detail.get("ctx", {}).get("expected", "")), given)
+        return _choice(str(value), str(detail.get("ctx", {}).get("expected", "")), value_words)
     if kind == "value_error":
         return message.removeprefix("Value error, ")
     if message.startswith("Input should be "):
-        return f"{given} is not accepted (expected {message.removeprefix('Input should be ')})"
+        return f"{value_words} is not accepted (expected {message.removeprefix('Input should be ')})"
     return message
 
 

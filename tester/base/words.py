@@ -8,7 +8,7 @@ from math import isfinite
 from typing import Final
 
 NONE: Final = "—"
-"""Stands where there is no value."""
+"""Replaces a missing value."""
 
 
 COEFFICIENT: Final = 3
@@ -21,12 +21,12 @@ def coefficient(value: float | None) -> str:
 
 
 def decimal(value: float | None, decimals: int) -> str:
-    """Return a number with so many decimals, never as -0; a dash where there is none."""
+    """Return a number with ``decimals`` decimals, never as -0; a dash where there is none."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if value is not None and isfinite(value) else NONE
 
 
 def significant(value: float | None, digits: int = 3) -> str:
-    """Return a number with so many significant digits; a dash where there is none."""
+    """Return a number with ``digits`` significant digits; a dash where there is none."""
     return f"{value + 0.0:.{digits}g}" if value is not None and isfinite(value) else NONE
 
 
@@ -44,7 +44,7 @@ def duration(seconds: float | None) -> str:
 
 
 def rough_duration(seconds: float) -> str:
-    """Return a duration as people say it: 45 s, 12 min, 3 h 05 min."""
+    """Return a duration in everyday form: 45 s, 12 min, 3 h 05 min."""
     if seconds < 99.5:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
@@ -69,7 +69,7 @@ def counted(n: int, noun: str, plural: str = "") -> str:
 
 
 def conditions_done(done: int, conditions: int, *, short: bool = False) -> str:
-    """Return how many conditions of a run are done: ``17 of 55 conditions done``, or ``17/55 done`` in little room."""
+    """Return the progress of a run's conditions: ``17 of 55 conditions done``, or ``17/55 done`` in narrow places."""
     return f"{done}/{conditions} done" if short else f"{done} of {counted(conditions, 'condition')} done"
 
 
@@ -77,15 +77,15 @@ FORBIDDEN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u2069\ufeff\ufff9-\ufffb"
     "\ud800-\udfff\ufffe\uffff\U000e0000-\U000e007f]"
 )
-"""Control, bidirectional and invisible characters, and what is no character at all."""
+"""Control, bidirectional and invisible characters, and invalid characters."""
 
 _NOT_IN_A_LINE = re.compile(f"{FORBIDDEN.pattern}|[\t\n]")
 
 
 def plain_text(text: str, where: str = "") -> str:
-    """Return a text of one line as it was given: a name, a note, a reason. ``where``: what it is, for the message.
+    """Return a text of one line unchanged: a name, a note, a reason. ``where``: its meaning, for the message.
 
-    Raises ValueError that names the first character that is refused, and its place counted from 1.
+    Raises ValueError with the first refused character, and its place counted from 1.
     """
     found = _NOT_IN_A_LINE.search(text)
     if found is None:
@@ -95,7 +95,8 @@ def plain_text(text: str, where: str = "") -> str:
 
 
 def harmless(text: str) -> str:
-    """Return a text that cannot steer a terminal: what could is a question mark; tabs and line ends stay."""
+    """Return a text that cannot steer a terminal: dangerous characters become question marks; tabs and line ends stay.
+    """
     return FORBIDDEN.sub("?", text)
 
 
@@ -103,5 +104,5 @@ Json = str | int | float | bool | None | list["Json"] | dict[str, "Json"]
 
 
 def finite(value: float) -> float | None:
-    """Return a number, None (JSON's null) for what is not finite."""
+    """Return a number, None (JSON's null) for NaN and infinity."""
     return value if isfinite(value) else None

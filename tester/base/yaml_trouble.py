@@ -1,4 +1,4 @@
-"""What is wrong with a text that is no YAML, in the words of somebody who writes it."""
+"""Messages about a text that is no YAML, in words for its author."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from yaml.error import MarkedYAMLError
 from tester.base.words import harmless
 
 LEVELS = 3
-"""Indentations that a message names at most, the deepest first."""
+"""Most indentations that a message names, the deepest first."""
 _OUT_OF_PLACE = ("<block end>", "<document start>", "did not find expected key", "did not find expected '-'")
-"""In messages of either parser about a line that does not belong where it is: usually its indentation is wrong."""
+"""Parts of either parser's messages about a line in the wrong place: usually its indentation is wrong."""
 
 
 OUT_OF_RANGE = "a number in an escape or directive is out of range"
 
 
 def too_deep(levels: int) -> str:
-    """Return what is wrong with a text of more levels than these."""
+    """Return the message for a text of more levels than these."""
     return f"nested deeper than {levels} levels"
 
 
 def plainer(error: MarkedYAMLError, text: str, line: int, column: int, max_depth: int) -> str:
     """Return PyYAML's or libyaml's message in one line, in plain words where their own are hard to understand.
 
-    ``line``, ``column``: of the text, from 1, where the problem is; ``max_depth``: levels that a file may have.
+    ``line``, ``column``: place of the problem in the text, from 1; ``max_depth``: allowed levels of a file.
     """
     message = " ".join(f"{error.problem or ''}".split())
     here = [*text.split("\n"), ""][line - 1]  # an unfinished text has its problem behind its last line
@@ -37,7 +37,7 @@ def plainer(error: MarkedYAMLError, text: str, line: int, column: int, max_depth
     if character and "cannot start" in message:
         return f"{harmless(character)} cannot begin a text (a text that begins with it needs quotes)"
     not_allowed = "mapping values are not allowed" in message
-    if not_allowed or any(one in message for one in _OUT_OF_PLACE):
+    if not_allowed or any(marker in message for marker in _OUT_OF_PLACE):
         levels = _levels(text, line)
         blanks = _indent(here)
         if blanks not in levels:
@@ -47,7 +47,7 @@ def plainer(error: MarkedYAMLError, text: str, line: int, column: int, max_depth
             return "an item of a list (- ...) among keys"
     if not_allowed:
         return "a colon is not expected here (a text that holds ': ' needs quotes)"
-    bracket = next((one for one in "]}" if f"',' or '{one}'" in message), "")
+    bracket = next((marker for marker in "]}" if f"',' or '{marker}'" in message), "")
     if bracket:
         since = f" opened in line {error.context_mark.line + 1}" if error.context_mark else ""
         return f"a comma or {bracket} is missing (for the bracket{since})"
@@ -60,9 +60,9 @@ def _indent(line: str) -> int:
 
 
 def _levels(text: str, line: int) -> dict[int, int]:
-    """Return the indentations with which a line may begin, each with the nearest line above that has it.
+    """Return the possible indentations of a line, each with the nearest line above that has it.
 
-    ``line`` counts from 1. Of a list's item, ``- key: value``, the key has an indentation, too.
+    ``line`` counts from 1. In a list's item, ``- key: value``, the key has an indentation as well.
     """
     levels: dict[int, int] = {}
     for number, above in enumerate(text.split("\n")[: line - 1], 1):
