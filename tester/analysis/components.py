@@ -66,8 +66,7 @@ class PartValue:
 
 @dataclass(frozen=True, slots=True)
 class ByFilm:
-    """Components of one condition; ``warmer_k``: temperature of the dry contact less that of the contact with the film.
-    """
+    """Components of one condition; ``warmer_k``: temperature of the dry contact less that with the film."""
 
     adhesion: PartValue
     hysteresis: PartValue
@@ -121,16 +120,18 @@ def mean_of(values: Sequence[PartValue]) -> PartValue:
 
     Common errors do not average out.
     """
-    certain = [one for one in values if isfinite(one.value) and one.standard > 0.0]
+    certain = [value_of_rig for value_of_rig in values if isfinite(value_of_rig.value) and value_of_rig.standard > 0.0]
     if not certain:
         return PartValue(NAN, ((NAN, inf),))
-    weights = [1.0 / one.standard**2 for one in certain]
+    weights = [1.0 / value_of_rig.standard**2 for value_of_rig in certain]
     shares = [weight / sum(weights) for weight in weights]
     common: dict[str, tuple[float, float]] = {}
-    for one, share in zip(certain, shares, strict=True):
-        for name, (u, df) in one.common.items():
+    for value_of_rig, share in zip(certain, shares, strict=True):
+        for name, (u, df) in value_of_rig.common.items():
             so_far, least = common.get(name, (0.0, inf))
             common[name] = so_far + share * u, min(least, df)
-    value = sum(share * one.value for one, share in zip(certain, shares, strict=True))
-    independent = tuple((share * u, df) for one, share in zip(certain, shares, strict=True) for u, df in one.own)
+    value = sum(share * value_of_rig.value for value_of_rig, share in zip(certain, shares, strict=True))
+    independent = tuple(
+        (share * u, df) for value_of_rig, share in zip(certain, shares, strict=True) for u, df in value_of_rig.own
+    )
     return PartValue(value, independent, common)

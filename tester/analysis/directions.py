@@ -131,8 +131,8 @@ def _as_one(results: Sequence[RepeatResult], pair: int) -> RepeatResult:
     status, reason = RepeatStatus.VALID, ""
     if odd is not None:
         status, reason = odd[0].status, f"repeat {odd[1] + 1}: {odd[0].reason}" if odd[0].reason else ""
-    if len(there) < 2 or not all(isfinite(one.mu_resultant) for one in there):
-        ended = max(one.ended_s for one in there)
+    if len(there) < 2 or not all(isfinite(half.mu_resultant) for half in there):
+        ended = max(half.ended_s for half in there)
         if odd is None:
             return without_value(RepeatStatus.TOO_FEW, "its other direction was not measured", ended_s=ended)
         return without_value(status, odd[0].reason, ended_s=ended)

@@ -107,7 +107,7 @@ FLAGS: Final[Mapping[str, Flag]] = {
         Flag(ROLLING, "Measured without slip: the coefficient is the rolling resistance."),
         Flag(
             STICK_SLIP_UNKNOWN,
-            "Whether the contact sticks and slips cannot be told: contacts are too short, or friction swings with the"
+            "Whether the contact sticks and slips is unknown: contacts are too short, or friction swings with the"
             " wheel's turning, or faster than samples come.",
         ),
         Flag(EXTENDED, "A repeat collected more revolutions than its window before its drift was known."),

@@ -149,17 +149,17 @@ def with_budget_of_replicates(
         return result
     chain, stated = _machine(result, by)
     chain += _unsteady(mu, result.unsteady)
-    each = [one for r in kept for one in r.budget.contributions if one.name == REPEATABILITY]
+    each = [term for r in kept for term in r.budget.contributions if term.name == REPEATABILITY]
     repeats = budget(each)
     source = f"of {n} replicates"
     of_mean = Contribution(
         REPEATABILITY, repeats.standard / n, repeats.df, source, "normal", repeats.standard, "", 1.0 / n
     )
     if n >= 2 and stated:
-        variance = sum(one.input_u**2 for one in stated)
+        variance = sum(term.input_u**2 for term in stated)
         df = STATED_DF + n - 1
         s = sqrt((STATED_DF * variance + (n - 1) * (result.s / mu) ** 2) / df)
-        basis = f"s between {n} replicates and {', '.join(one.source for one in stated)}"
+        basis = f"s between {n} replicates and {', '.join(term.source for term in stated)}"
         between = [contribution(BETWEEN, s, mu / sqrt(n), df=float(df), source=basis)]
     else:
         between = [of_mean, *stated]

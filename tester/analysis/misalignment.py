@@ -42,16 +42,16 @@ NOT_KNOWN = Misalignment()
 
 def misalignment(results: Iterable[ConditionResult]) -> Misalignment:
     """Return the angle pooled over conditions; those without a value, or of one direction, are ignored."""
-    found = [
+    valued = [
         (result.mu_resultant, result.both_ways) for result in results if result.ok and result.both_ways is not None
     ]
-    found = [(mu, ways) for mu, ways in found if mu > 0.0]
-    if not found:
+    valued = [(mu, ways) for mu, ways in valued if mu > 0.0]
+    if not valued:
         return NOT_KNOWN
-    df = sum(ways.pairs - 1 for _, ways in found)
-    squares = sum((ways.pairs - 1) * (ways.half_sum_s / mu) ** 2 for mu, ways in found if isfinite(ways.half_sum_s))
-    weights = [ways.pairs * ((1.0 + mu * mu) / mu) ** 2 for mu, ways in found]
-    angles = [ways.half_sum / (1.0 + mu * mu) for mu, ways in found]
+    df = sum(ways.pairs - 1 for _, ways in valued)
+    squares = sum((ways.pairs - 1) * (ways.half_sum_s / mu) ** 2 for mu, ways in valued if isfinite(ways.half_sum_s))
+    weights = [ways.pairs * ((1.0 + mu * mu) / mu) ** 2 for mu, ways in valued]
+    angles = [ways.half_sum / (1.0 + mu * mu) for mu, ways in valued]
     angle = sum(w * a for w, a in zip(weights, angles, strict=True)) / sum(weights)
     standard = sqrt(squares / df / sum(weights)) if df else NAN
-    return Misalignment(degrees(angle), degrees(standard), df, sum(ways.pairs for _, ways in found))
+    return Misalignment(degrees(angle), degrees(standard), df, sum(ways.pairs for _, ways in valued))

@@ -172,14 +172,14 @@ def _between(
     if df < 1:
         return known.between, float(STATED_DF)
     groups = [[reference for reference in used if reference.piece == piece] for piece in pieces]
-    values = np.array([sum(log(one.mu) for one in group) / len(group) for group in groups])
+    values = np.array([sum(log(reference.mu) for reference in group) / len(group) for group in groups])
     design = np.array([
         [*(float(group[0].compound == name) for name in compounds),
-         sum(one.counterface_m for one in group) / len(group)] for group in groups
+         sum(reference.counterface_m for reference in group) / len(group)] for group in groups
     ])  # fmt: skip
     design[:, -1] -= design[:, -1].mean()
     off = values - design @ np.linalg.lstsq(design, values, rcond=None)[0]
-    repeats_alone = [sum(one.u_share**2 for one in group) / len(group) ** 2 for group in groups]
+    repeats_alone = [sum(reference.u_share**2 for reference in group) / len(group) ** 2 for group in groups]
     between_pieces = max(float(off @ off) / df - sum(repeats_alone) / len(repeats_alone), 0.0)
     return sqrt((STATED_DF * stated + df * between_pieces) / (STATED_DF + df)), float(STATED_DF + df)
 
@@ -295,7 +295,7 @@ def control_charts(references: Sequence[Reference], known: KnownScatter) -> tupl
 
 def doubted(charts: Sequence[ControlChart], conditions: Sequence[int]) -> frozenset[int]:
     """Return the conditions between a reference out of its limits and the last good one before it."""
-    points = sorted((point for chart in charts for point in chart.points), key=lambda one: one.condition)
+    points = sorted((point for chart in charts for point in chart.points), key=lambda reference: reference.condition)
     doubtful: set[int] = set()
     good = 0
     for point in points:

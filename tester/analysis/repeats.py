@@ -274,10 +274,10 @@ def combine_repeats(
         status=status,
         reason=why,
         flags=joined(flags),
-        mu_longitudinal=_mean([one.mu_longitudinal for one in in_mean]),
-        mu_lateral=_mean([one.mu_lateral for one in in_mean]),
+        mu_longitudinal=_mean([result.mu_longitudinal for result in in_mean]),
+        mu_lateral=_mean([result.mu_lateral for result in in_mean]),
         counts=replace(counts, valid=len(in_mean)),
-        measured=mean_of(one.means for one in in_mean),
+        measured=mean_of(result.means for result in in_mean),
         excluded=tuple(sorted(excluded, key=lambda exclusion: exclusion.position)),
         flagged=tuple(kept[i] for i in flagged),
         drift_percent=judged.drift_percent,
@@ -383,9 +383,9 @@ def _condition_status(
         (RepeatStatus.CANNOT_HOLD, ConditionStatus.CANNOT_HOLD),
         (RepeatStatus.NOT_REACHED, ConditionStatus.NOT_REACHED),
     ):
-        found = [result.reason for result in results if result.status is repeat_status]
-        if found and len(found) == len(results):
-            return status, reason or found[0]
+        reasons = [result.reason for result in results if result.status is repeat_status]
+        if reasons and len(reasons) == len(results):
+            return status, reason or reasons[0]
     causes = "; ".join(f"{counts.of.removesuffix('s')} {e.position + 1} {e.reason}" for e in excluded)
     counted = f"none of {len(results)} {counts.of} is valid"
     return ConditionStatus.INSUFFICIENT, f"{counted}: {causes}" if causes else counted

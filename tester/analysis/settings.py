@@ -120,7 +120,7 @@ def _of_sensitivity(mu: float, warmth: SurfaceWarmth, terms: Sequence[Term]) -> 
 def difference_of(first: SettingMeasurement, second: SettingMeasurement) -> Difference:
     """Return the second measurement less the first, with its standard uncertainty and degrees of freedom."""
     shared = RIG if first.piece != second.piece else (RIG, PIECE)
-    mine, other = (
+    first_parts, second_parts = (
         {(error.cause, error.common): error for error in each.errors if error.common and error.common in shared}
         for each in (first, second)
     )
@@ -130,10 +130,10 @@ def difference_of(first: SettingMeasurement, second: SettingMeasurement) -> Diff
         for error in each.errors
         if not (error.common and error.common in shared)
     ]
-    for key in dict.fromkeys([*mine, *other]):
-        found = [each.get(key) for each in (mine, other)]
-        off = [one.value if one is not None else 0.0 for one in found]
-        parts.append((off[1] - off[0], "", min(one.df for one in found if one is not None)))
+    for key in dict.fromkeys([*first_parts, *second_parts]):
+        found = [each.get(key) for each in (first_parts, second_parts)]
+        off = [part.value if part is not None else 0.0 for part in found]
+        parts.append((off[1] - off[0], "", min(part.df for part in found if part is not None)))
     standard = sqrt(sum(value * value for value, _, _ in parts))
     return Difference(second.mu - first.mu, standard, effective_df(_by_estimate(parts), standard))
 

@@ -117,15 +117,15 @@ def _stretches(contacts: list[dict[str, Array]], step_s: float, orders: int) -> 
     import numpy as np
 
     cut: list[dict[str, Array]] = []
-    for one in contacts:
-        pieces = max(1, round((one["time_s"][-1] - one["time_s"][0]) / LONGEST_S))
-        for part in np.array_split(np.arange(len(one["time_s"])), pieces):
-            piece = {name: column[part] for name, column in one.items()}
+    for contact in contacts:
+        pieces = max(1, round((contact["time_s"][-1] - contact["time_s"][0]) / LONGEST_S))
+        for part in np.array_split(np.arange(len(contact["time_s"])), pieces):
+            piece = {name: column[part] for name, column in contact.items()}
             if len(part) and float(np.ptp(piece["time_s"])) >= SHORTEST_S and float(np.min(piece["normal"])) > 0.0:
                 cut.append(piece)
     if len(cut) > MOST_STRETCHES:
         cut = [cut[i * len(cut) // MOST_STRETCHES] for i in range(MOST_STRETCHES)]
-    return [_stretch(one, step_s, orders) for one in cut]
+    return [_stretch(contact, step_s, orders) for contact in cut]
 
 
 def _stretch(one: dict[str, Array], step_s: float, orders: int) -> _Stretch:

@@ -113,11 +113,11 @@ def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
     import numpy as np  # only runs with checks pay for it
 
     first = [next(check for check in used if check.reference_s == at) for at in references]
-    volumes, covariance = _volumes(used, {one.reference_s: one for one in first})
+    volumes, covariance = _volumes(used, {check.reference_s: check for check in first})
     design = np.zeros((count, unknown))
-    for i, one in enumerate(used):
-        design[i, references.index(one.reference_s)] = 1.0
-        design[i, -1] = one.exposure_n_m - used[0].exposure_n_m
+    for i, check in enumerate(used):
+        design[i, references.index(check.reference_s)] = 1.0
+        design[i, -1] = check.exposure_n_m - used[0].exposure_n_m
     if np.linalg.matrix_rank(design) < unknown:
         return WearRate(checks=count)
     weights = np.linalg.inv(covariance)
@@ -152,7 +152,7 @@ def condition_wear(checks: Sequence[WearCheck], condition: int) -> ConditionWear
     if not exposure > 0.0:
         return ConditionWear(before.diameter_mm, after.diameter_mm, u_mm, WearRate(checks=2))
     rate = float(volumes[1] - volumes[0]) / exposure
-    relative = 0.01 * max(one.u_rate_percent for one in pair)
+    relative = 0.01 * max(check.u_rate_percent for check in pair)
     standard = hypot(sqrt(variance) / exposure, relative * rate)
     return ConditionWear(before.diameter_mm, after.diameter_mm, u_mm, WearRate(rate, standard, 2))
 

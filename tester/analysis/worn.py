@@ -68,10 +68,12 @@ class Worn:
         first = self._first(next(iter(shares)))
         if first.method == "roll":
             weights[first] = weights.get(first, 0.0) - 1.0
-        return hypot(*(share * one.u_mm for one, share in weights.items()))
+        return hypot(*(share * reading.u_mm for reading, share in weights.items()))
 
     def _first(self, check: WearCheck) -> WearCheck:
-        return next(one for one in self.checks if one.used and one.reference_s == check.reference_s)
+        return next(
+            candidate for candidate in self.checks if candidate.used and candidate.reference_s == check.reference_s
+        )
 
     def _begun_u(self, check: WearCheck) -> float:
         """Return the uncertainty of the loss at the start of a check's series, mm; 0 for a person, whose gauge has its
@@ -79,8 +81,8 @@ class Worn:
         first = self._first(check)
         if check.method != "roll":
             return 0.0
-        begun_mm, used = self._loss(first), [one for one in self.checks if one.used]
-        earlier = [one for one in used if one.t_s < first.t_s]
+        begun_mm, used = self._loss(first), [candidate for candidate in self.checks if candidate.used]
+        earlier = [candidate for candidate in used if candidate.t_s < first.t_s]
         if earlier:
             since_mm = begun_mm - self._loss(earlier[-1])
             return hypot(self._u(earlier[-1]), since_mm * self._rate_share())

@@ -121,7 +121,7 @@ class Axes:
         """Make a table; raises ValueError for a repeated name, or if ``blocks`` is not in it."""
         self.table = tuple(table)
         self.blocks = blocks
-        names = [one.name for one in self.table]
+        names = [axis.name for axis in self.table]
         if len(set(names)) < len(names) or blocks not in names:
             raise ValueError(f"axes {', '.join(names)}: each once, and {blocks} among them")
         self.nested = (*(name for name in names if name != blocks), blocks)
@@ -158,7 +158,7 @@ class Axes:
         unknown = values.keys() - self.places.keys()
         if unknown:
             raise KeyError(f"no axis {', '.join(sorted(unknown))} (expected {', '.join(self.nested)})")
-        defaults = {one.name: one.recipe_default for one in self.table if one.recipe_default is not None}
+        defaults = {axis.name: axis.recipe_default for axis in self.table if axis.recipe_default is not None}
         complete: Mapping[str, AxisValue] = defaults | values
         return Setpoint(compound, tuple(complete[name] for name in self.nested), self)
 
@@ -185,7 +185,7 @@ class Axes:
     def differing(self, conditions: Iterable[Setpoint]) -> tuple[Axis, ...]:
         """Return the axes in which conditions differ from each other."""
         listed = list(conditions)
-        return tuple(one for one in self.table if len({one.of(held) for held in listed}) > 1)
+        return tuple(axis for axis in self.table if len({axis.of(held) for held in listed}) > 1)
 
     def columns(self, conditions: Iterable[Setpoint]) -> tuple[Axis, ...]:
         """Return the axes that a table of these conditions needs: the paper's, and any other that is off its default.
@@ -193,7 +193,7 @@ class Axes:
         An axis that differs between them is off its default in one of them.
         """
         listed = list(conditions)
-        return tuple(one for one in self.table if one.paper or not all(one.at_default(held) for held in listed))
+        return tuple(axis for axis in self.table if axis.paper or not all(axis.at_default(held) for held in listed))
 
 
 TOLD = ("name", "recipe_unit", "field", "unit", "scale", "column", "header", "title", "word", "default", "paper",
@@ -205,7 +205,7 @@ def axes_from(rows: Iterable[Mapping[str, object]]) -> Axes:
     """Return a table from plain data (``Axes.as_data``); raises KeyError and ValueError for anything else."""
     listed = list(rows)
     table = [_axis_from(row) for row in listed]
-    blocks = [one.name for one, row in zip(table, listed, strict=True) if row["blocks"]]
+    blocks = [axis.name for axis, row in zip(table, listed, strict=True) if row["blocks"]]
     return Axes(table, blocks[0] if blocks else "")
 
 
@@ -247,7 +247,7 @@ def condition_words(held: Setpoint, axes: Sequence[Axis] | None = None, *, compo
     not: those that differ within the list.
     """
     named = [axis for axis in held.axes if not axis.at_default(held)] if axes is None else axes
-    return ", ".join([*([held.compound] if compound else []), *(one.words(held) for one in named)])
+    return ", ".join([*([held.compound] if compound else []), *(axis.words(held) for axis in named)])
 
 
 class ListWords:

@@ -277,7 +277,7 @@ class Means(Mapping[str, float]):
 def mean_of(given: Iterable[Means]) -> Means:
     """Return the mean of at least one ``Means``, each of equal weight."""
     listed = list(given)
-    columns = zip(*(one.values() for one in listed), strict=True)
+    columns = zip(*(means.values() for means in listed), strict=True)
     return Means(listed[0].table, [sum(column) / len(column) for column in columns])
 
 

@@ -147,5 +147,5 @@ def trend_columns(quantities: Quantities) -> tuple[str, ...]:
     columns = ["wall_s", "t_s"]
     for channel in quantities.shown:
         if channel.screen is not None:
-            columns += [one for one in (channel.screen.trend, channel.screen.setpoint_trend) if one]
+            columns += [column for column in (channel.screen.trend, channel.screen.setpoint_trend) if column]
     return tuple(columns)

@@ -29,7 +29,7 @@ def editor_text(model: type[BaseModel]) -> str:
 def _tidy(node: object) -> object:
     """Drop entries that mislead an editor: generated titles, null for "left out", defaults without their unit."""
     if isinstance(node, list):
-        return [_tidy(one) for one in cast("list[object]", node)]
+        return [_tidy(item) for item in cast("list[object]", node)]
     if not isinstance(node, dict):
         return node
     entries = cast("dict[str, object]", node)
@@ -41,7 +41,7 @@ def _tidy(node: object) -> object:
     }
     choices = tidy.get("anyOf")
     if isinstance(choices, list):
-        kept = [one for one in cast("list[object]", choices) if one != {"type": "null"}]
+        kept = [item for item in cast("list[object]", choices) if item != {"type": "null"}]
         if len(kept) == 1 and isinstance(kept[0], dict):
             del tidy["anyOf"]
             return {**cast("dict[str, object]", kept[0]), **tidy}

@@ -25,7 +25,7 @@ _IN_WORDS: Final[Mapping[int, tuple[str, str]]] = {
     errno.EIO: ("the disk cannot be read or written", "look at the disk, and at the system's log"),
     errno.EADDRINUSE: ("the address is in use", "choose another port, or stop what uses it"),
     errno.EADDRNOTAVAIL: ("this machine has no such address", "choose one of its own"),
-    errno.ECONNREFUSED: ("nobody listens there", "start what should"),
+    errno.ECONNREFUSED: ("no program listens there", "start it"),
     errno.EPIPE: ("its reader is gone", ""),
 }
 """Reason and remedy by errno."""

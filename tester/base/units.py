@@ -124,6 +124,7 @@ def known_unit(unit: str, of: str) -> None:
             "tester.base.units.add_kind adds a kind of quantity)"
         )
 
+
 _SPELLINGS: dict[str, str] = {
     "°C": "degC", "℃": "degC", "deg C": "degC", "° C": "degC", "C": "degC", "celsius": "degC",
     "Celsius": "degC", "°": "deg", "degree": "deg", "degrees": "deg", "°/s": "deg/s", "°/s2": "deg/s2",
@@ -170,7 +171,9 @@ def expected(*units: str) -> str:
     """Return the expected form, e.g. ``a speed such as "0.8 m/s"; units accepted: m/s, mm/s``."""
     kinds = list(dict.fromkeys(_KIND_OF[unit].name for unit in units))
     example = _KIND_OF[units[0]].example
-    accepted = dict.fromkeys(one for unit in units for one in units_like(unit) if one != "1")
+    accepted = dict.fromkeys(
+        accepted_unit for unit in units for accepted_unit in units_like(unit) if accepted_unit != "1"
+    )
     return f'{" or ".join(kinds)} such as "{example}"; units accepted: {", ".join(accepted)}'
 
 
@@ -235,8 +238,8 @@ def _unit_problem(written: str, name: str, units: tuple[str, ...]) -> str:
         return "the unit K, which is for temperature differences here"
     if name in _KIND_OF:
         return f"the unit of {_KIND_OF[name].name.split(' ', 1)[1]}"
-    accepted = [one for unit in units for one in units_like(unit)]
-    near = [one for one in accepted if one.casefold() == name.casefold()]
+    accepted = [accepted_unit for unit in units for accepted_unit in units_like(unit)]
+    near = [accepted_unit for accepted_unit in accepted if accepted_unit.casefold() == name.casefold()]
     near = near or difflib.get_close_matches(name, accepted, n=1, cutoff=0.6)
     meant = f", did you mean {near[0]}?" if near else ""
     return f"the unknown unit {shown(written)}{meant}"

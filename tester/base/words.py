@@ -87,10 +87,10 @@ def plain_text(text: str, where: str = "") -> str:
 
     Raises ValueError with the first refused character, and its place counted from 1.
     """
-    found = _NOT_IN_A_LINE.search(text)
-    if found is None:
+    refused = _NOT_IN_A_LINE.search(text)
+    if refused is None:
         return text
-    what = f"the character U+{ord(found.group()):04X}, number {found.start() + 1}, is not accepted"
+    what = f"the character U+{ord(refused.group()):04X}, number {refused.start() + 1}, is not accepted"
     raise ValueError(f"{where}: {what} (control, bidirectional or invisible)" if where else what)
 
 

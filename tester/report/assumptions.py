@@ -66,7 +66,7 @@ def _marked(text: str) -> Iterator[tuple[str, str]]:
         if not colon or not name or name.startswith(("#", "-")):
             continue
         depth = len(key) - len(key.lstrip())
-        path = [one for one in path if one[0] < depth] + [(depth, name)]
+        path = [entry for entry in path if entry[0] < depth] + [(depth, name)]
         _, hash_mark, remark = rest.partition("#")
         if hash_mark and MARK in remark:
-            yield ".".join(one for _, one in path), remark.strip()
+            yield ".".join(entry for _, entry in path), remark.strip()

@@ -48,11 +48,11 @@ def budget_section(record: RunRecord, key: str) -> ReportSection:
 
 
 def _numbered(budgeted: Sequence[ConditionRow]) -> dict[_Details, int]:
-    found: dict[_Details, int] = {}
+    numbers: dict[_Details, int] = {}
     for row in budgeted:
-        for one in terms_of(row.result):
-            found.setdefault(_details(one), len(found) + 1)
-    return found
+        for term in terms_of(row.result):
+            numbers.setdefault(_details(term), len(numbers) + 1)
+    return numbers
 
 
 def _details(contribution: Contribution) -> _Details:

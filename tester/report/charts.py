@@ -129,7 +129,7 @@ def _varied(values: Sequence[ChartValue]) -> list[Axis]:
 def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None:
     """Return the chart of the coefficient over ``along``, a series for each value of ``across``."""
     kinds = _panelled(material.measured)
-    panels = [panel for own in kinds if (panel := _panel(material, own, along, across))]
+    panels = [panel for group in kinds if (panel := _panel(material, group, along, across))]
     if not panels or (across is not None and not any(_styles(panel) > 1 for panel in panels)):
         return None
     notes = [BARS]
@@ -146,7 +146,7 @@ def _caveats(material: Material) -> list[str]:
     """Return the law's caveats at the measured values, each once, with the number of values that it affects."""
     if material.law_caveats is None:
         return []
-    caveats = Counter(caveat for one in material.measured for caveat in material.law_caveats(one.held))
+    caveats = Counter(caveat for value in material.measured for caveat in material.law_caveats(value.held))
     return [f"caution ({count} values): {caveat}" for caveat, count in caveats.items()]
 
 
@@ -175,17 +175,17 @@ def _panel(material: Material, own: Sequence[ChartValue], along: Axis, across: A
     free = {along.name, *([across.name] if across is not None else [])}
     fixed = _usual(own, free)
     own = _fixed(own, fixed)
-    published = _fixed([one for one in material.published if one.held.compound == compound], fixed)
+    published = _fixed([value for value in material.published if value.held.compound == compound], fixed)
     series: list[Series] = []
     # A style means the same value of ``across`` in all panels.
-    levels = sorted({across.number(one.held) for one in material.measured}) if across is not None else [0.0]
+    levels = sorted({across.number(value.held) for value in material.measured}) if across is not None else [0.0]
     for style, level in enumerate(levels):
         here = [point for point in own if across is None or across.number(point.held) == level]
         if len({along.number(point.held) for point in here}) < 2:
             continue
         label = f"{plain(level)} {unit_of(across)}" if across is not None else "measured"
         series.append(_points(label, here, along, "measured", style))
-        shown = [one for one in published if across is None or across.number(one.held) == level]
+        shown = [value for value in published if across is None or across.number(value.held) == level]
         if shown:
             series.append(_points("", shown, along, "published", style))
         if material.law is not None:
@@ -210,10 +210,10 @@ def _fixed(values: Sequence[ChartValue], fixed: Mapping[str, AxisValue]) -> list
 
 
 def _points(label: str, values: Sequence[ChartValue], along: Axis, look: str, style: int) -> Series:
-    ordered = sorted(values, key=lambda one: along.number(one.held))
-    x, y = tuple(along.number(one.held) for one in ordered), tuple(one.mu for one in ordered)
-    bars = tuple(one.u for one in ordered) if look == "measured" else ()
-    names = tuple(one.named if look == "measured" else f"as published: {one.named}" for one in ordered)
+    ordered = sorted(values, key=lambda value: along.number(value.held))
+    x, y = tuple(along.number(value.held) for value in ordered), tuple(value.mu for value in ordered)
+    bars = tuple(value.u for value in ordered) if look == "measured" else ()
+    names = tuple(value.named if look == "measured" else f"as published: {value.named}" for value in ordered)
     return Series(label, x, y, "measured" if look == "measured" else "published", style, bars, names=names)
 
 
@@ -234,12 +234,12 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
     panels: list[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]] = []
     for kind in _panelled(values):
         own = _fixed(kind, _usual(kind, {along.name, upward.name}))
-        x, y = (tuple(sorted({axis.number(one.held) for one in own})) for axis in (along, upward))
+        x, y = (tuple(sorted({axis.number(value.held) for value in own})) for axis in (along, upward))
         if len(x) < 2 or len(y) < 2:
             continue
-        at = {(along.number(one.held), upward.number(one.held)): one.mu for one in own}
+        at = {(along.number(value.held), upward.number(value.held)): value.mu for value in own}
         named = [axis for axis in own[0].held.axes if axis not in (along, upward) and not axis.at_default(own[0].held)]
-        grid = tuple(tuple(at.get((one, other), NAN) for one in x) for other in y)
+        grid = tuple(tuple(at.get((value, other), NAN) for value in x) for other in y)
         panels.append((condition_words(own[0].held, named), x, y, grid))
     if panels:
         title = f"{Y_LABEL} over {name_of(along)} and {name_of(upward)}"
@@ -274,15 +274,15 @@ def repeats_chart(measured: Measured) -> Chart:
 def _windows(label: str, results: Sequence[object], look: str, style: int) -> Series:
     from tester.analysis.results import RepeatResult
 
-    own = [result for result in results if isinstance(result, RepeatResult)]
-    begin, end = [result.started_s / 60.0 for result in own], [result.ended_s / 60.0 for result in own]
+    repeats = [result for result in results if isinstance(result, RepeatResult)]
+    begin, end = [result.started_s / 60.0 for result in repeats], [result.ended_s / 60.0 for result in repeats]
     return Series(
         label,
         tuple(0.5 * (a + b) for a, b in zip(begin, end, strict=True)),
-        tuple(result.mu_resultant for result in own),
+        tuple(result.mu_resultant for result in repeats),
         "measured" if look == "measured" else "left out",
         style,
-        tuple(0.01 * result.fluctuation_percent * result.mu_resultant for result in own),
+        tuple(0.01 * result.fluctuation_percent * result.mu_resultant for result in repeats),
         tuple(0.5 * (b - a) for a, b in zip(begin, end, strict=True)),
     )
 

@@ -103,7 +103,7 @@ def _by_compound(conditions: Table[ConditionRow]) -> ReportTable:
 
 def _median(column: Column[ConditionRow], valued: Sequence[ConditionRow]) -> str:
     """Return the middle value of a column."""
-    middle = sorted(valued, key=lambda one: float(str(column.value(one))))
+    middle = sorted(valued, key=lambda row: float(str(column.value(row))))
     return column.text(middle[len(middle) // 2])
 
 
@@ -123,12 +123,12 @@ def drift_section(record: RunRecord, key: str) -> ReportSection:
             ReportRow(
                 (
                     f"{repeat.condition}/{repeat.repeat}",
-                    condition_words(one.info.setpoint),
+                    condition_words(condition.info.setpoint),
                     decimal(repeat.result.mu_resultant, 3),
                     reason,
                 )
             )
-            for one, repeat, reason in out
+            for condition, repeat, reason in out
         ]
         titles = heads("repeat", "condition", "mu as measured", "why it is in no mean", text=(0, 1, 3))
         parts.append(ReportTable("Repeats that are left out", titles, rows))
@@ -136,9 +136,9 @@ def drift_section(record: RunRecord, key: str) -> ReportSection:
         parts.append(Paragraph("No repeat is left out: every one that was made is in its mean.", "good"))
     if record.said:
         lines = [
-            f"{one.condition}/{one.repeat} {'left out' if one.excluded else 'taken in again'} by "
-            f"{one.operator or 'an unnamed person'}, {one.utc}: {one.reason}"
-            for one in record.said
+            f"{condition.condition}/{condition.repeat} {'left out' if condition.excluded else 'taken in again'} by "
+            f"{condition.operator or 'an unnamed person'}, {condition.utc}: {condition.reason}"
+            for condition in record.said
         ]
         parts += [Paragraph("Decisions of people on single repeats:"), Listing(lines)]
     return ReportSection(key, "Drift, repeats, exclusions", parts)
@@ -147,9 +147,9 @@ def drift_section(record: RunRecord, key: str) -> ReportSection:
 def _drift_table(record: RunRecord) -> ReportTable:
     table = conditions_table(record.results)
     shown = table.of(row for row in table.rows if row.measured is not None).view(Output.REPEATS)
-    condition = Column[ConditionRow]("words", "condition", lambda one: condition_words(one.info.setpoint))
+    condition = Column[ConditionRow]("words", "condition", lambda row: condition_words(row.info.setpoint))
     void = Column[ConditionRow](
-        "interrupted", "interrupted", lambda one: len(record.void.get(one.info.condition, ())), "", 0
+        "interrupted", "interrupted", lambda row: len(record.void.get(row.info.condition, ())), "", 0
     )
     number, *columns, flags = shown.columns
     return rendered(

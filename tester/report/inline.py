@@ -59,13 +59,13 @@ def alt_text(figure: Figure) -> str:
     sentences = [figure.title]
     if isinstance(figure, Chart):
         for panel in figure.panels:
-            points = [one for one in panel.series if one.look in ("measured", "left out")]
+            points = [series for series in panel.series if series.look in ("measured", "left out")]
             x, y = _spans((v for point in points for v in point.x), (v for point in points for v in point.y))
             if x and y:
                 title = f"{panel.title}: " if panel.title else ""
                 upright = panel.y_label or figure.y_label
                 sentences.append(
-                    f"{title}{sum(len(one.x) for one in points)} points, {figure.x_label} {x}, {upright} {y}"
+                    f"{title}{sum(len(series.x) for series in points)} points, {figure.x_label} {x}, {upright} {y}"
                 )
     else:
         for title, along, upward, grid in figure.panels:
@@ -75,11 +75,11 @@ def alt_text(figure: Figure) -> str:
 
 
 def _spans(*given: Iterator[float]) -> list[str]:
-    found: list[str] = []
+    spans: list[str] = []
     for values in given:
         known = [value for value in values if isfinite(value)]
-        found.append(f"{min(known):.4g} to {max(known):.4g}" if known else "")
-    return found
+        spans.append(f"{min(known):.4g} to {max(known):.4g}" if known else "")
+    return spans
 
 
 def _plain(text: str, longest: int = LONGEST) -> str:

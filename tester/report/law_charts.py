@@ -65,11 +65,11 @@ def components_chart(
 
     ``at`` returns adhesion and hysteresis.
     """
-    found = [at(one) for one in x]
+    parts = [at(value) for value in x]
     lines = {
-        "adhesion": tuple(one for one, _ in found),
-        "hysteresis": tuple(one for _, one in found),
-        "sum": tuple(sum(one) for one in found),
+        "adhesion": tuple(value for value, _ in parts),
+        "hysteresis": tuple(value for _, value in parts),
+        "sum": tuple(sum(value) for value in parts),
     }
     series = tuple(Series(name, tuple(x), y, "law", style) for style, (name, y) in enumerate(lines.items()))
     return Chart("components", title, x_label, Y_LABEL, (ChartPanel("", series),), note, log_x=True)

@@ -62,7 +62,7 @@ def _surface(stored_material: StoredMaterial) -> SurfaceModel | None:
 
 def _formulations(compounds: Mapping[str, CompoundModel]) -> ReportTable:
     known = [(name, model) for name, model in compounds.items() if model.formulation]
-    ingredients = dict.fromkeys(one for _, model in known for one in model.formulation)
+    ingredients = dict.fromkeys(ingredient_name for _, model in known for ingredient_name in model.formulation)
     rows = [
         ReportRow((ingredient, *(decimal(phr, 1) if (phr := model.formulation.get(ingredient)) is not None else NONE
                           for _, model in known)))

@@ -38,17 +38,17 @@ def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
         return None
     several = len(runs) > 1
     axes = placed[0].measured.info.setpoint.axes
-    varied = axes.differing(one.measured.info.setpoint for one in placed)
+    varied = axes.differing(condition.measured.info.setpoint for condition in placed)
     strips = [ChartPanel("", tuple(_coefficients(placed, several)), "coefficient")]
-    for axis in (one for one in varied if one.plotted and not one.choices):
+    for axis in (each for each in varied if each.plotted and not each.choices):
         series = Series(
             "",
-            tuple(one.at for one in placed),
-            tuple(axis.number(one.measured.info.setpoint) for one in placed),
+            tuple(condition.at for condition in placed),
+            tuple(axis.number(condition.measured.info.setpoint) for condition in placed),
             "measured",
             0,
-            widths=tuple(one.half for one in placed),
-            names=tuple(_words(one, several) for one in placed),
+            widths=tuple(condition.half for condition in placed),
+            names=tuple(_words(condition, several) for condition in placed),
         )
         strips.append(ChartPanel("", (series,), labelled(axis)))
     title = f"{'runs, one after the other' if several else 'the run'}: {len(placed)} conditions in order of time"
@@ -81,38 +81,47 @@ def _words(placed: _Placed, several: bool) -> str:
 
 def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
     """Yield the coefficients, a series for each compound, then single repeats that are left out or make-ups."""
-    compounds = sorted({one.measured.info.compound for one in placed})
+    compounds = sorted({condition.measured.info.compound for condition in placed})
     for style, compound in enumerate(compounds):
-        own = [one for one in placed if one.measured.info.compound == compound and one.measured.result.ok]
-        if own:
+        of_compound = [
+            condition
+            for condition in placed
+            if condition.measured.info.compound == compound and condition.measured.result.ok
+        ]
+        if of_compound:
             yield Series(
                 compound,
-                tuple(one.at for one in own),
-                tuple(one.measured.result.mu for one in own),
+                tuple(condition.at for condition in of_compound),
+                tuple(condition.measured.result.mu for condition in of_compound),
                 "measured",
                 style,
-                tuple(one.measured.result.expanded for one in own),
-                tuple(one.half for one in own),
-                tuple(_words(one, several) for one in own),
+                tuple(condition.measured.result.expanded for condition in of_compound),
+                tuple(condition.half for condition in of_compound),
+                tuple(_words(condition, several) for condition in of_compound),
             )
     style = len(compounds)
-    out = [(one, repeat) for one in placed for repeat in one.measured.repeats if one.measured.exclusion(repeat)]
+    out = [
+        (condition, repeat)
+        for condition in placed
+        for repeat in condition.measured.repeats
+        if condition.measured.exclusion(repeat)
+    ]
     made_up = [
-        (one, repeat)
-        for one in placed
-        for repeat in one.measured.make_ups
-        if not one.measured.exclusion(repeat)
+        (condition, repeat)
+        for condition in placed
+        for repeat in condition.measured.make_ups
+        if not condition.measured.exclusion(repeat)
     ]  # fmt: skip
     for label, listed, look in (("make-up repeat", made_up, "published"), ("repeat left out", out, "left out")):
-        points = [(one, repeat) for one, repeat in listed if isfinite(repeat.result.mu_resultant)]
+        points = [(condition, repeat) for condition, repeat in listed if isfinite(repeat.result.mu_resultant)]
         if points:
             yield Series(
                 label,
-                tuple(one.origin + repeat.result.ended_s * MINUTES for one, repeat in points),
+                tuple(condition.origin + repeat.result.ended_s * MINUTES for condition, repeat in points),
                 tuple(repeat.result.mu_resultant for _, repeat in points),
                 "published" if look == "published" else "left out",
                 style,
-                names=tuple(_of_repeat(one.measured, repeat) for one, repeat in points),
+                names=tuple(_of_repeat(condition.measured, repeat) for condition, repeat in points),
             )
             style += 1
 

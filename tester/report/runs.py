@@ -39,8 +39,8 @@ def runs_chapter(records: Sequence[RunRecord]) -> Chapter:
 
 def _pictures(records: Sequence[RunRecord]) -> list[Part]:
     values: list[ChartValue] = []
-    for one in records:
-        values += values_of(one.results, one.name)
+    for record_ in records:
+        values += values_of(record_.results, record_.name)
     drawn = overview_chart([(record.name, record.results) for record in records])
     parts: list[Part] = [
         Picture(inline_svg(chart, f"all-{chart.name}"), wide=True) for chart in overlay_charts(values)

@@ -84,9 +84,9 @@ def tare_section(record: RunRecord, key: str) -> ReportSection:
     names = list(dict.fromkeys(name for tare in record.tares for name in tare.zeros))
     rows: list[ReportRow] = []
     for kind in dict.fromkeys(tare.kind for tare in record.tares):
-        own = [tare for tare in record.tares if tare.kind == kind]
+        of_kind = [tare for tare in record.tares if tare.kind == kind]
         for name in names:
-            values = [value for tare in own if (value := tare.zeros.get(name)) is not None and value == value]
+            values = [value for tare in of_kind if (value := tare.zeros.get(name)) is not None and value == value]
             if values:
                 steps = [abs(b - a) for a, b in pairwise(values)]
                 cells = (len(values), values[0], values[-1], min(values), max(values), max(steps, default=0.0))
@@ -105,7 +105,9 @@ def calibration_section(record: RunRecord, key: str) -> ReportSection:
     if not info.calibration:
         missing = "No calibration is on record" + (": a simulated rig has none." if info.simulated else ".")
         return ReportSection(key, "Calibration", [Paragraph(missing, "" if info.simulated else "care")])
-    rows = [ReportRow((one.device, one.quantity, one.value, one.unit or NONE)) for one in info.calibration]
+    rows = [
+        ReportRow((figure.device, figure.quantity, figure.value, figure.unit or NONE)) for figure in info.calibration
+    ]
     titles = heads("device", "quantity", "value", "unit", text=(0, 1, 3))
     return ReportSection(key, "Calibration", [ReportTable("Calibration in use at the end", titles, rows)])
 
@@ -192,7 +194,7 @@ def assumption_section(record: RunRecord, key: str) -> ReportSection:
     if terms:
         parts.append(ReportTable("In the uncertainty", heads("term", "limit", "source", text=(0, 1, 2)), terms))
     if keys:
-        rows = [ReportRow((one.key, one.value, one.remark)) for one in keys]
+        rows = [ReportRow((key_.key, key_.value, key_.remark)) for key_ in keys]
         titles = heads("key", "value", "what the file says", text=(0, 1, 2))
         note = "keys that are as the packaged rig file has them; a value of the laboratory's own is not listed"
         parts.append(ReportTable("In the rig file", titles, rows, note))
@@ -203,14 +205,15 @@ def assumption_section(record: RunRecord, key: str) -> ReportSection:
 
 def provenance_section(record: RunRecord, key: str) -> ReportSection:
     """Return versions, hashes, the record's head, and whether the run is unchanged."""
-    run, found = record.results.run, record.verification
+    run, verification = record.results.run, record.verification
     info = run.info
-    read = f"{found.samples} samples in {found.blocks} blocks read, {found.coefficients} coefficients recomputed"
+    samples = f"{verification.samples} samples in {verification.blocks} blocks read"
+    read = f"{samples}, {verification.coefficients} coefficients recomputed"
     parts: list[Part] = [
         Paragraph(f"Verified as it was left: {read}; every hash, table and coefficient agrees.", "good")
-        if not found.problems
-        else Paragraph(f"Not as it was left: {counted(len(found.problems), 'finding')}.", "bad"),
-        *([Listing(found.problems, "bad")] if found.problems else []),
+        if not verification.problems
+        else Paragraph(f"Not as it was left: {counted(len(verification.problems), 'finding')}.", "bad"),
+        *([Listing(verification.problems, "bad")] if verification.problems else []),
         FactSheet([(name, value or NONE) for name, value in _hashes(record)]),
     ]
     rows = [ReportRow((name, sha)) for name, sha in sorted(record.files.items())]

@@ -50,8 +50,8 @@ def terms_table(condition_row: ConditionRow, worn: str) -> Table[TermRow]:
 
 def terms_of(r: ConditionResult) -> list[Contribution]:
     """Return the terms of both budgets of a result, each once, the largest first."""
-    found = dict.fromkeys((*r.budget.contributions, *r.compound_budget.contributions))
-    return sorted(found, key=lambda one: -one.standard)
+    terms = dict.fromkeys((*r.budget.contributions, *r.compound_budget.contributions))
+    return sorted(terms, key=lambda term: -term.standard)
 
 
 def budgeted_rows(conditions: Table[ConditionRow]) -> list[ConditionRow]:

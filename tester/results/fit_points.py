@@ -75,18 +75,18 @@ def source_of(
     variable ``temperature``. ``scatter``: returns a compound's declared scatter between conditions.
     """
     terms = with_settings(info.terms, info.metadata)
-    factors = [_rest(one, _apart(terms), own=False) for _, one in kept]
+    factors = [_rest(condition, _apart(terms), own=False) for _, condition in kept]
     between = standard_of(terms, Acts.PIECE)
-    pieces = sorted({_piece(one) for _, one in kept})
+    pieces = sorted({_piece(condition) for _, condition in kept})
     common = (
         Common("calibration and alignment", median(factors) if factors else 0.0),
         *(Common(f"{worn} to {worn}", between, piece=piece) for piece in pieces),
         Common("thermometer", standard_of(terms, Acts.TEMPERATURE), temperature),
     )
-    repeats = next((_repeatability(one, info.metadata).source for _, one in kept), "")
-    compounds = dict.fromkeys(one.info.compound for _, one in kept)
+    repeats = next((_repeatability(condition, info.metadata).source for _, condition in kept), "")
+    compounds = dict.fromkeys(condition.info.compound for _, condition in kept)
     declared = dict.fromkeys(scatter(compound).source for compound in compounds)
-    return Source(name, common, repeats, "; ".join(one for one in declared if one))
+    return Source(name, common, repeats, "; ".join(condition for condition in declared if condition))
 
 
 def point_of(

@@ -75,9 +75,9 @@ def _groups(blocks: Iterator[SampleBlock]) -> Iterator[list[SampleBlock]]:
 def _columns(group: list[SampleBlock], owners: dict[int, StoredRepeat], channels: tuple[Channel, ...]) -> _Columns:
     columns: _Columns = {name: [] for name in (*(channel.name for channel in channels), *OWNER)}
     for block in group:
-        for one in channels:
-            values = block.columns[one.name]
-            columns[one.name].extend(map(_whole, values) if one.whole else values)
+        for channel_ in channels:
+            values = block.columns[channel_.name]
+            columns[channel_.name].extend(map(_whole, values) if channel_.whole else values)
         owner = owners.get(block.repeat_key)
         for name in OWNER:
             value = None if owner is None else getattr(owner, name)

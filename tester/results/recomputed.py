@@ -40,8 +40,8 @@ def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
     infos = {stored.info.condition: stored.info for stored in reader.conditions()}
     measured = [repeat for repeat in reader.repeats(attempts=True) if isfinite(repeat.result.mu_resultant)]
     problems: list[str] = []
-    for one in measured:
-        problems += _differing(one, _recomputed(reader, one, infos[one.condition]))
+    for repeat_ in measured:
+        problems += _differing(repeat_, _recomputed(reader, repeat_, infos[repeat_.condition]))
     return len(measured), problems
 
 

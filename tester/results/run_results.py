@@ -127,7 +127,7 @@ _WHAT_TO_DO: Mapping[ConditionStatus, str] = {
     ConditionStatus.CANNOT_HOLD: "a wider temperature_band, a lower load or a lower speed would help",
     ConditionStatus.NOT_REACHED: "check heating and cooling, or allow more time (soak.at_most)",
     ConditionStatus.INSUFFICIENT: "a wider temperature_band or more max_bursts would help",
-    ConditionStatus.PENDING: "tester resume goes on with the run",
+    ConditionStatus.PENDING: "tester resume continues the run",
 }
 
 
@@ -250,7 +250,9 @@ def results_of(reader: RunReader) -> RunResults:
     for repeat in reader.repeats():
         repeats.setdefault(repeat.condition, []).append(repeat)
     stored = reader.conditions()
-    conditions = [_measured(one, repeats.get(one.info.condition, []), left_out, combining) for one in stored]
+    conditions = [
+        _measured(condition, repeats.get(condition.info.condition, []), left_out, combining) for condition in stored
+    ]
     soaks = reader.soaks()
     conditions = [replace(condition, soak=soaks.get(condition.info.condition)) for condition in conditions]
     conditions = [
@@ -260,9 +262,9 @@ def results_of(reader: RunReader) -> RunResults:
     pieces, checks = tuple(reader.pieces()), tuple(reader.wear_checks())
     surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([condition.result for condition in conditions]))
     watching = [is_reference(condition.info.grid, run.info.metadata) for condition in conditions]
-    for one, watches in zip(conditions, watching, strict=True):
+    for condition, watches in zip(conditions, watching, strict=True):
         if not watches:
-            surroundings.add(one.info.setpoint, one.result)
+            surroundings.add(condition.info.setpoint, condition.result)
     watch = None
     if any(watching):
         references = [condition for condition, watches in zip(conditions, watching, strict=True) if watches]
@@ -300,26 +302,28 @@ def results_of(reader: RunReader) -> RunResults:
 
 
 def _budgeted(
-    found: Sequence[Measured], surroundings: SurroundingsOf
+    conditions: Sequence[Measured], surroundings: SurroundingsOf
 ) -> tuple[list[Measured], tuple[RepeatedSetting, ...]]:
     """Return the conditions with their budgets, flagged where their setting disagrees, and the repeated settings."""
     listed: list[Measured] = []
     settings = SettingsOf()
-    for one in found:
-        by = surroundings.of(one.info, one.repeats, one.result)
-        result = with_budget(one.result, by)
-        settings.add(one.info, one.repeats, result, by)
-        listed.append(replace(one, result=result))
+    for condition in conditions:
+        by = surroundings.of(condition.info, condition.repeats, condition.result)
+        result = with_budget(condition.result, by)
+        settings.add(condition.info, condition.repeats, result, by)
+        listed.append(replace(condition, result=result))
     repeated = settings.repeated()
     doubts = in_doubt(repeated)
-    flagged = [_flagged(one, DISAGREES) if one.info.condition in doubts else one for one in listed]
+    flagged = [
+        _flagged(condition, DISAGREES) if condition.info.condition in doubts else condition for condition in listed
+    ]
     return flagged, repeated
 
 
-def _rows(found: Sequence[Measured], surroundings: SurroundingsOf) -> list[TableRow]:
+def _rows(conditions: Sequence[Measured], surroundings: SurroundingsOf) -> list[TableRow]:
     """Return the rows of conditions with their budgets; for replicates their mean, with its own."""
     rows: list[TableRow] = []
-    for _, group in groupby(found, key=lambda one: one.info.row):
+    for _, group in groupby(conditions, key=lambda condition: condition.info.row):
         replicates = tuple(group)
         if len(replicates) == 1:
             rows.append(TableRow(replicates, replicates[0].result))
@@ -334,12 +338,12 @@ def _rows(found: Sequence[Measured], surroundings: SurroundingsOf) -> list[Table
 
 def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: StoredRun) -> ReferenceWatch:
     """Return the result of a run's reference conditions, each with its coefficient at the nominal temperature."""
-    in_order = sorted(references, key=lambda one: one.info.condition)
+    in_order = sorted(references, key=lambda condition: condition.info.condition)
     listed: list[Reference] = []
-    for number, one in enumerate(in_order, start=1):
-        result = with_budget(one.result, surroundings.of(one.info, one.repeats, one.result))
-        at = Reduced(one.condition.started_s, result)
-        listed.append(surroundings.reference(number, one.info, one.repeats, at))
+    for number, condition in enumerate(in_order, start=1):
+        result = with_budget(condition.result, surroundings.of(condition.info, condition.repeats, condition.result))
+        at = Reduced(condition.condition.started_s, result)
+        listed.append(surroundings.reference(number, condition.info, condition.repeats, at))
     known = surroundings.known(RESERVED in run.info.metadata)
     return ReferenceWatch(tuple(listed), counterface_drift(listed, known), control_charts(listed, known))
 

@@ -120,7 +120,7 @@ class SettingsOf:
             RepeatedSetting(self._held[setting], in_order, agreement(in_order))
             for setting, listed in self._found.items()
             if len(listed) > 1
-            for in_order in (tuple(sorted(listed, key=lambda one: one.condition)),)
+            for in_order in (tuple(sorted(listed, key=lambda measurement_: measurement_.condition)),)
         )
 
 

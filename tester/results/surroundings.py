@@ -142,7 +142,7 @@ class SurroundingsOf:
         """Return the diameter of the measured pieces, of several the least certain."""
         pieces = dict.fromkeys(repeat.piece for repeat in repeats)
         sizes = [self._worn[piece].size(self._slid(piece, repeats)) for piece in pieces if piece in self._worn]
-        return max(sizes, key=lambda one: (not one.checked, one.checked_u_mm, one.loss_mm), default=NO_SIZE)
+        return max(sizes, key=lambda size: (not size.checked, size.checked_u_mm, size.loss_mm), default=NO_SIZE)
 
     def _slid(self, piece: int, repeats: Sequence[StoredRepeat]) -> float:
         """Return the middle of a piece's sliding in its repeats that count, m; NaN without a record."""

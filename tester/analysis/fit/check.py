@@ -80,5 +80,5 @@ def errors_of(predicted: Sequence[float], measured: Sequence[float]) -> Errors:
     off = [abs(p / m - 1.0) for p, m in zip(predicted, measured, strict=True)]
     if not off:
         return Errors(0, NAN, NAN, NAN, 0, 0)
-    near, far = (sum(one <= limit for one in off) for limit in (NEAR, FAR))
+    near, far = (sum(error <= limit for error in off) for limit in (NEAR, FAR))
     return Errors(len(off), fmean(off), median(off), max(off), near, far)

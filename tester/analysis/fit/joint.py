@@ -202,7 +202,7 @@ def _impossible(
 
 def _heated(law: Law, trends: Trends) -> dict[str, str]:
     """Return, by name, why the effects of parameters cannot be separated from that of the contact's own heat."""
-    by = {one.variable.name: one.own_heat for one in trends.each if one.own_heat}
+    by = {trend.variable.name: trend.own_heat for trend in trends.each if trend.own_heat}
     named = [(parameter.name, parameter.levels[0]) for parameter in law.parameters if parameter.levels is not None]
     return {name: f"{variable}: {by[variable]}" for name, variable in named if variable in by}
 

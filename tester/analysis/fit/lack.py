@@ -164,7 +164,9 @@ class _Chance:
         p |= {name: self._share(int(np.sum(self._runs[name] <= runs_of[0]))) for name, runs_of in runs.items()}
         failed = _holm([*p.values()])
         names = {name: name if name == _SIZE else f"signs along {name}" for name in p}
-        return tuple(LackTest(names[name], one, bad) for (name, one), bad in zip(p.items(), failed, strict=True))
+        return tuple(
+            LackTest(names[name], p_value, bad) for (name, p_value), bad in zip(p.items(), failed, strict=True)
+        )
 
     def refused(self, departure: Array) -> float:
         """Return the share of draws that are refused with a departure added, shape (n + priors,)."""

@@ -162,6 +162,6 @@ class FitError(ValueError):
 def by_group(points: Iterable[FitPoint]) -> dict[str, list[FitPoint]]:
     """Return the points of each group, groups in order of their names, points in their own."""
     groups: dict[str, list[FitPoint]] = {}
-    for one in sorted(points, key=lambda point: point.group):
-        groups.setdefault(one.group, []).append(one)
+    for point in sorted(points, key=lambda point: point.group):
+        groups.setdefault(point.group, []).append(point)
     return groups

@@ -71,7 +71,7 @@ def without_cells(problem: FitProblem, fitted: Array, cells: Sequence[int]) -> t
     """
     of = [tuple(point.nominal[i] for i in cells) for point in problem.points]
     keys = sorted(set(of))
-    counts = np.array([[float(one != key) for one in of] for key in keys])
+    counts = np.array([[float(cell != key) for cell in of] for key in keys])
     able = _able(problem, counts)
     prior = np.zeros((int(able.sum()), problem.priors))
     solutions, ended = solve_many(problem, fitted, problem.y, prior, counts[able])
@@ -79,7 +79,7 @@ def without_cells(problem: FitProblem, fitted: Array, cells: Sequence[int]) -> t
     predicted: list[tuple[int, float]] = []
     for key, parameters, fine in zip(left_out, problem.natural(solutions), ended, strict=True):
         values = problem.law.value(parameters, problem.x)
-        predicted += [(i, float(values[i])) for i, one in enumerate(of) if fine and one == key]
+        predicted += [(i, float(values[i])) for i, cell in enumerate(of) if fine and cell == key]
     return predicted, len(keys) - int(ended.sum())
 
 
@@ -92,6 +92,6 @@ def _able(problem: FitProblem, counts: Array) -> Booleans:
             continue
         nominal = [point.nominal[place_of(problem.law, needed[0])] for point in problem.points]
         kinds = sorted(set(nominal))
-        member = np.array([[float(one == kind) for kind in kinds] for one in nominal])
+        member = np.array([[float(value == kind) for kind in kinds] for value in nominal])
         able &= ((counts @ member) > 0.0).sum(axis=-1) >= needed[1]
     return able

@@ -18,7 +18,7 @@ def error_row(title: str, errors: Errors) -> str:
     """Return a row of the table of errors."""
     if not errors.rows:
         return f"{title:<34}    0       -         -       -           -            -"
-    mean, middle, largest = (100.0 * one for one in (errors.mean, errors.median, errors.largest))
+    mean, middle, largest = (100.0 * share for share in (errors.mean, errors.median, errors.largest))
     return (
         f"{title:<34} {errors.rows:>4}  {mean:>6.2f}  {middle:>8.2f}  {largest:>6.1f}  "
         f"{errors.near:>10}  {errors.far:>11}"
@@ -30,7 +30,7 @@ def verdict_lines(fit: GroupFit) -> Iterator[str]:
     lack = fit.lack
     residual = f"residual standard deviation {100.0 * lack.residual:.1f} %"
     if lack.denominator is None:
-        yield f"{fit.group}: whether the law describes these data cannot be told"
+        yield f"{fit.group}: whether the law describes these data is unknown"
         yield f"  {residual}; {fit.silent}: no intervals"
     else:
         yield f"{fit.group}: {verdict_words(fit)}"
@@ -85,7 +85,9 @@ def group_lines(fit: GroupFit, validation: Errors | None, *, force: bool = False
         yield f"  {error_row('validation', validation)}"
     yield "  mean residual, measured over fitted:"
     for variable, residual in zip(fit.law.variables, fit.residuals, strict=True):
-        means = ", ".join(f"{variable.words(one.value)} {100.0 * one.mean:+.1f} % ({one.count})" for one in residual)
+        means = ", ".join(
+            f"{variable.words(level.value)} {100.0 * level.mean:+.1f} % ({level.count})" for level in residual
+        )
         yield f"    {means}"
 
 

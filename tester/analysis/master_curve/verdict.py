@@ -100,7 +100,7 @@ def _unknown(collapse: Collapse, pairs: Sequence[TemperaturePair]) -> list[str]:
         return [f"too little overlap: on the curve nothing of {', '.join(apart)} lies side by side"]
     if collapse.u_factors_k > OPEN_K or not _bends(collapse):
         return [
-            "mu has no bend that a shift could be told by: a power law in v collapses at any shift, for moving it along"
+            "mu has no bend to determine a shift: a power law in v collapses at any shift, for moving it along"
             " and multiplying it are the same"
         ]
     return []

@@ -57,7 +57,7 @@ def surface_text(name: str, spectrum: RadialSpectrum, data: DataFile, findings: 
 def _doubts(findings: Findings) -> str:
     if not findings.lasting:
         return ""
-    return "doubts:\n" + "".join(f"  - {_quoted(_line(one))}\n" for one in findings.lasting)
+    return "doubts:\n" + "".join(f"  - {_quoted(_line(doubt))}\n" for doubt in findings.lasting)
 
 
 def _line(text: str) -> str:

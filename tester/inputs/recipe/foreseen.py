@@ -151,7 +151,7 @@ class _Slopes:
 
 
 def _temperature(axes: Axes | None) -> str:
-    return next((one.name for one in axes or () if one.unit == "degC"), "")
+    return next((axis.name for axis in axes or () if axis.unit == "degC"), "")
 
 
 def _held(step: ConditionStep, axes: Axes | None) -> _Held:
@@ -209,7 +209,7 @@ def known_slopes(plan: Plan, compounds: Mapping[str, CompoundModel]) -> Iterator
 
     ``compounds``: content of each file, by the name in the recipe.
     """
-    axis = next((one.name for one in plan.axes or () if one.unit == "degC"), "")
+    axis = next((candidate.name for candidate in plan.axes or () if candidate.unit == "degC"), "")
     if not axis:
         return
     wanted = ((step.setpoint.compound, step.setpoint.number(axis)) for step in plan.conditions())

@@ -109,7 +109,7 @@ class PlainPart(RecipePart):
     def expand(self, recipe: Recipe, rig: Rig, estimator: object = None) -> Plan:
         """Return the plan: each replicate of a specimen is mounted and goes through its conditions."""
         conditions = conditions_of(recipe, self.settings)
-        held = self.axes.number_of(self.axes.blocks)
+        block_value = self.axes.number_of(self.axes.blocks)
         steps: list[Step] = []
         condition = piece = 0
         specimens = tuple(
@@ -120,7 +120,7 @@ class PlainPart(RecipePart):
             for replicate in range(1, recipe.replicates + 1):
                 piece += 1
                 steps.append(Mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.note))
-                for block in ordered(conditions, held, recipe.order, specimen.index, replicate):
+                for block in ordered(conditions, block_value, recipe.order, specimen.index, replicate):
                     for values, row, grid, how in block:
                         condition += 1
                         steps.append(ConditionStep(

@@ -143,13 +143,16 @@ def _channels(rig: Rig) -> _Found:
     taken: dict[str, str] = {}
     for name, device in further_sensors(rig).items():
         try:
-            measured, own = channels_of(device), profile_of(device.profile).channels
+            measured, profile_channels = channels_of(device), profile_of(device.profile).channels
         except ProfileError:
             continue
         for place, known in (("channels", device.channels), ("simulated", device.simulated)):
             for key in known:
-                if key not in own:
-                    yield ("devices", name, place, key), f"no such channel (the profile has {', '.join(own)})"
+                if key not in profile_channels:
+                    yield (
+                        ("devices", name, place, key),
+                        f"no such channel (the profile has {', '.join(profile_channels)})",
+                    )
         for channel in measured:
             if _is_own(rig, channel):
                 yield ("devices", name), f"channel {channel} is one of the machine's own: rename it by `channels`"

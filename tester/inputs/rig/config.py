@@ -69,7 +69,7 @@ class LineConfig:
 
 
 HEAT_OFF: Final = {
-    "fallback": "the controller goes on with a setpoint of its own that asks for no heat (falls_back_s of its profile)",
+    "fallback": "the controller falls back to a setpoint of its own without heat (falls_back_s of its profile)",
     "relay": "a watchdog relay, hard-wired, takes the heater's supply",
 }
 """What may stand as ``heat_off``, and what it says of the machine."""

@@ -97,9 +97,9 @@ def _channel(name: str, device: str, number: Signal | NodeChannel) -> FurtherCha
 
 def quantities_on(rig: Rig) -> Quantities:
     """Return the channels of a run on a rig: its kind's, and those of its further sensors. Raises ProfileError."""
-    own = rig.quantities
-    return own.with_further(
-        [further_channel.channel(place, own) for place, further_channel in enumerate(further_channels(rig))]
+    of_kind = rig.quantities
+    return of_kind.with_further(
+        [further_channel.channel(place, of_kind) for place, further_channel in enumerate(further_channels(rig))]
     )
 
 

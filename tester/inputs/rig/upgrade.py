@@ -61,7 +61,9 @@ def _with_keys(text: str, tree: Tree, packaged: Tree, missing: Sequence[Place]) 
     last = len(lines)
     ends = {section: _end_of_section(tree, section)[0] if section else last for section in added}
     # From the end of the file, so that earlier places stay valid; of two at one place the inner is written last, above.
-    for section in sorted(added, key=lambda one: (ends[one], -len(one)), reverse=True):
+    for section in sorted(
+        added, key=lambda place_of_section: (ends[place_of_section], -len(place_of_section)), reverse=True
+    ):
         lines[ends[section] : ends[section]] = [line + end for line in added[section]]
     return "".join(lines)
 

@@ -82,8 +82,8 @@ class ConditionEntry:
 
     def setpoint(self, axes: Axes) -> Setpoint:
         """Return the setpoints, on the axes of the condition's run."""
-        held: dict[str, AxisValue] = json.loads(self.held)
-        by_name = {axis.name: held[axis.column] for axis in axes}
+        values: dict[str, AxisValue] = json.loads(self.held)
+        by_name = {axis.name: values[axis.column] for axis in axes}
         scaled = {
             axis.name: value if isinstance(value := by_name[axis.name], str) else value / axis.scale for axis in axes
         }
