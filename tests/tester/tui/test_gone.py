@@ -71,4 +71,4 @@ def test_a_lost_link_of_unknown_cause_claims_neither() -> None:
     from tester.tui.gone import farewell, gone_line
 
     scene = ScreenScene(state=a_state(), lost="connection lost")
-    assert gone_line(scene) == "" and "not known" in farewell(scene)
+    assert gone_line(scene) == "" and "may still be under way" in farewell(scene)

@@ -1,5 +1,5 @@
 """How a wheel on a belt is commissioned: its steps as data (``steps``), a module for each procedure.
 
-``quiet`` holds a rig whose scales nobody trusts yet: connected, heard, nothing powered but the one axis that a person
+``quiet`` holds a rig with untested scales: connected, answering, nothing powered but the one axis that a person
 jogs. ``armed`` holds one that has been shown to lift, to follow and to stop.
 """

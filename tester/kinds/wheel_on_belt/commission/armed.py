@@ -1,6 +1,6 @@
-"""A rig that was armed as before every run, with a commissioning's moves in the place of a recipe.
+"""A rig armed as before every run, with a commissioning's moves in place of a recipe.
 
-Control, interlocks, limits and stops are those of a run: here is only who says what is wanted.
+Control, interlocks, limits and stops are those of a run; only the demand comes from elsewhere.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Readings of the load cell of a rig that stands still, once what hangs on it does."""
+"""Readings of the load cell of a rig at rest, once the hung weight is at rest."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
 from tester.machine.commission.person import StepRefused, Waits
 
 LEAST_READINGS: Final = 20
-"""Readings of the cell from which it is told whether they have settled [A]: five a quarter."""
+"""Fewest readings of the cell for judging whether they have settled [A]: five a quarter."""
 QUARTERS: Final = 4
 NOISES: Final = 4.0
-"""Four means of nothing but noise are farther apart than so many of its standard deviations in 2 % [A]."""
+"""Means of pure noise differ by more than this many of its standard deviations in 2 % of cases [A]."""
 
 
 def settled_cell(
@@ -24,8 +24,8 @@ def settled_cell(
 ) -> Generator[Waits, str, list[float]]:
     """Yield until the cell's readings have settled; return the means of Fx, Fy, Fz, raw, N.
 
-    Settled: the means of the quarters of the last ``least_s`` of readings are the same within ``still_n`` and their
-    noise, which is told from one reading to the next: a swing is slower. Raises StepRefused for what still swings after
+    Settled: the means of the quarters of the last ``least_s`` of readings agree within ``still_n`` and their noise,
+    which is estimated from successive readings, because a swing is slower. Raises StepRefused if it still swings after
     ``at_most_s``.
     """
     rows: deque[tuple[float, float, float, float]] = deque()

@@ -1,4 +1,4 @@
-"""Home, touch and tare, and the ratio of the speeds by rolling: what the armed rig is asked, cold."""
+"""Homing, first contact and tare, and the ratio of the speeds from rolling: the armed rig's cold steps."""
 
 from __future__ import annotations
 
@@ -14,46 +14,49 @@ from tester.machine.commission.step import Notes
 from tester.machine.motions import Power, Sequence, Settle
 
 ANGLE_DEG: Final = 0.5
-"""A homed axis may stand this far off straight [A]: misalignment that the budget reckons with."""
+"""Greatest deviation of a homed axis from straight [A]: misalignment that the budget includes."""
 DIAMETER_MM: Final = 0.5
-"""A new wheel's diameter may be this far off the rig file's [A]: three times what a caliper on rubber tells apart."""
+"""Greatest deviation of a new wheel's diameter from the rig file's [A]: three times a caliper's resolution on rubber.
+"""
 TARE_S: Final = 2.0
 ROLLING_N: Final = 50.0
-"""Load of the rolling wheel [A]: the indentation shortens its radius by some hundredths of a mm only."""
+"""Load of the rolling wheel [A]: the indentation shortens its radius by only some hundredths of a mm."""
 SPEEDS_M_S: Final = (0.2, 0.5, 0.8)
 HALVINGS: Final = 6
-"""The belt's speed at which friction turns round is found by halving this often: from +-(3 % and 10 mm/s) to 0.05 %."""
+"""Number of halvings to find the belt speed at which friction reverses: from +-(3 % and 10 mm/s) to 0.05 %."""
 SURFACE_S: Final = 3.0
-"""The tread is looked at this long once it is lifted: thirty readings of 0.1 K leave 0.02 K [A]."""
+"""Time for reading the lifted tread: thirty readings of 0.1 K leave 0.02 K [A]."""
 SWEEP_SHARE: Final = 0.03
 CREEP_M_S: Final = 0.010
 RATIO_SHARE: Final = 0.005
-"""Of the speeds' ratio [A]: scales are known to 0.1 %, a diameter to 0.15 mm of 90, the rolling radius to 0.05 mm."""
+"""Tolerance of the speeds' ratio [A]: scales are known to 0.1 %, a diameter to 0.15 mm of 90, the rolling radius to
+0.05 mm.
+"""
 
 
 def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Positioned axes were homed as before every run; a person says whether their zero is straight."""
-    found: dict[str, Any] = {}
+    """Check positioned axes after homing: a person reads whether their zero is straight."""
+    angles: dict[str, Any] = {}
     for name in seat.run.engine.devices.axes.positioned:
         at = seat.ctx.readings.positions[name]
-        text = f"{name}: it was homed and stands at {at:.2f} deg; what does an inclinometer say?"
+        text = f"{name}: it was homed and is at {at:.2f} deg; what does an inclinometer show?"
         read = yield from measure(f"angle {name}", text, "deg")
         off = read - at
-        found[name] = {"shown_deg": at, "read_deg": read}
+        angles[name] = {"shown_deg": at, "read_deg": read}
         if not abs(off) <= ANGLE_DEG:
             config = seat.rig.axes.driven()[name]
             raise StepRefused(
                 f"home of the {name} axis: straight is {off:+.2f} deg off. In the rig file:"
                 f" axes.{name}.home_offset: {config.home_offset - off:.2f} (now {config.home_offset:g})"
             )
-    notes.values = found
-    notes.text = "homed; " + ", ".join(f"{name} {one['read_deg']:+.2f} deg" for name, one in found.items())
+    notes.values = angles
+    notes.text = "homed; " + ", ".join(f"{name} {angle['read_deg']:+.2f} deg" for name, angle in angles.items())
 
 
 def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Measure the wheel, touch it at little load, see friction turn round, and take the cell's zero."""
+    """Measure the wheel, touch it at little load, see friction reverse, and tare the cell."""
     believed = seat.rig.geometry.wheel_diameter_mm
-    read = yield from measure("diameter", f"what does a caliper say of the new wheel (believed {believed:g} mm)?", "mm")
+    read = yield from measure("diameter", f"what does a caliper show of the new wheel (believed {believed:g})?", "mm")
     if not abs(read - believed) <= DIAMETER_MM:
         raise StepRefused(
             f"wheel diameter: {read:g} mm measured, the rig file has {believed:g} mm."
@@ -74,13 +77,13 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
 
 
 def _compound(notes: Notes) -> Generator[Waits, str, str]:
-    """Return what the wheel is made of, as the command line or a person says."""
+    """Return the wheel's compound, from the command line or the person."""
     given, known = notes.given.get("compound", ""), ", ".join(KNOWN)
     if given:
-        said = yield from choose("compound given", f"is the wheel of the compound {given}?", "yes", "no")
-        if said == "yes":
+        answer = yield from choose("compound given", f"is the wheel of the compound {given}?", "yes", "no")
+        if answer == "yes":
             return given
-    text = f"which compound is on the wheel? What the first coefficient should be about is known of {known}"
+    text = f"which compound is on the wheel? The expected coefficient is known for {known}"
     return (yield from line("compound", f"{text}; any other name will do"))
 
 
@@ -90,26 +93,28 @@ def _tare(seat: ArmedSeat, reference: list[float]) -> TakeTare:
 
 
 def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Find where friction turns round at three speeds; what grows with the speed is the ratio of the scales."""
+    """Find the slip at which friction reverses at three speeds; the part proportional to speed is the ratio of the
+    scales.
+    """
     first = SPEEDS_M_S[0]
     yield from seat.do(
         Sequence(Power(True), Lift(), Turn(first, first), Settle(0.5), _tare(seat, []), Load(ROLLING_N, percent=5.0))
     )
-    found: list[tuple[float, float]] = []
+    reversals: list[tuple[float, float]] = []
     for speed in SPEEDS_M_S:
         yield from seat.do(Turn(speed, speed))
         slip = yield from _turns_round(seat, speed)
-        found.append((speed, slip))
+        reversals.append((speed, slip))
         notes.read("friction turns round", {"wheel_m_s": speed, "slip_m_s": slip})
     yield from seat.do(Sequence(Turn(first, first), Lift()))
     surface_c, _ = yield from mean_temperatures(seat, SURFACE_S)
     yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
-    count = len(found)
-    mean_v, mean_s = sum(v for v, _ in found) / count, sum(s for _, s in found) / count
-    square = sum((v - mean_v) ** 2 for v, _ in found)
-    ratio = sum((v - mean_v) * (s - mean_s) for v, s in found) / square
+    count = len(reversals)
+    mean_v, mean_s = sum(v for v, _ in reversals) / count, sum(s for _, s in reversals) / count
+    square = sum((v - mean_v) ** 2 for v, _ in reversals)
+    ratio = sum((v - mean_v) * (s - mean_s) for v, s in reversals) / square
     creep = mean_s - ratio * mean_v
-    left = sum((s - creep - ratio * v) ** 2 for v, s in found)
+    left = sum((s - creep - ratio * v) ** 2 for v, s in reversals)
     resolved = 2.0 * (SWEEP_SHARE * SPEEDS_M_S[-1] + CREEP_M_S) / 2.0**HALVINGS
     standard = ((left / (count - 2) + resolved * resolved / 12.0) / square) ** 0.5
     if not abs(ratio) <= RATIO_SHARE + 2.0 * standard:
@@ -121,7 +126,7 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
         )
     notes.values = {
         "ratio_error": ratio, "standard_uncertainty": standard, "creep_m_s": creep,
-        "turns_round": [list(one) for one in found], "surface_c": surface_c,
+        "turns_round": [list(one) for one in reversals], "surface_c": surface_c,
     }  # fmt: skip
     notes.text = (
         f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %),"
@@ -130,7 +135,7 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
 
 
 def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
-    """Return the slip (wheel less belt, m/s, as shown) at which friction turns round."""
+    """Return the slip (wheel less belt, m/s, as shown) at which friction reverses."""
     reach = SWEEP_SHARE * speed + CREEP_M_S
     low, high = -reach, reach
     ends: list[float] = []
@@ -150,8 +155,8 @@ def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
 
 
 def _friction(seat: ArmedSeat, speed: float, slip: float) -> Generator[Waits, str, float]:
-    one = Friction(speed, speed - slip)
-    yield from seat.do(one)
-    return one.friction_n / one.count
+    activity = Friction(speed, speed - slip)
+    yield from seat.do(activity)
+    return activity.friction_n / activity.count
 
 

@@ -1,4 +1,6 @@
-"""The first conditions, runs as any other: slip in both directions for what is crooked, then one condition thrice."""
+"""The first conditions, as ordinary runs: slip in both directions to reveal misalignment, then one condition three
+times.
+"""
 
 from __future__ import annotations
 
@@ -40,16 +42,17 @@ BELOW_K: Final = 3.0
 losses is known to a tenth of itself."""
 LOAD_N: Final = 100.0
 SLIP_M_S: Final = 0.1
-"""Of the first conditions [A]: 6 W of friction, by which a tread warms little."""
+"""Of the first conditions [A]: 6 W of friction, which hardly warm a tread."""
 WHEEL_M_S: Final = 0.8
 PAIRS: Final = 5
 """Repeats in both directions [A]: 2 % of scatter leave 0.5 degrees (95 %), of three pairs 1.4."""
 TOLD_SHARE: Final = 0.25
 REFUSED_SHARE: Final = 0.5
-"""A first coefficient this far off its compound's model is told of, or refused [A]: the paper's compounds are
-a quarter to a third apart."""
+"""Deviation of a first coefficient from its compound's model that gives a warning, or a refusal [A]: the paper's
+compounds are a quarter to a third apart.
+"""
 LEAST_MU, MOST_MU = 0.1, 3.0
-"""Of rubber on an abrasive, whatever it is made of [A]: the paper has 0.31 to 2.59."""
+"""Range for rubber on an abrasive, of any composition [A]: the paper has 0.31 to 2.59."""
 ANGLE_DEG: Final = 1.5
 """An apparent angle is refused beyond this and its uncertainty [A]: 0.5 degrees of mounting, 0.5 % of crosstalk."""
 
@@ -65,27 +68,28 @@ def _recipe(title: str, compound: str, temperature_c: float, *, both: bool) -> s
 
 
 def mounted(notes: Notes) -> str:
-    """Return the compound of which the wheel is said to be."""
-    found = notes.done.get("touch", {}).get("compound")
-    if not found:
-        raise StepRefused("what the wheel is made of is not on record (the step touch asks for it)")
-    return str(found)
+    """Return the recorded compound of the wheel."""
+    compound = notes.done.get("touch", {}).get("compound")
+    if not compound:
+        raise StepRefused("the wheel's compound is not recorded (the step touch asks for it)")
+    return str(compound)
 
 
 def as_it_is_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
-    """Return the temperature of a condition for which a cold wheel need not be heated, degC.
+    """Return the temperature of a condition that needs no heating of a cold wheel, degC.
 
-    It is what the thermometer showed of the tread after rolling, and the offset from which slip warms it.
+    It is the thermometer's reading of the tread after rolling, plus the offset from which slip warms it.
     """
     shown = float(done.get("rolling", {}).get("surface_c", rig.ambient_c))
     return shown + rig.loops.heat.rolling_offset_k + WARMER_K
 
 
 def as_soaked_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
-    """Return the temperature of a condition for which the hub stays about where the soak has brought it, degC.
+    """Return the temperature of a condition that keeps the hub about where the soak has brought it, degC.
 
     In rolling contact the tread's excess over its cold reading is the hub's over 1 + ratio (``build.loss_ratios``). So
-    the wheel is heated once, and nobody waits for it to cool; ``BELOW_K`` keeps the hub from going higher than it was.
+    the wheel is heated only once, without waiting for it to cool; ``BELOW_K`` keeps the hub below its earlier
+    temperature.
     """
     soaked = done.get("thermometer", {})
     _, rolling = loss_ratios(rig)
@@ -94,11 +98,11 @@ def as_soaked_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
 
 
 def directions(alone: Alone, notes: Notes) -> None:
-    """Slip both ways: half the sum of the signed coefficients is crosstalk and misalignment (tester.analysis)."""
+    """Slide both ways: half the sum of the signed coefficients is crosstalk and misalignment (tester.analysis)."""
     warm_c = as_it_is_c(RigConfig.of(alone.rig), notes.done)
     recipe = _recipe("both directions of slip", mounted(notes), warm_c, both=True)
-    found = alone.run_recipe("commissioning-directions", recipe)
-    angle, expanded = found["angle_deg"], found["angle_expanded_deg"]
+    results = alone.run_recipe("commissioning-directions", recipe)
+    angle, expanded = results["angle_deg"], results["angle_expanded_deg"]
     if angle is None or expanded is None:
         raise StepRefused("both directions of slip gave no angle: too few pairs were valid")
     if not abs(angle) <= ANGLE_DEG + expanded:
@@ -106,42 +110,42 @@ def directions(alone: Alone, notes: Notes) -> None:
             f"misalignment and crosstalk: the cell's axes seem {angle:+.2f} +- {expanded:.2f} degrees off the contact's"
             f" (more than {ANGLE_DEG:g}): shim the cell or the wheel's carrier, or measure in both directions"
         )
-    notes.values = dict(found)
-    notes.text = f"apparent angle of the cell {angle:+.2f} +- {expanded:.2f} degrees (95 %), run {found['run']}"
+    notes.values = dict(results)
+    notes.text = f"apparent angle of the cell {angle:+.2f} +- {expanded:.2f} degrees (95 %), run {results['run']}"
 
 
 def coefficient(alone: Alone, notes: Notes) -> None:
     """Measure one condition three times."""
     warm_c, compound = as_soaked_c(RigConfig.of(alone.rig), notes.done), mounted(notes)
     recipe = _recipe("a first condition three times", compound, warm_c, both=False)
-    found = alone.run_recipe("commissioning-first", recipe)
-    one: dict[str, Any] = found["conditions"][0]
-    plausible = _plausible(notes, compound, float(one["mu"]), round(warm_c, 1))
-    notes.values = {**found, "compound": compound, "temperature_c": round(warm_c, 1), **plausible}
-    spread = f"{100 * one['s'] / one['mu']:.1f} % between its {one['n']} repeats" if one["s"] is not None else ""
-    uncertain = f", U {one['expanded']:.3f} (95 %)" if one["expanded"] is not None else ""
-    notes.text = f"coefficient of {compound} {one['mu']:.3f}{uncertain}; {spread}; run {found['run']}"
+    results = alone.run_recipe("commissioning-first", recipe)
+    row: dict[str, Any] = results["conditions"][0]
+    plausible = _plausible(notes, compound, float(row["mu"]), round(warm_c, 1))
+    notes.values = {**results, "compound": compound, "temperature_c": round(warm_c, 1), **plausible}
+    spread = f"{100 * row['s'] / row['mu']:.1f} % between its {row['n']} repeats" if row["s"] is not None else ""
+    uncertain = f", U {row['expanded']:.3f} (95 %)" if row["expanded"] is not None else ""
+    notes.text = f"coefficient of {compound} {row['mu']:.3f}{uncertain}; {spread}; run {results['run']}"
 
 
 def _plausible(notes: Notes, compound: str, mu: float, surface_c: float) -> dict[str, Any]:
-    """Hold a coefficient against the model of its compound; raises StepRefused for one that cannot be.
+    """Compare a coefficient with the model of its compound; raises StepRefused for an impossible one.
 
-    A belt of another grade, and another laboratory's mix of the compound, move it by some tens of per cent; a scale or
-    a zero that got past the steps before, or another compound than was said, by more.
+    A belt of another grade, or another laboratory's mix of the compound, moves it by some tens of per cent; a wrong
+    scale or zero that passed the steps before, or a wrong compound, by more.
     """
     if compound not in KNOWN:
         if not LEAST_MU <= mu <= MOST_MU:
             raise StepRefused(f"coefficient {mu:.3f}: rubber on an abrasive has {LEAST_MU:g} to {MOST_MU:g}")
-        notes.tell(f"  nothing is known of {compound}: its coefficient is held against {LEAST_MU:g} to {MOST_MU:g}")
+        notes.tell(f"  {compound} is unknown: its coefficient must be between {LEAST_MU:g} and {MOST_MU:g}")
         return {"expected_mu": None}
     expected = predict(compound, SLIP_M_S, LOAD_N, surface_c, 0.0, WHEEL_M_S)
     off = mu / expected - 1.0
-    said = f"coefficient {mu:.3f} of {compound} is {100 * off:+.0f} % off what its model gives, {expected:.3f}"
+    text = f"coefficient {mu:.3f} of {compound} is {100 * off:+.0f} % off what its model gives, {expected:.3f}"
     if not abs(off) <= REFUSED_SHARE:
         raise StepRefused(
-            f"{said} (more than {100 * REFUSED_SHARE:g} %): is the wheel of another compound? Else the load cell's"
+            f"{text} (more than {100 * REFUSED_SHARE:g} %): is the wheel of another compound? Else the load cell's"
             " zero, or a belt that is worn or greasy"
         )
     if abs(off) > TOLD_SHARE:
-        notes.tell(f"  {said}: take care; a belt of another grade does that, another compound, too")
+        notes.tell(f"  {text}: take care; the cause may be a belt of another grade, or another compound")
     return {"expected_mu": expected, "off_share": off}

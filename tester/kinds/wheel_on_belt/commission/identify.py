@@ -1,4 +1,4 @@
-"""Who is on the wires: every drive and device that was heard, with what it says of itself; a person says yes."""
+"""Lists every drive and device that answers, with its identity, for a person to confirm."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from tester.machine.commission.step import Notes
 
 
 def identify(seat: QuietSeat, notes: Notes) -> Dialogue:
-    """List what is connected; raises StepRefused where a person does not know it again."""
-    found: dict[str, Any] = {}
+    """List the connected devices; raises StepRefused if the person does not recognise them."""
+    identities: dict[str, Any] = {}
     for drive in seat.devices.drives:
         name, identity = drive.config.name, drive.identity
-        said = f"node {drive.config.node_id}"
+        text = f"node {drive.config.node_id}"
         if identity is not None:
-            said += (
+            text += (
                 f", vendor 0x{identity.vendor_id:08X}, product 0x{identity.product_code:08X},"
                 f" revision 0x{identity.revision:08X}, serial number {identity.serial_number}"
             )
-        found[f"{name} drive"] = said
+        identities[f"{name} drive"] = text
     for device in seat.devices.modbus:
         config = seat.rig.devices[device.name]
-        found[device.title] = f"line {config.line}, unit {config.unit_id}, profile {config.profile}"
-    for name, said in found.items():
-        notes.tell(f"  {name}: {said}")
+        identities[device.title] = f"line {config.line}, unit {config.unit_id}, profile {config.profile}"
+    for name, text in identities.items():
+        notes.tell(f"  {name}: {text}")
     unnumbered = [drive.config.name for drive in seat.devices.drives if not drive.config.serial_number]
     if unnumbered:
         notes.tell(
@@ -35,5 +35,5 @@ def identify(seat: QuietSeat, notes: Notes) -> Dialogue:
     answer = yield from choose("identify", "are these the devices of this rig?", "yes", "no")
     if answer != "yes":
         raise StepRefused("the person at the rig does not know these devices again: check adapters, node and unit ids")
-    notes.values = found
-    notes.text = f"{len(found)} devices heard and known again"
+    notes.values = identities
+    notes.text = f"{len(identities)} devices found and recognised"

@@ -1,9 +1,9 @@
-"""A rig of which no scale is trusted yet: connected and heard, every drive off but the one that a person jogs.
+"""A rig with untested scales: connected, with every drive off but the one that a person jogs.
 
-It comes before arming, and so before the interlock table, most rows of which reckon with scales. What is watched is
-what the connection watches before every run (tester.machine.connect): safety chain and guard, heartbeats, faults, age
-of the inputs, a second master; and here that the load cell does not change. Two bounds need no scale: a jog lasts
-``PRESS_S`` at most for each key press, and the drive has a share of its torque only.
+This comes before arming, and so before the interlock table, most rows of which depend on scales. The checks are those
+of the connection before every run (tester.machine.connect): safety chain and guard, heartbeats, faults, age of the
+inputs, a second master; and here also that the load cell does not change. Two bounds need no scale: a jog lasts
+``PRESS_S`` at most for each key press, and the drive has only a share of its torque.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from tester.machine.ports import Ports
 from tester.machine.proof import ENABLE_S
 
 PRESS_S: Final = 2.0
-"""A key press moves an axis for this long at most, s [A]: a terminal does not see a key being released."""
+"""Longest motion for a key press, s [A]: a terminal cannot detect a released key."""
 STILL_S: Final = 1.0
-"""A jogged axis stands this long after it was told to, s [A]: the ramp from creep takes 25 ms."""
+"""Time for a jogged axis to come to rest, s [A]: the ramp from creep takes 25 ms."""
 TORQUE_SHARE: Final = 0.3
-"""Of the rated torque, for a jog [A]: bearings and inertia of this machine's axes take a tenth of it."""
+"""Share of the rated torque for a jog [A]: bearings and inertia of this machine's axes take a tenth of it."""
 PRESS_LOAD_N: Final = 60.0
-"""The press gets the torque that surely brings this about, N [A]: its spring pulls back with 40 N."""
+"""The press gets the torque that surely produces this load, N [A]: its spring pulls back with 40 N."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,17 +72,17 @@ class JogMove:
     way: float
     speed: float
     holds: bool = False
-    """It keeps its power when it stands: what would not stay where it is without (a press with a spring)."""
+    """It keeps its power at rest: without power it would not stay there (a press with a spring)."""
     moved: float = 0.0
-    """By what the drive itself reports."""
+    """Distance that the drive itself reports."""
     over: bool = False
 
 
 class Jogging:
-    """What stands where a run lifts the press (tester.machine.connect.Lifting): it moves one axis at a key press."""
+    """Moves one axis at a key press, in place of a run's lift (tester.machine.connect.Lifting)."""
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Nothing moves before a jog is asked for."""
+        """Move nothing before a jog begins."""
         self.devices = devices
         self.rig = rig
         self.done = False
@@ -95,11 +95,11 @@ class Jogging:
         self._last_s = 0.0
         self._from = 0.0
         self._rest: tuple[float, ...] = ()
-        """What the cell showed before the jog."""
+        """Readings of the cell before the jog."""
 
     @property
     def powered(self) -> bool:
-        """A drive has power, or is about to."""
+        """Whether a drive has power, or is about to."""
         if self.jog is not None and not self.jog.over:
             return True
         return any(drive.state > State.READY_TO_SWITCH_ON for drive in self.devices.drives if drive.connected)
@@ -117,7 +117,7 @@ class Jogging:
         return self._drives[axis]
 
     def rest(self) -> JogMove | None:
-        """Take the power of an axis that was held; return the jog that is over once it is off."""
+        """Switch off an axis that was holding; return the jog that is over once it is off."""
         jog = self.jog
         if jog is not None and jog.over and jog.holds:
             jog.holds = jog.over = False
@@ -174,7 +174,7 @@ class Jogging:
     def _arrived(self, drive: ServoDrive, jog: JogMove) -> bool:
         if drive.config.mode == "position":
             return drive.reached
-        ramp = 0.5 * jog.speed * jog.speed / drive.config.deceleration  # what it runs on after the word
+        ramp = 0.5 * jog.speed * jog.speed / drive.config.deceleration  # distance that it still moves after the stop
         return abs(jog.moved) + ramp >= abs(jog.way)
 
     def _halt(self, drive: ServoDrive) -> None:
@@ -183,12 +183,12 @@ class Jogging:
         )
 
     def trouble(self, now: float) -> str:
-        """Return why nothing may go on moving; "" where nothing has power."""
+        """Return why nothing may keep moving; "" if nothing has power."""
         if not self.powered:
             return ""
         cell, bounds = self.devices.cell, self.rig.interlocks
         if not (cell.valid and now - cell.stamp_s <= bounds.stale_cell_s + bounds.stale_cell_delay_s):
-            return "load cell silent: nobody sees whether the wheel touches"
+            return "load cell silent: a touching wheel would go unnoticed"
         if not self._rest:
             return ""
         x, y, z = (cell.raw[i] - self._rest[i] for i in range(3))
@@ -201,7 +201,7 @@ class Jogging:
         )
 
     def stop(self) -> None:
-        """Stop what moves; power off."""
+        """Stop everything; power off."""
         for drive in self.devices.drives:
             if drive.connected:
                 if drive.config.mode == "velocity":
@@ -212,42 +212,42 @@ class Jogging:
 
 
 class QuietArming(WheelArming):
-    """As before every run, but that a guard may be open while nothing has power: a person reads a ruler."""
+    """Arming as before every run, except that the guard may be open while nothing has power: a person reads a ruler."""
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Nothing is sent."""
+        """Send nothing."""
         super().__init__(devices, rig)
         self.jogging = Jogging(devices, rig)
 
     def unfit(self, now: float, configured_s: float) -> str:
         """Return why nothing may move, while anything has power."""
-        said = super().unfit(now, configured_s)
-        return said if self.powered or said not in ("safety chain", "guard open") else ""
+        reason = super().unfit(now, configured_s)
+        return reason if self.powered or reason not in ("safety chain", "guard open") else ""
 
     @property
     def powered(self) -> bool:
-        """A drive has power, or is about to."""
+        """Whether a drive has power, or is about to."""
         return self.jogging.powered
 
     def lift(self) -> Any:
-        """Return what moves one axis at a key press: nothing lifts by itself here."""
+        """Return the object that jogs an axis: nothing lifts by itself here."""
         return self.jogging
 
 
 class QuietConnector(Connector):
-    """Connects, hears, and stays there: nothing is homed, nothing proven."""
+    """Connects, waits for the devices, and stays there: no homing, no proof."""
 
     timeout_s = inf
 
     def _lift(self, lifting: Any, now: float) -> None:
-        """Go on jogging."""
+        """Keep jogging."""
         lifting.step(now)
         if lifting.failure:
             self._fail(lifting.failure)
 
 
 class QuietSeat:
-    """The rig as the first steps see it (tester.machine.commission.step.Seat)."""
+    """The rig during the first steps (tester.machine.commission.step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any, speeds: dict[str, JogSpeeds]) -> None:
         """Connect with the drives bounded (``jog_rig``)."""
@@ -265,7 +265,7 @@ class QuietSeat:
         arming: QuietArming,
         connector: QuietConnector,
     ) -> None:
-        """Take what the wires are driven with; ``believed``: the rig file's, ``rig``: what the drives are given."""
+        """Take the parts; ``believed``: the rig file's rig, ``rig``: the rig with the drives' bounds."""
         self.rig, self.believed, self.hands = rig, believed, hands
         self.devices = devices
         self._arming = arming
@@ -275,22 +275,22 @@ class QuietSeat:
 
     @property
     def jogging(self) -> Jogging:
-        """What moves an axis."""
+        """The object that moves an axis."""
         return self._arming.jogging
 
     @property
     def moving(self) -> Any:
-        """What is stopped where nobody ticks any more."""
+        """The object to stop when the ticks end."""
         return self.jogging
 
     @property
     def ready(self) -> bool:
-        """Everything is connected and heard."""
+        """Whether every device is connected and answers."""
         return self.connector.stage is Stage.LIFT
 
     @property
     def finished(self) -> bool:
-        """Released."""
+        """Whether everything is released."""
         return bool(self._lost) or self.connector.finished
 
     @property
@@ -299,11 +299,11 @@ class QuietSeat:
         return self._lost or ("" if self._told else self.connector.failure)
 
     def drive_node(self, axis: str) -> int:
-        """Return the node id that an axis is believed at."""
+        """Return an axis's node id in the rig file."""
         return self.rig.axes.driven()[axis].node_id
 
     def guarded(self) -> bool:
-        """Tell whether guard and safety chain are closed."""
+        """Return whether guard and safety chain are closed."""
         closed = INPUT_GUARD | INPUT_SAFETY_CHAIN
         return self.devices.axes.press.inputs & closed == closed
 

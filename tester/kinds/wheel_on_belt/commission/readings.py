@@ -1,4 +1,4 @@
-"""What the rig shows while it is commissioned: of each step what belongs to it, for the screen of a person."""
+"""Readings of the rig for the person's screen during commissioning, by step."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ Table = tuple[tuple[str, str, str, int], ...]
 
 
 def of_bus(seat: QuietSeat) -> Sequence[StepReading]:
-    """Return whether each drive and device is heard."""
+    """Return whether each drive and device answers."""
     drives = [(drive.config.name, drive.online) for drive in seat.devices.drives]
-    heard = [*drives, *((device.title, device.driver.ready) for device in seat.devices.modbus)]
-    return tuple(StepReading(name, nan, "", 0, "heard" if online else "not heard") for name, online in heard)
+    devices = [*drives, *((device.title, device.driver.ready) for device in seat.devices.modbus)]
+    return tuple(StepReading(name, nan, "", 0, "heard" if online else "not heard") for name, online in devices)
 
 
 def of_axis(axis: JoggedAxis) -> Callable[[QuietSeat], Sequence[StepReading]]:
-    """Return what tells of one axis: where it is, how far it has come since the key, whether it has power."""
+    """Return the readings of one axis: its position, its motion since the key press, whether it has power."""
 
     def readings(seat: QuietSeat) -> Sequence[StepReading]:
         if axis.name not in seat.believed.axes.driven():
@@ -55,7 +55,7 @@ def of_axis(axis: JoggedAxis) -> Callable[[QuietSeat], Sequence[StepReading]]:
 
 
 def of_cell(seat: QuietSeat) -> Sequence[StepReading]:
-    """Return what the load cell shows, without a zero taken."""
+    """Return the load cell's readings, without tare."""
     cell = seat.devices.cell
     words = "" if cell.valid else "not valid"
     return tuple(
@@ -64,7 +64,7 @@ def of_cell(seat: QuietSeat) -> Sequence[StepReading]:
 
 
 def of_armed(*tables: Table) -> Callable[[ArmedSeat], Sequence[StepReading]]:
-    """Return some of the process image."""
+    """Return part of the process image."""
 
     def readings(seat: ArmedSeat) -> Sequence[StepReading]:
         found = seat.ctx.readings
@@ -78,5 +78,5 @@ def of_armed(*tables: Table) -> Callable[[ArmedSeat], Sequence[StepReading]]:
 
 
 def of_positions(seat: ArmedSeat) -> Sequence[StepReading]:
-    """Return where the positioned axes are."""
+    """Return the positions of the positioned axes."""
     return tuple(StepReading(name, value, "deg", 2) for name, value in seat.ctx.readings.positions.items())

@@ -1,4 +1,5 @@
-"""A person who commissions the simulated rig: reads the plant's truth as a ruler, a weight and a thermometer show it.
+"""A person who commissions the simulated rig: reads the plant's true values as a ruler, a weight or a thermometer
+would.
 
 For ``--yes`` on the simulated rig, for tests and campaigns. Each answer takes rig time, as a person's does.
 """
@@ -13,18 +14,18 @@ from tester.kinds.wheel_on_belt.commission.jog import AXES as JOGGED
 from tester.machine.commission.person import GO, Asks, Question
 
 THINKS_S: Final = 15.0
-"""Rig time of an answer for which something is read or hung, s [A]."""
+"""Rig time of an answer that needs a reading or a hung weight, s [A]."""
 STILL_M_S: Final = 0.002
-"""Slower than this a person sees no motion, m/s [A]."""
+"""A person sees no motion slower than this, m/s [A]."""
 KEY_S: Final = 2.0
 """Rig time from a question to a key, s [A]."""
 
 
 class TwinHands(Protocol):
-    """What a person finds at the simulated rig (sim.machines.wheel_on_belt.rig.WheelRig)."""
+    """The simulated rig, for the person (sim.machines.wheel_on_belt.rig.WheelRig)."""
 
     def ruler(self, axis: str) -> float:
-        """Return where an axis is."""
+        """Return an axis's position."""
         ...
 
     @property
@@ -43,41 +44,37 @@ class TwinHands(Protocol):
 
 
 class TwinPerson:
-    """Answers every question of the steps as somebody at the machine would who makes no mistake."""
+    """Answers every question of the steps correctly, as a careful person at the machine would."""
 
     time_stands: bool = False
 
     def __init__(self, say: Callable[[str], None] = lambda text: None) -> None:
-        """``say``: is told what a person is."""
+        """``say`` gets the messages to the person."""
         self.hands: Any = None
         self.asked: list[Question] = []
         self._say = say
         self._question: Question | None = None
         self._put_s = inf
         self._from: dict[str, float] = {}
-        """Where each axis was when its instrument was set to zero."""
+        """Position of each axis when its instrument was set to zero."""
 
     def at(self, hands: TwinHands) -> None:
-        """Stand at a rig: wires were opened anew."""
+        """Move to a rig with newly opened wires."""
         self.hands = hands
         self._from.clear()
 
     def tell(self, text: str) -> None:
-        """Listen."""
         self._say(text)
 
     def put(self, question: Question) -> None:
-        """Take a question."""
         self._question = question
         self._put_s = inf
         self.asked.append(question)
 
     def poll(self) -> list[str]:
-        """Give no command."""
         return []
 
     def taken(self, now_s: float) -> str | None:
-        """Answer once the time for it is over."""
         question = self._question
         if question is None:
             return None
@@ -91,7 +88,7 @@ class TwinPerson:
         return self.answer(question)
 
     def prepare(self, question: Question) -> None:
-        """Do what the question asks for, if it asks for anything: the answer follows."""
+        """Do what the question asks, if anything; the answer follows."""
         words = question.key.split()
         if words[0] == "jog" and (words[2] == "first" or words[2] == "mark"):
             self._from.setdefault(words[1], self.hands.ruler(words[1]))
@@ -101,7 +98,7 @@ class TwinPerson:
             self.hands.hang(*self.hung(question))
 
     def hung(self, question: Question) -> tuple[float, float, float]:
-        """Return the forces of the weight that a question names, N: key ``hang CHANNEL NEWTONS``."""
+        """Return the forces of the weight in a question, N: key ``hang CHANNEL NEWTONS``."""
         _, channel, newtons = question.key.split()
         force = float(newtons)
         return (force, 0.0, 0.0) if channel == "x" else (0.0, force, 0.0) if channel == "y" else (0.0, 0.0, force)
@@ -130,7 +127,7 @@ class TwinPerson:
             return question.choices[0]
         if question.asks is Asks.TEXT:
             return "weights of class M1, certificate 4711" if "certificate" in question.key else "2027-11-23"
-        raise LookupError(f"nobody has taught this person: {question.key}")
+        raise LookupError(f"this person has no answer to: {question.key}")
 
     def _jogged(self, question: Question, axis: str) -> str:
         moved = self.hands.ruler(axis) - self._from.get(axis, 0.0)
@@ -138,6 +135,6 @@ class TwinPerson:
             return f"{moved:.2f}"
         if "direction" in question.key:
             if abs(moved) < 1e-6:
-                return "other" if any(abs(self.hands.ruler(one.name)) > 1e-6 for one in JOGGED) else "nothing"
+                return "other" if any(abs(self.hands.ruler(axis.name)) > 1e-6 for axis in JOGGED) else "nothing"
             return "yes" if moved > 0.0 else "reversed"
         return question.choices[0]

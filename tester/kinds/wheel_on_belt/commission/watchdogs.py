@@ -1,7 +1,7 @@
-"""The watchdogs of drives and jacket, provoked in front of a person: heartbeat, setpoints, and the lease of the heat.
+"""The watchdogs of drives and jacket, triggered in front of a person: heartbeat, setpoints, and the lease of the heat.
 
-Cold, lifted and unloaded, guard closed. Each is tried out by itself: what is withheld is one thing at a time, the rest
-goes on. What a device has read back of its deadline, and what it said when that was over, goes on record.
+Cold, lifted and unloaded, guard closed. Each watchdog is tried alone: only one signal is withheld, the rest continues.
+The record keeps each device's deadline, as read back, and its report when the deadline had passed.
 """
 
 from __future__ import annotations
@@ -25,33 +25,33 @@ from tester.machine.ports import Ports
 from tester.machine.proof import WatchdogProof
 
 SETPOINT_LATE: Final = 0x8250
-"""EMCY code of an RPDO that did not come in time (CiA 301, table 26)."""
+"""EMCY code of an RPDO that did not arrive in time (CiA 301, table 26)."""
 MORE_S: Final = 0.15
-"""Setpoints are withheld for the longest deadline and this, s [A]: the EMCY is there, the ramp from creep is over."""
+"""Setpoints are withheld for the longest deadline plus this, s [A]: the EMCY arrives, and the ramp from creep ends."""
 NEEDS_DEADLINE: Final = ("wheel", "belt", "press")
-"""Axes that go on by themselves with their last setpoint."""
+"""Axes that keep moving at their last setpoint."""
 COOLER_K: Final = 20.0
-"""The jacket is asked for so much less than the hub has: it runs, and gives no heat."""
+"""The jacket's setpoint is this much below the hub's temperature: it runs without heating."""
 RUNS_S: Final = 1.5
-"""It runs so long with its setpoint, s: three writes of it, and a reading."""
+"""Time for which it runs with its setpoint, s: three writes of it, and a reading."""
 LEASE_MORE_S: Final = 3.0
-"""After its lease the jacket has so long to say so, s [A]: a period of its own and of its readings."""
+"""Time for the jacket to report the end of its lease, s [A]: a period of its own and of its readings."""
 NO_OUTPUT_PERCENT: Final = 0.5
 
 
 class SetpointProof(Proof):
-    """Wheel and belt creep while their setpoints are withheld; heartbeat and SYNC go on."""
+    """Lets wheel and belt creep while their setpoints are withheld; heartbeat and SYNC continue."""
 
     emergency = SETPOINT_LATE
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Nothing moves before the first ``step``."""
+        """Move nothing before the first ``step``."""
         super().__init__(devices, rig)
         self.follow, self.watchdog = False, True
         self.withhold_s = max((deadline_s(drive) for drive in self.watched()), default=0.0) + MORE_S
 
     def withhold(self, withheld: bool) -> None:
-        """Keep back, or send again, the RPDOs."""
+        """Withhold the RPDOs, or send them again."""
         self.devices.master.withhold_setpoints = withheld
 
     def watched(self) -> list[ServoDrive]:
@@ -59,7 +59,7 @@ class SetpointProof(Proof):
         return [drive for drive in self.devices.drives if deadline_s(drive) > 0.0]
 
     def ran_on(self, name: str) -> str:
-        """Say that a drive did not stop."""
+        """Return the failure text for a drive that did not stop."""
         return (
             f"the {name} drive did not stop with EMCY 0x8250 when its setpoints were missing"
             f" for {self.withhold_s * 1000:g} ms (0x1400:05, axes.{name}.rpdo_deadline)"
@@ -67,30 +67,30 @@ class SetpointProof(Proof):
 
 
 def deadline_s(drive: ServoDrive) -> float:
-    """Return the deadline for setpoints that a drive has read back, s; 0: none."""
+    """Return a drive's deadline for setpoints, as read back, s; 0: none."""
     return 1e-3 * drive.parameters.get((o.RPDO_COMMUNICATION, 5), 0)
 
 
 class Trials:
-    """Lifts, and then steps the proof that a procedure hands in (tester.machine.connect.Lifting)."""
+    """Lifts, and then steps the proof that a procedure supplies (tester.machine.connect.Lifting)."""
 
     done = False
-    """The procedure says when."""
+    """The procedure decides when it is done."""
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Nothing moves before the first ``step``."""
+        """Move nothing before the first ``step``."""
         self.unloaded = Unloaded(devices, rig)
         self.proof: WatchdogProof | None = None
         self.stepped_s = 0.0
 
     @property
     def failure(self) -> str:
-        """Why nothing can be tried out. What a proof has not shown is the procedure's to say."""
+        """Why nothing can be tried. The procedure reports a failed proof itself."""
         return self.unloaded.failure
 
     @property
     def trying(self) -> bool:
-        """A proof is under way."""
+        """Whether a proof is under way."""
         return self.proof is not None and not self.proof.done
 
     def step(self, now: float) -> None:
@@ -102,57 +102,59 @@ class Trials:
             self.proof.step(now)
 
     def trouble(self, now: float) -> str:
-        """Return why the rig is not known to be unloaded any more; a person may reach in while nothing is tried."""
+        """Return why the rig is no longer known to be unloaded; a person may reach in between proofs."""
         return self.unloaded.trouble(now) if self.trying else ""
 
     def stop(self) -> None:
-        """Bring to standstill what moves."""
+        """Bring everything to standstill."""
         self.unloaded.stop()
         if self.proof is not None:
             self.proof.stop()
 
 
 class TrialArming(QuietArming):
-    """As before every run, but that the jacket's lease may be left to run out."""
+    """Arming as before every run, except that the jacket's lease may run out."""
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Nothing is sent."""
+        """Send nothing."""
         super().__init__(devices, rig)
         self.trials = Trials(devices, rig)
         self.renews = True
 
     def renew(self) -> None:
-        """Renew the jacket's lease, unless that is what is tried out."""
+        """Renew the jacket's lease, unless the lease is being tried."""
         if self.renews:
             super().renew()
 
     @property
     def powered(self) -> bool:
-        """A drive has power, or is about to."""
+        """Whether a drive has power, or is about to."""
         return self.trials.trying or not self.trials.unloaded.done or super().powered
 
     def lift(self) -> Any:
-        """Return what lifts and tries out."""
+        """Return the object that lifts and tries the watchdogs."""
         return self.trials
 
 
 class TrialConnector(QuietConnector):
-    """Connects, hears, lifts, and stays there; drives that are made to stop by themselves end nothing."""
+    """Connects, waits for the devices, lifts, and stays there; a drive that stops on purpose does not end the
+    connection.
+    """
 
     def __init__(self, devices: Devices, rig: RigConfig, arming: TrialArming) -> None:
-        """Nothing is sent."""
+        """Send nothing."""
         super().__init__(devices, rig, arming, rig.arming.listen_s)
         self._trials = arming.trials
 
     @property
     def watches_drives(self) -> bool:
-        """Every drive is configured, and one that stops by itself without being made to ends the connection."""
+        """Whether every drive is configured, so that a drive that stops unprovoked ends the connection."""
         proof = self._trials.proof
         return super().watches_drives and not (proof is not None and not proof.done and proof.provokes)
 
 
 class TrialSeat(QuietSeat):
-    """The rig lifted and unloaded, for watchdogs to be tried out (tester.machine.commission.step.Seat)."""
+    """The rig lifted and unloaded, for trying watchdogs (tester.machine.commission.step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
         """Connect; drives have the torque of a run."""
@@ -162,16 +164,16 @@ class TrialSeat(QuietSeat):
 
     @property
     def ready(self) -> bool:
-        """Everything is heard, the press lifted, nothing loaded."""
+        """Whether every device has answered, the press is lifted, and nothing is loaded."""
         return super().ready and self.arming.trials.unloaded.done and not self.arming.trials.failure
 
     @property
     def moving(self) -> Trials:
-        """What is stopped where nobody ticks any more."""
+        """The object to stop when the ticks end."""
         return self.arming.trials
 
     def prove(self, proof: WatchdogProof) -> Dialogue:
-        """Yield until a proof is done; raises StepRefused for what was not shown."""
+        """Yield until a proof is done; raises StepRefused if it failed."""
         self.arming.trials.proof = proof
         yield lambda now_s: proof.done
         if proof.failure:
@@ -179,13 +181,14 @@ class TrialSeat(QuietSeat):
 
 
 def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
-    """Let each watchdog run out in front of a person; raises StepRefused for one that does nothing."""
+    """Let each watchdog run out in front of a person; raises StepRefused for one that has no effect."""
     arming = seat.rig.arming
     if not (arming.bump_test and arming.watchdog_proof):
         raise StepRefused("watchdogs not shown: the rig file does without (arming.bump_test, arming.watchdog_proof)")
     drives = seat.devices.drives
     unproven = [drive.config.name for drive in drives if not drive.config.proves_watchdog]
-    without = [one.config.name for one in drives if one.config.name in NEEDS_DEADLINE and not deadline_s(one) > 0.0]
+    needing = [drive for drive in drives if drive.config.name in NEEDS_DEADLINE]
+    without = [drive.config.name for drive in needing if not deadline_s(drive) > 0.0]
     if unproven:
         raise StepRefused(f"watchdogs not shown: the rig file leaves out axes.*.proves_watchdog: {', '.join(unproven)}")
     if without:
@@ -197,13 +200,13 @@ def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
     heat = yield from _lease(seat, notes)
     notes.values["heat"] = heat
     notes.text = (
-        f"each drive stops by itself without our heartbeat; {', '.join(one.config.name for one in proof.watched())}"
+        f"each drive stops by itself without our heartbeat; {', '.join(drive.config.name for drive in proof.watched())}"
         f" without setpoints; heat: {heat}"
     )
 
 
 def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text: str) -> Dialogue:
-    """Try one out when a person says so, ask what was seen, and put on record what every drive read back and said."""
+    """Try a watchdog when the person says go, ask what they saw, and record every drive's deadline and report."""
     while True:
         yield from press(f"watchdog {name}", text)
         if seat.guarded():
@@ -215,19 +218,19 @@ def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text:
         if name == "heartbeat":
             entry = o.CONSUMER_HEARTBEAT, 1
         raw = drive.parameters.get(entry, 0)
-        said = {
+        report = {
             "object": f"0x{entry[0]:04X}:{entry[1]:02d}", "read_back_ms": raw & 0xFFFF,
             "emergency": f"0x{proof.emergency:04X}", "after_ms": round(1e3 * proof.reported[drive.config.name]),
         }  # fmt: skip
-        notes.read(f"{name}: {drive.config.name} stopped by itself", said)
-        notes.values.setdefault(name, {})[drive.config.name] = said
+        notes.read(f"{name}: {drive.config.name} stopped by itself", report)
+        notes.values.setdefault(name, {})[drive.config.name] = report
     seen = yield from choose(f"watchdog {name} seen", "did wheel and belt stand still by themselves?", "yes", "no")
     if seen != "yes":
         raise StepRefused(f"watchdogs: a person saw wheel or belt run on without {name}, though their drives say not")
 
 
 def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
-    """Let the jacket run, asked for no heat, and say nothing until its lease, or its own setpoint, ends that."""
+    """Run the jacket without heat, and send nothing until its lease, or its own setpoint, ends that."""
     jacket: TemperatureController = seat.devices.jacket
     if jacket.ends_s is None:
         how = seat.rig.devices["jacket"].heat_off or "nothing that the rig file names"
@@ -235,8 +238,8 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
         return f"ended by {how}, not tried out here"
     asked_c = jacket.measured_c - COOLER_K
     if not isfinite(asked_c):
-        raise StepRefused("the jacket says no temperature: sensor, or its wires")
-    yield from press("watchdog heat", f"the jacket runs for {jacket.ends_s:g} s, asked for no heat, and hears no more")
+        raise StepRefused("the jacket reports no temperature: sensor, or its wires")
+    yield from press("watchdog heat", f"the jacket runs for {jacket.ends_s:g} s without heat and new setpoints")
     seat.arming.renews = False
     ends_s, begun_s, heard_s, ended_s = jacket.ends_s, inf, -inf, -inf
 
@@ -250,7 +253,7 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
 
     yield running
     if jacket.lease_expired:
-        raise StepRefused("watchdogs: the jacket says that our setpoint does not reach it, though it is sent")
+        raise StepRefused("watchdogs: the jacket reports that our setpoint does not arrive, though it is sent")
 
     def over(now_s: float) -> bool:
         nonlocal ended_s
@@ -259,7 +262,7 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
 
     yield over
     failed, after_s = jacket.lease_expired, ended_s - heard_s
-    yield from wait(1.0)  # its output is read anew
+    yield from wait(1.0)  # for a new reading of its output
     output = jacket.output_percent
     seat.arming.renews = True
     jacket.enable(False)
@@ -272,6 +275,6 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
         )
     if not output <= NO_OUTPUT_PERCENT:
         raise StepRefused(f"watchdogs: the jacket gives {output:g} % of its heat after its {kind} has ended that")
-    said = {"kind": kind, "read_back_s": jacket.ends_s, "after_s": round(after_s, 1), "output_percent": output}
-    notes.read("heat: ended without our setpoint", said)
+    report = {"kind": kind, "read_back_s": jacket.ends_s, "after_s": round(after_s, 1), "output_percent": output}
+    notes.read("heat: ended without our setpoint", report)
     return f"{kind} over after {after_s:.1f} s (set and read back: {jacket.ends_s:g} s)"

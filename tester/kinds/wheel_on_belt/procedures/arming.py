@@ -1,6 +1,6 @@
-"""What is shown before every run: both drives follow, brake alike, and every drive stops without our heartbeat.
+"""The proofs before every run: both drives follow, brake alike, and every drive stops without our heartbeat.
 
-It is tried out unloaded: ``tester.kinds.wheel_on_belt.procedures.lift_check`` has seen to that, and goes on watching.
+They run unloaded: ``tester.kinds.wheel_on_belt.procedures.lift_check`` ensures that, and keeps watching.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from tester.kinds.wheel_on_belt.rig.checks import EQUAL_DECELERATIONS
 from tester.machine.proof import ProofStage, WatchdogProof
 
 BUMP_S = 0.3
-"""Ramp and lag are over by then: 25 ms at 2 m/s2 to 0.05 m/s [A]."""
+"""Time for ramp and lag: 25 ms at 2 m/s2 to 0.05 m/s [A]."""
 BUMP_SHARE = 0.3
-"""A speed within this share of its target follows; the other drive stands below the same speed [A]."""
+"""A speed within this share of its target follows; the other drive must be at rest within the same speed [A]."""
 PRESS_BUMP_MM_S = 2.0
 PRESS_BUMP_MM = 0.2
-"""The press moves by at least this in the bump, away from rest and back [A]."""
+"""Least motion of the press in the bump, away from rest and back [A]."""
 
 
 class Bump(Enum):

@@ -1,7 +1,7 @@
-"""Before anything else moves the press is lifted, and the load cell has to say that the wheel is free.
+"""Lifts the press before anything else moves, and proves with the load cell that the wheel is free.
 
-The press's position alone shows nothing: its encoder's zero may be wrong, and the press is never homed. The cell is
-asked without tare, since a tare taken under load would hide that load from everything after it.
+The press's position alone proves nothing: its encoder's zero may be wrong, and the press is never homed. The cell is
+read without tare, since a tare taken under load would hide that load from everything after it.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ LIFT_S = 6.0
 """The press's whole travel at its lifting speed takes 3 s [A]."""
 LIFTED_MM = 0.3
 SETTLE_S = 0.3
-"""A press at 10 mm/s stands 0.2 s after it was told to; a reading that left the cell after that counts [A]."""
+"""Age from which a reading counts after the lift, s [A]: a press at 10 mm/s is at rest 0.2 s after the command."""
 SILENT_S = 1.0
-"""The cell is read with every tick: one that gives no valid reading for this long will not [A]."""
+"""Time without a valid reading after which the cell counts as silent, s [A]: it is read with every tick."""
 
 
 class LiftStage(Enum):
-    """How far the lifting is."""
+    """Stage of the lifting."""
 
     ENABLE = "enable the press"
     LIFT = "lift the press"
@@ -78,7 +78,7 @@ class Unloaded:
         self._note()
         bounds = self.rig.interlocks
         if not now - self.good_s <= bounds.stale_cell_s + bounds.stale_cell_delay_s:
-            return "load cell silent: nobody sees whether the wheel touches"
+            return "load cell silent: a touching wheel would go unnoticed"
         return self._shown()
 
     def stop(self) -> None:

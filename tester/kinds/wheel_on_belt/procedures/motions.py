@@ -21,7 +21,7 @@ SPEED_FLOOR_M_S: Final = 0.003
 """A speed counts as reached within 1 % or 3 mm/s, whichever is more [A]."""
 
 NEAR: Final = 0.05
-"""A positioned axis is where it is to be within this, in its unit (deg) [A]."""
+"""Tolerance of a positioned axis, in its unit (deg) [A]."""
 LIFTED_N: Final = 5.0
 """Below this force the wheel counts as lifted [A]."""
 LIFTED_MM: Final = 0.3
@@ -73,7 +73,7 @@ def speeds_reached(ctx: Context) -> bool:
 
 
 class Load(Move):
-    """Press to a load (N) and wait until it stands within ``percent`` for ``for_s`` seconds."""
+    """Press to a load (N) and wait until it stays within ``percent`` for ``for_s`` seconds."""
 
     limit_s = 180.0  # [A]; a first touch takes 15 s
     name = "loading"

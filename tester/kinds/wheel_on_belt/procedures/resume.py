@@ -1,4 +1,4 @@
-"""Put steps that are about to begin where an interrupted run stands in the store."""
+"""Initialises steps from the state that an interrupted run left in the store."""
 
 from __future__ import annotations
 
