@@ -3,16 +3,17 @@
 Nothing here knows one kind of machine. A kind is a folder in ``tester/kinds`` and brings
 
 - its **process image**: readings, demand and setpoints that inherit from those in ``image``;
-- its **devices**: drivers on their wires, with ``fill`` (readings from drivers) and ``apply`` (setpoints to drivers);
-  the rest of what a scan needs is in ``devices``;
+- its **devices**: drivers on their wires (``drivers``), with ``fill`` (readings from drivers) and ``apply`` (setpoints
+  to drivers); the rest of what a scan needs is in ``devices``;
 - its **rows**: ``Interlock`` objects (``row``) over inputs that inherit from ``ScanInputs``, made into one
   ``InterlockTable``, with the parameters that belong to no row;
 - its **control**: a class that inherits from ``Control`` and implements the commands of each mode and
-  the begin and end of a stop; its loops keep their state in a class that inherits from ``ControlState``;
+  the begin and end of a stop (``StandstillControl`` has those of a machine that is safe once it stands); its loops keep
+  their state in a class that inherits from ``ControlState``;
 - its **context**: what a step may see and do, inherited from ``BaseContext``: specimen, gates, hands at the rig;
 - its **procedures**: activities, and a class that inherits from ``Procedures`` and selects the activity for each step
-  and for unplanned work; also the proofs before a run may begin (``Arming``), and the results of a repeat
-  (``StoredResults``);
+  and for unplanned work; also the proofs before a run may begin (``Arming``), what a repeat is (``MeasureCondition``),
+  and its results (``StoredResults``);
 - a **build** function that puts these into an ``Engine`` and a ``Connector``, and both into a ``Run``.
 
 A ``Run`` is ticked by one of the ``tickers``. Until the rig is up the connector has the tick: it listens, configures

@@ -1,6 +1,6 @@
 """A plain machine: drives that are given a speed, sensors that are profiles, one step for each condition.
 
-What a kind of such a machine repeats otherwise stands here, and a kind overrides only where it differs:
+Defaults for such machines, on what ``tester.machine`` has for all; a kind overrides what differs:
 
 - ``image``: readings, demand, setpoints; a kind's readings inherit from ``PlainReadings`` and say in ``update`` what
   drives and sensors mean;
@@ -10,6 +10,6 @@ What a kind of such a machine repeats otherwise stands here, and a kind override
 - ``runs``, ``served``: what a run and a service ask of the kind.
 
 Its rig file is a ``tester.inputs.rig.plain.PlainRig``, its recipe a ``tester.inputs.recipe.plain.PlainPart``, its twin
-on the same wires a ``sim.plain_rig.PlainTwin``. A machine that heats, presses or goes to places is more than plain: see
-``tester.kinds.wheel_on_belt``.
+on the same wires a ``sim.plain_twin.PlainTwin``. A machine that heats, presses or goes to places is more than plain:
+see ``tester.kinds.specimen_on_track``.
 """
