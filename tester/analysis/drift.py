@@ -53,8 +53,8 @@ PER_KELVIN_PERCENT = 2.6
 
 CONFIDENCE = 0.95
 LOOK_CONFIDENCE = 1.0 - (1.0 - CONFIDENCE) / 4.0
-"""Of each look at the repeats of a condition. Most recipes have three to six repeats, which makes four looks; they
-share the level of the test."""
+"""Confidence of each look at the repeats of a condition. Most recipes have three to six repeats, which makes four
+looks; they share the level of the test."""
 SIBLINGS = 3
 """A repeat is compared with its siblings where there are at least this many."""
 DIFFERENT_LEVEL = 0.001

@@ -54,7 +54,7 @@ class Surroundings:
     warmth: SurfaceWarmth = NO_WARMTH
     size: Size = NO_SIZE
     drift: CounterfaceDrift | None = None
-    """Of the counterface, where the run has reference conditions."""
+    """Drift of the counterface, where the run has reference conditions."""
     travel_m: float = NAN
     """Travel of the counterface at the time of this measurement."""
 

@@ -16,7 +16,7 @@ from tester.base.quantities import Means
 
 NAN = float("nan")
 NO_MEANS: Final = Means()
-"""Of a repeat without measurements."""
+"""Means of a repeat without measurements."""
 
 
 class RepeatStatus(StrEnum):
@@ -102,7 +102,7 @@ class RepeatResult:
     """Accepted seconds behind the coefficient."""
     bursts: int = 0
     means: Means = NO_MEANS
-    """Of the averaged channels, over the blocks that count."""
+    """Means of the averaged channels, over the blocks that count."""
     started_s: float = NAN
     ended_s: float = NAN
 

@@ -16,8 +16,8 @@ from typing import Final
 SCALE_OFF: Final = 0.01
 """Greatest error of the scale of the wheel's speed that is searched [A]."""
 STEP_REV: Final = 0.1
-"""Step between the scales tried: each turns the last error by this much, rev; nearer ones have nearly the same R [A].
-"""
+"""Step between the scales tried: each turns the last error by this much, rev; nearer ones have nearly the same R
+[A]."""
 LEAST_ERRORS: Final = 8
 """Fewer errors carry no information about an angle [A]."""
 CHANCE: Final = 0.001

@@ -169,8 +169,8 @@ class OppositePairs:
 
 
 def _changed(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> float:
-    """Return the greatest sudden change within one direction: misaligned axes separate the two, whatever friction does.
-    """
+    """Return the greatest sudden change within one direction: misaligned axes separate the two, whatever friction
+    does."""
     ways = (
         [result for i, result in enumerate(results) if is_reversed(i + 1) == backward and i not in by_hand]
         for backward in (False, True)

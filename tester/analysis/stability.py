@@ -69,8 +69,8 @@ def filled(blocks: Sequence[Block], revolutions: float | None, seconds: float | 
 
 
 def left_out(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> int:
-    """Return how many leading blocks are transient; only the first 1.5 windows count, so later blocks never change it.
-    """
+    """Return how many leading blocks are transient; only the first 1.5 windows count, so later blocks never change
+    it."""
     first = list(blocks)
     if revolutions is not None:
         first = first[: int(REPEAT_WINDOWS * revolutions)]

@@ -268,8 +268,8 @@ class ListWords:
 
     @property
     def common(self) -> str:
-        """Return the words that all of them share, for the list's heading; "" where ``of`` already includes everything.
-        """
+        """Return the words that all of them share, for the list's heading; "" where ``of`` already includes
+        everything."""
         if self.first is None or not (self.axes or self.compound):
             return ""
         shared = [axis for axis in self.first.axes if axis not in self.axes and not axis.at_default(self.first)]

@@ -87,12 +87,12 @@ LEVEL = 10
 
 
 class RealTimePriority:
-    """Real-time priority of this process; ``refused`` is why it was not granted, "" where it was. ``close`` returns it.
-    """
+    """Real-time priority of this process; ``refused`` is why it was not granted, "" where it was. ``close`` returns
+    it."""
 
     def __init__(self) -> None:
-        """Request it for every running thread: a thread without it would keep the others waiting for the interpreter.
-        """
+        """Request it for every running thread: a thread without it would keep the others waiting for the
+        interpreter."""
         self.refused = ""
         self._threads: list[int] = []
         if sys.platform != "linux":

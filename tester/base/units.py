@@ -151,8 +151,8 @@ _DECIMAL_COMMA = re.compile(r"\s*[+\-−]?[0-9]+,[0-9]")
 _LONGEST = 80
 """Longest text that is parsed, in characters: any real quantity is a quarter of this."""
 _REMEMBERED = 32_768
-"""Number of texts whose value is cached: a file's quantities are read by the schema and again against the rig's limits.
-"""
+"""Number of texts whose value is cached: a file's quantities are read by the schema and again against the rig's
+limits."""
 
 
 def shown(text: str) -> str:

@@ -95,8 +95,8 @@ def plain_text(text: str, where: str = "") -> str:
 
 
 def harmless(text: str) -> str:
-    """Return a text that cannot steer a terminal: dangerous characters become question marks; tabs and line ends stay.
-    """
+    """Return a text that cannot steer a terminal: dangerous characters become question marks; tabs and line ends
+    stay."""
     return FORBIDDEN.sub("?", text)
 
 

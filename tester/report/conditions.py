@@ -71,8 +71,8 @@ def _advice(results: RunResults) -> Iterator[str]:
 
 
 def short_table(results: RunResults) -> ReportTable:
-    """Return the main table in short, for a first page: every condition, or every compound where conditions are many.
-    """
+    """Return the main table in short, for a first page: every condition, or every compound where conditions are
+    many."""
     conditions = recipe_rows(conditions_table(results))
     if len(conditions.rows) <= SHORT_ROWS:
         axes = results.axes.differing(row.info.setpoint for row in conditions.rows)

@@ -93,8 +93,8 @@ def point_of(
     label: str, one: Measured, source: Source, nominal: tuple[float, ...], measured: tuple[float, ...], between: float,
     info: RunInfo,
 ) -> FitPoint:  # fmt: skip
-    """Return a condition as a point, with the scatter of its repeats; ``between``: scatter of conditions, as a share.
-    """
+    """Return a condition as a point, with the scatter of its repeats; ``between``: scatter of conditions, as a
+    share."""
     result = one.result
     known = _repeatability(one, info.metadata)
     return FitPoint(

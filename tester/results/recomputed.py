@@ -24,8 +24,8 @@ TOLERANCE = 1e-9
 their times put back on a grid of a microsecond."""
 
 LOOSER = 1e-3
-"""Relative, of figures that depend on the samples' times: those of merged parts, on their grid, move them this little.
-"""
+"""Relative, of figures that depend on the samples' times: those of merged parts, on their grid, move them this
+little."""
 _LOOKED_AT = ("change_percent", "swing_percent", "swing_hz", "swing_skewness")
 _FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral")
 

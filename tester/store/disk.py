@@ -113,8 +113,8 @@ def write_text(path: Path, text: str) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Sync the names in a folder: files made, replaced or deleted there. Does nothing where folders cannot be synced.
-    """
+    """Sync the names in a folder: files made, replaced or deleted there. Does nothing where folders cannot be
+    synced."""
     with suppress(OSError):  # Windows opens no folders
         descriptor = os.open(folder, os.O_RDONLY)
         try:

@@ -261,8 +261,8 @@ class RunReader:
         return {_whole(row, "repeat_id"): _record(Travel, row) for row in rows}
 
     def slid(self) -> dict[int, list[float]]:
-        """Return the sliding of each piece at the beginning of its repeats and at its last stored state, m, in order.
-        """
+        """Return the sliding of each piece at the beginning of its repeats and at its last stored state, m, in
+        order."""
         slid: dict[int, list[float]] = {}
         for row in self._rows("SELECT piece, piece_m FROM travel WHERE piece_m IS NOT NULL ORDER BY piece_m"):
             slid.setdefault(_whole(row, "piece"), []).append(_number(row, "piece_m"))

@@ -438,8 +438,8 @@ def _empty(connection: sqlite3.Connection) -> bool:
 
 
 def migrate(connection: sqlite3.Connection) -> None:
-    """Migrate a database, or create an empty one, to the present schema, each step in a transaction; raises StoreError.
-    """
+    """Migrate a database, or create an empty one, to the present schema, each step in a transaction; raises
+    StoreError."""
     steps = (SCHEMA, *MIGRATIONS)
     for version in range(version_of(connection), VERSION):
         connection.executescript(

@@ -174,8 +174,8 @@ class RunWriter(Recorder):
             self._thread.start()
 
     def __deepcopy__(self, memo: dict[int, object]) -> NullRecorder:
-        """Return a recorder that records nothing and continues the numbering: a copied engine must not write the file.
-        """
+        """Return a recorder that records nothing and continues the numbering: a copied engine must not write the
+        file."""
         copied = NullRecorder(self._utc)
         copied.continue_from(self)
         return copied
@@ -343,8 +343,8 @@ class RunWriter(Recorder):
         self._stored_overruns = overruns
 
     def _look_for_file(self) -> None:
-        """Raise RecordGoneError where the file was removed, moved or exchanged: writes to it would be lost unnoticed.
-        """
+        """Raise RecordGoneError where the file was removed, moved or exchanged: writes to it would be lost
+        unnoticed."""
         try:
             there = _identity(self._path) == self._file
         except FileNotFoundError:

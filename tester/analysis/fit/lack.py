@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Places = NDArray[np.intp]
 
 LEVEL: Final = 0.01
-"""Of all tests together: one in a hundred right laws is refused."""
+"""Level of all tests together: one in a hundred right laws is refused."""
 DRAWS: Final = 9999
 SEED: Final = 0
 SEEN: Final = 0.95

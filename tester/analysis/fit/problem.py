@@ -60,7 +60,7 @@ class FitProblem:
         self.x: Array = np.array([point.measured for point in points], dtype=np.float64)
         self.y: Array = np.log(np.array([point.value for point in points], dtype=np.float64))
         self.sigma: Array = _sigmas(points)
-        """Standard deviation of each condition's ln mu from what is independent between conditions; 1 where unknown."""
+        """Standard deviation of each condition's ln mu from independent scatter; 1 where unknown."""
         self.reference = sqrt(1.0 / float(np.mean(1.0 / self.sigma**2)))
         """The standard deviation that represents all conditions."""
         self.weight: Array = self.reference / self.sigma

@@ -22,7 +22,7 @@ RESAMPLES: Final = 999
 SEED: Final = 0
 """Fixed, so the same conditions give the same intervals."""
 TAILS: Final = (0.025, 0.975)
-"""Of the intervals, 95 %."""
+"""Tails of the intervals, 95 %."""
 
 
 @dataclass(frozen=True, slots=True)

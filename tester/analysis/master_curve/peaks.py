@@ -39,8 +39,8 @@ FINER: Final = 4
 SURE: Final = 0.95
 """Share of the drawn sets that must have the maximum."""
 REACH_DECADES: Final = 1.0
-"""Distance within which a maximum counts as the same, for a curve's only maximum [A]; of several, half their distance.
-"""
+"""Distance within which a maximum counts as the same, for a curve's only maximum [A]; of several, half their
+distance."""
 
 
 @dataclass(frozen=True, slots=True)

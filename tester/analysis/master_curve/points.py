@@ -1,4 +1,4 @@
-"""What a master curve is made of: conditions that a kind hands in, and the arrays that stand for them."""
+"""Inputs of a master curve: a kind's conditions, and their arrays."""
 
 from __future__ import annotations
 
@@ -76,8 +76,8 @@ class MasterSet:
     gains: Array
     """Standard uncertainty of the factor of each source, shape (sources,)."""
     thermometer_k: float
-    """Standard uncertainty common to all temperatures; of several sources the largest, as they may share a thermometer.
-    """
+    """Standard uncertainty common to all temperatures; of several sources the largest, as they may share a
+    thermometer."""
 
     @property
     def in_block(self) -> Array:

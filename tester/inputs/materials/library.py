@@ -34,7 +34,7 @@ _NAME = re.compile(r"^(?:name|\"name\"|'name')[ \t]*:.*$", re.MULTILINE)
 
 
 class MissingModuliError(ValueError):
-    """A compound's file without moduli, or without usable ones; the message gives what is missing."""
+    """A compound's file without moduli, or without usable ones; the message names the missing part."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What a file of a compound or of a surface may say: the validated models of the YAML files.
+"""Schema of a compound's and a surface's file: the validated models of the YAML files.
 
 Every quantity is a text with a unit in the file and a float here, in the unit of the annotation. The JSON Schemas for
 editors are generated from these classes.

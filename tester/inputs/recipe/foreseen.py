@@ -22,8 +22,8 @@ from tester.inputs.recipe.estimate import Estimator, Outlook, StepEstimate
 from tester.inputs.recipe.plan import ConditionStep, Plan
 
 MOST: Final = 400
-"""Most conditions of a plan that are evaluated, evenly chosen of a longer one [A]: each takes a tenth of a millisecond.
-"""
+"""Most conditions of a plan that are evaluated, evenly chosen of a longer one [A]: each takes a tenth of a
+millisecond."""
 STEP_K: Final = 15.0
 """Proposed difference between the temperatures of a pair [A]: that of the paper's Table 2."""
 MORE_REPEATS: Final = 4

@@ -99,8 +99,8 @@ def _meant(key: str, known: Sequence[str]) -> str:
 
 
 def _other_kind(tree: Tree, rig: Rig) -> list[Problem]:
-    """Return the problem of a recipe for another kind of rig: then nothing else in it can be checked against this one.
-    """
+    """Return the problem of a recipe for another kind of rig: then nothing else in it can be checked against this
+    one."""
     kind = tree.data.get("kind") if isinstance(tree.data, dict) else None
     if not isinstance(kind, str) or kind == rig.kind:
         return []

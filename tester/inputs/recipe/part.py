@@ -135,8 +135,8 @@ class RecipePart(ABC):
         """Return the work of a step, as a line."""
 
     def heading(self, plan: Plan, step: Step) -> str:
-        """Return the heading of a section that begins with a step, such as a specimen with its compound; "" for none.
-        """
+        """Return the heading of a section that begins with a step, such as a specimen with its compound; "" for
+        none."""
         return ""
 
     def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
@@ -148,8 +148,8 @@ class RecipePart(ABC):
         return {}
 
     def step_fields(self, step: Step, one: StepEstimate) -> dict[str, object]:
-        """Return a step's fields in a plan's JSON, for a step other than a condition, beside kind, index and seconds.
-        """
+        """Return a step's fields in a plan's JSON, for a step other than a condition, beside kind, index and
+        seconds."""
         return {}
 
     def condition_json(self) -> ConditionJson:

@@ -83,7 +83,7 @@ class PlainEstimator:
         return False
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> None:
-        """Return None: what the instruments add is not known."""
+        """Return None: the instruments' budget is unknown."""
 
 
 class PlainPart(RecipePart):

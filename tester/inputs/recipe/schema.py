@@ -1,8 +1,8 @@
-"""What a recipe may say: the validated model of the YAML file.
+"""Schema of a recipe: the validated model of the YAML file.
 
-Every quantity is a text with a unit in the file and a float here; the unit is in the annotation. Lists are
-axes, a scalar is an axis of one. The JSON Schema for editors is generated from these classes. A kind
-adds sections of its own (``tester.inputs.recipe.part``).
+Every quantity is a text with a unit in the file and a float here; the unit is in the annotation. Lists are axes, a
+scalar is an axis of one value. The JSON Schema for editors is generated from these classes. A kind adds sections of its
+own (``tester.inputs.recipe.part``).
 """
 
 from __future__ import annotations

@@ -72,7 +72,7 @@ HEAT_OFF: Final = {
     "fallback": "the controller falls back to a setpoint of its own without heat (falls_back_s of its profile)",
     "relay": "a watchdog relay, hard-wired, takes the heater's supply",
 }
-"""What may stand as ``heat_off``, and what it says of the machine."""
+"""Possible values of ``heat_off``, with their meaning for the machine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,13 +85,14 @@ class DeviceConfig:
     channels: Mapping[str, str] = field(default_factory=dict[str, str])
     """Other names for channels of the profile, where two sensors of a kind are on the rig."""
     simulated: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
-    """What channels show on a simulated rig: a quantity of its plant by name, or a number in the channel's unit."""
+    """Simulated values of channels: a quantity of the plant by name, or a number in the channel's unit."""
     part_of: str = field(default="", metadata=LEFT_OUT)
-    """The machine's own device of which it measures a part: a load cell of several transmitters."""
+    """The machine's own device of which this is a part: a load cell of several transmitters."""
     heat_off: str = field(default="", metadata=LEFT_OUT)
-    """Of a controller that heats and has no lease: what takes the heat when the PC is silent (``HEAT_OFF``)."""
+    """Safeguard of a controller that heats and has no lease: it removes the heat when the PC is silent
+    (``HEAT_OFF``)."""
     parameters: Annotated[Mapping[str, float], FURTHER_KEYS] = field(default_factory=dict[str, float])
-    """What is written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
+    """Values written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +110,10 @@ class OwnDevice:
 
 @dataclass(frozen=True, slots=True)
 class CalibrationConfig:
-    """The last days on which the certificates of the sensors hold, as 2027-01-31; "" is not known.
+    """The last days on which the certificates of the sensors are valid, as 2027-01-31; "" if unknown.
 
-    A kind declares a text for each certificate, by ``certificates``. The list before a start shows them; ``overdue``
-    says what a start does once one has ended: "warn", or "refuse".
+    A kind declares a text for each certificate, by ``certificates``. The list before a start shows them; ``overdue`` is
+    the reaction of a start after the end of one: "warn", or "refuse".
     """
 
     certificates: ClassVar[tuple[str, ...]] = ()
@@ -265,6 +266,6 @@ class Rig:
 
     @property
     def text(self) -> str:
-        """Return the configuration with everything resolved, as YAML: a run stores it, and it reads back as this rig.
-        """
+        """Return the configuration with everything resolved, as YAML: a run stores it, and it reads back as this
+        rig."""
         return as_text(self)

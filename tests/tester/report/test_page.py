@@ -18,7 +18,7 @@ from tester.base.words import FORBIDDEN
 from tester.report.build import report_of
 from tester.report.charts import Material, values_of
 from tester.report.layout import Paragraph, Report, ReportSection
-from tester.report.page import LONGEST, POLICY, page_of, told
+from tester.report.page import LONGEST, POLICY, page_of, readable
 from tester.report.record import MachineWords, RunRecord, read_record
 from tester.results.run_results import ReferenceWatch
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
@@ -211,8 +211,8 @@ def test_two_runs_are_overlaid_and_compared(plain: RunRecord, tmp_path: Path) ->
 
 
 def test_a_text_is_cut_where_it_is_very_long_and_control_characters_become_marks() -> None:
-    assert told("a\u202eb\x00") == "a?b?"
-    assert told("x" * (LONGEST + 7)) == "x" * LONGEST + "… (7 more characters)"
+    assert readable("a\u202eb\x00") == "a?b?"
+    assert readable("x" * (LONGEST + 7)) == "x" * LONGEST + "… (7 more characters)"
 
 
 def test_a_run_without_a_value_has_a_report_that_says_so(tmp_path: Path) -> None:
