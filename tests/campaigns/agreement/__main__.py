@@ -34,6 +34,8 @@ KEPT = "made.pickle"
 """Beside the runs: how each was made."""
 SHOWN = 12
 """Disagreements of a kind that are printed."""
+TRIED = 12
+"""Runs of which one at least must show a mutant."""
 SAMPLE_EVERY = 4
 """The short form lets every so many of the mutants live."""
 
@@ -89,7 +91,7 @@ def _figures(made: Sequence[Made], folder: Path, hunted: Sequence[str]) -> Itera
     yield at_least(f"of {len(made)} runs: statements compared with another output's", found.compared, 300 * len(made))
     yield at_most("disagreements", len(found.disagreements), 0, digits=0)
     if hunted:
-        alive = survivors(hunted, made[0], {one.key for one in found.disagreements}, folder)
+        alive = survivors(hunted, made[:TRIED], {one.key for one in found.disagreements}, folder)
         yield equal(f"deliberate disagreements found, of {len(hunted)}", len(hunted) - len(alive), len(hunted))
         for name in alive:
             print(f"     not found: {name}", flush=True)

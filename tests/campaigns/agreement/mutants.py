@@ -131,18 +131,19 @@ class _Patched(importlib.abc.MetaPathFinder, SourceFileLoader):
         return compile(self.text, self.path, "exec")
 
 
-def survivors(names: Sequence[str], made: Made, known: Set[Key], folder: Path) -> list[str]:
-    """Return the mutants of which the comparison notices nothing that is not ``known`` without them.
+def survivors(names: Sequence[str], made: Sequence[Made], known: Set[Key], folder: Path) -> list[str]:
+    """Return the mutants that the comparison of no run notices, beyond what is ``known`` without them.
 
-    Raises RuntimeError where one cannot be tried.
+    Runs are tried one after the other: a run without a doubt shows nothing of a doubt that is dropped. Raises
+    RuntimeError where a mutant cannot be tried.
     """
+    return [name for name in names if not any(_noticed(name, one, folder) - known for one in made)]
+
+
+def _noticed(name: str, made: Made, folder: Path) -> Set[Key]:
+    """Return what outputs of a run contradict one another about, with a mutant in place."""
     chosen = folder / "mutated.pickle"
     chosen.write_bytes(pickle.dumps(made))
-    return [name for name in names if not _noticed(name, chosen) - known]
-
-
-def _noticed(name: str, chosen: Path) -> Set[Key]:
-    """Return what outputs contradict one another about, with a mutant in place."""
     command = [sys.executable, "-m", _MODULE, name, str(chosen)]
     done = subprocess.run(command, capture_output=True, check=False)
     if done.returncode:

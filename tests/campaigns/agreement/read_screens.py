@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from tester.analysis.flags import FLAGS
 from tests.campaigns.agreement.facts import Facts, seconds_of
 from tests.campaigns.agreement.names import CONDITIONS, RIG_SECONDS, STATUS, VALUES, quantity_of
 from tests.campaigns.agreement.record import Record
@@ -95,7 +96,7 @@ def read_repeats(record: Record, worn: str, condition: int, text: str, output: s
     reader = TableReader(facts, record, worn)
     subject = record.of_condition(condition)
     lines = [line.strip("│┃ ") for line in text.splitlines()]
-    for figure in next((line for line in lines if re.search(r"  mu [\d.–]", line)), "").split("  ")[1:]:
+    for figure in _heading(lines).split("  ")[1:]:
         if figure.startswith("flags "):
             reader.cell(subject, "flags", figure.removeprefix("flags "))
         elif match := _FIGURE.fullmatch(figure.strip()):
@@ -113,6 +114,17 @@ def read_repeats(record: Record, worn: str, condition: int, text: str, output: s
             elif figure is not None and not part.startswith("✘"):
                 facts.number(at, f"repeat {quantity_of(figure['heading'], worn)}", figure["value"])
     return facts
+
+
+def _heading(lines: Sequence[str]) -> str:
+    """Return the condition's own line, which the dialog wraps; "word (weight): meaning" of each flag follows it."""
+    begin = next((at for at, line in enumerate(lines) if re.search(r"  mu [\d.–]", line)), len(lines))
+    whole = [*lines[begin : begin + 1]]
+    for line in lines[begin + 1 :]:
+        if not line or _REPEAT.match(line) or line.partition(" (")[0] in FLAGS:
+            break
+        whole.append(line)
+    return " ".join(whole)
 
 
 _COND = re.compile(r"(\d+)/(\d+) done")
