@@ -214,7 +214,7 @@ class GridName(Section, frozen=True):
 
 
 class GridModel(GridName, frozen=True):
-    """All combinations of its axes; what is not said here is as in ``measure``."""
+    """All combinations of its axes; missing keys are as in ``measure``."""
 
     axes: ClassVar[Axes]
     """Axes of the kind of rig."""

@@ -22,7 +22,7 @@ _LOWER, _HIGHER = Direction.LOWER, Direction.HIGHER
 
 PLAIN_CEILINGS: Final = (
     Ceiling("arming.watchdog_proof", "", _HIGHER, TRUE,
-            "without it nobody knows whether the drives stop when this program does"),
+            "without it there is no proof that the drives stop when this program does"),
     Ceiling("arming.listen", "s", _HIGHER, "0.5 s", "another master sends twice a second or oftener [A]"),
     Ceiling("arming.withhold", "s", _HIGHER, "300 ms",
             "half as long again as the 200 ms after which a drive must report the missing heartbeat"),

@@ -116,7 +116,7 @@ CEILINGS: Final = (
     Ceiling("limits.air_low", "degC", HIGHER, "-50 degC", "the chamber's own limiter stands by at -55 degC"),
     Ceiling("limits.air_high", "degC", LOWER, "100 degC", "the chamber's own limiter stands by at 105 degC"),
     Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
-            "without it nobody knows whether the drives stop when this program does"),
+            "without it there is no proof that the drives stop when this program does"),
     Ceiling("arming.unloaded", "N", LOWER, "10 N", "half of the least weight: an arm that is down must not pass"),
     Ceiling("can.consumer_heartbeat", "s", LOWER, "250 ms", "a drive goes on for so long when this program is gone"),
     Ceiling(f"{AXES}rpdo_deadline", "s", LOWER, "250 ms",

@@ -27,7 +27,7 @@ _LOAD: Final = Press.LOAD
 
 
 class Attendant(Protocol):
-    """The hands at the rig: what a person does there. A simulated rig is told; at a real one nothing happens."""
+    """The hands at the rig: a simulated rig does a person's work itself; on a real rig nothing happens."""
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel of ``compound``."""

@@ -26,7 +26,7 @@ class TrackMeasure(MeasureModel, frozen=True):
 
 
 class TrackGrid(GridModel, frozen=True):
-    """All combinations of its axes; what is not said here is as in ``measure``."""
+    """All combinations of its axes; missing keys are as in ``measure``."""
 
     distance: Distance | None = None
     at_least: AtLeast | None = None

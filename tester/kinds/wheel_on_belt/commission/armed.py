@@ -73,7 +73,7 @@ class ArmedSeat:
             return now
 
     def stop(self, why: str, *, fast: bool = False) -> None:
-        """Stop as a run does; a wheel that is warm goes on turning until it may stand."""
+        """Stop as a run does; a warm wheel keeps turning until it may come to rest."""
         self._told = True
         self.executor.activity = None
         self.run.request_stop(why, fast=fast)

@@ -1,8 +1,8 @@
 """Jog an axis: first a little, for its direction and that it is this axis; then further, for its scale.
 
 A person reads a ruler, a protractor or a dial gauge and types the value. The scale is what was read over what the
-drive reports to have moved; beyond the tolerance the step is refused, and the increments that would be right are said.
-The first way is so short and slow that ten times as far and fast harms nobody.
+drive reports to have moved; beyond the tolerance the step is refused, and the message gives the correct increments.
+The first way is so short and slow that ten times as far and fast is harmless.
 """
 
 from __future__ import annotations

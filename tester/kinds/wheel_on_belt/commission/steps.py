@@ -80,6 +80,6 @@ STEPS: Final = (
          thermometer.soak, readings=readings.of_armed(readings.HEAT, readings.SPEEDS)),
     CommissionStep("first", "a first condition three times", _ALL, ("rolling", "thermometer"), alone=first.coefficient),
 )  # fmt: skip
-"""In the order in which each stands on what the ones before it have shown; what heats comes last, and cools once."""
+"""In order of dependence: each step relies on the ones before; the heating steps come last, so that it cools once."""
 
 COMMISSIONS: Final = CommissionPart(STEPS, tuple(KNOWN), TwinPerson)

@@ -217,5 +217,5 @@ def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weig
     notes.tell("  for the rig file, section calibration:")
     notes.tell(f'    load_cell: "{due}"')
     notes.tell("    overdue: refuse               # or warn")
-    notes.tell("    record: ...                   # what stands behind \"on record\", below")
+    notes.tell("    record: ...                   # the hash after \"on record\", below")
     notes.tell(f"    cell_sensitivity: {100 * found:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, and how sure")

@@ -1,4 +1,4 @@
-"""Brings up to date what the interlocks' conditions may look at, once a scan."""
+"""Updates the inputs of the interlocks' conditions, once a scan."""
 
 from __future__ import annotations
 

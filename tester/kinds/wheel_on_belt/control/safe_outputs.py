@@ -1,4 +1,4 @@
-"""The one place that says what safe outputs are."""
+"""Defines the safe outputs, in one place."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
     """Overwrite the commands with the safe ones, all in this scan; no action waits for another.
 
     Heat off and contactor open, press retracting, both drives to zero on equal linear decelerations (``fast``: by
-    quick stop, and the press as fast as it goes). Positioned axes stay where they are: moving them helps nobody.
+    quick stop, and the press as fast as it goes). Positioned axes stay where they are: moving them would not help.
     """
     setpoints.heat = False
     setpoints.contactor = False

@@ -1,4 +1,4 @@
-"""What this machine's control remembers beside the modes: its loops, and what its stops and its heat go by."""
+"""Control's memory beside the modes: its loops, and the data of its stops and its heat."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One control step of this machine: what it commands in each mode, within which bounds. No I/O, no clock."""
+"""One control step of this machine: its commands in each mode, and their bounds. No I/O, no clock."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
     # -- the inputs of the rows -----------------------------------------------------------------------------
 
     def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
-        """Bring the view up to date."""
+        """Update the view."""
         self.view.look(demand, readings, scan_s, dt)
 
     def unfit(self, readings: Readings) -> list[str]:
@@ -73,7 +73,7 @@ class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
         return []
 
     def detail(self, readings: Readings) -> str:
-        """Name the values a reader of the journal wants first."""
+        """Return the values most useful to a reader of the journal."""
         return (
             f"Fz {readings.force_z_n:.1f} N, wheel {readings.wheel_speed_m_s:.3f} m/s,"
             f" belt {readings.belt_speed_m_s:.3f} m/s,"
@@ -83,67 +83,61 @@ class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
     # -- stops ----------------------------------------------------------------------------------------------
 
     def stop_outputs(self) -> None:
-        """Command a controlled or a fast stop."""
         stop_outputs(self.state, self.view)
 
     def safe_outputs(self) -> None:
-        """Command zero to every axis, lift, quick stop, heat off, contactor open."""
         safe_outputs(self.state.setpoints, self.rig, fast=True)
 
     def emergency_outputs(self) -> None:
-        """Mirror the hardware's emergency stop."""
         mirror_emergency(self.state.setpoints, self.rig)
 
     def rest_outputs(self) -> None:
-        """Command nothing."""
         no_outputs(self.state.setpoints, self.rig)
 
     def withdraw_escalation(self) -> None:
-        """Let drives and jacket hear from us again."""
         super().withdraw_escalation()
         self.state.setpoints.jacket_silent = False
 
     def end_lease(self, readings: Readings) -> None:
-        """Renew the jacket's setpoint no more while it gives output."""
+        """Stop renewing the jacket's setpoint while it gives output."""
         if not (readings.heat_percent <= 0.0):
             self.state.setpoints.jacket_silent = True
 
     def note_stop(self) -> None:
-        """Note speeds and the press's place."""
+        """Record the speeds and the press's position."""
         note_stop(self.state, self.view, self.bounds)
 
     def note_fast_stop(self) -> None:
-        """Note speeds."""
+        """Record the speeds."""
         note_fast_stop(self.state, self.view, self.bounds)
 
     def note_rest(self) -> None:
-        """Note where the press rests."""
+        """Record where the press rests."""
         press_mm = self.view.readings.press_mm
         self.state.stop_start.press_mm = press_mm if -_INF < press_mm < _INF else _INF
 
     def stop_ended(self) -> bool:
-        """Tell whether the rig stands, lifted, unloaded and without heat."""
+        """Return whether the rig is at rest, lifted, unloaded and without heat."""
         return stop_ended(self.state, self.view)
 
     def must_cool(self) -> str:
-        """Tell that the hub is too hot to stand."""
+        """Return why the hub is too hot to stop turning."""
         return must_cool(self.view)
 
     def cool_outputs(self) -> str:
-        """Command the cool-down."""
         return cool_outputs(self.state, self.view)
 
     # -- RUN and HOLD ---------------------------------------------------------------------------------------
 
     def keep(self, held: Demand, demand: Demand) -> None:
-        """Lift, take the slip out, keep speed, angles and heat."""
+        """Write a hold's demand: lift, take the slip out, keep speed, angles and heat."""
         held.press, held.load_n, held.quick_touch = _LIFT, 0.0, False
         held.wheel_speed_m_s = held.belt_speed_m_s = demand.wheel_speed_m_s
         held.positions.update(demand.positions)
         held.surface_c, held.freeze_heat = demand.surface_c, False
 
     def run_outputs(self, demand: Demand, readings: Readings, dt: float) -> None:
-        """Command speeds, angles, press and heat as they are wanted, within the bounds."""
+        """Command speeds, angles, press and heat from the demand, within the bounds."""
         out, state, bounds = self.state.setpoints, self.state, self.bounds
         out.enable = demand.enabled and may_move(readings)
         out.quick_stop = False

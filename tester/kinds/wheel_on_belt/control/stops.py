@@ -1,4 +1,4 @@
-"""The stops, scan by scan, from leaving RUN to standstill. What must have happened by when: ``interlocks.stops``."""
+"""The stops, scan by scan, from leaving RUN to standstill. Their deadlines: ``interlocks.stops``."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from tester.machine.state import Mode
 
 
 def note_stop(state: WheelState, view: InterlockInputs, bounds: Bounds) -> None:
-    """Note how fast the drives are as a stop begins: what is not known counts as the most allowed.
+    """Record the drives' speeds at the begin of a stop; an unknown speed counts as the highest allowed.
 
-    A press on its way to the contact still has its ramp before it, and the lag of scan and drive.
+    A press on its way to the contact still has its ramp ahead of it, and the lag of scan and drive.
     """
     start = state.stop_start
     start.speed_m_s = _speed(view, bounds)
@@ -29,7 +29,7 @@ def note_stop(state: WheelState, view: InterlockInputs, bounds: Bounds) -> None:
 
 
 def note_fast_stop(state: WheelState, view: InterlockInputs, bounds: Bounds) -> None:
-    """Note how fast the drives are as the quick stop begins."""
+    """Record the drives' speeds at the begin of the quick stop."""
     state.stop_start.fast_speed_m_s = _speed(view, bounds)
 
 
@@ -50,7 +50,7 @@ def stop_outputs(state: WheelState, view: InterlockInputs) -> None:
     matched_m_s = confirmed_speed_m_s(view.parameters)
     slipping = not (-matched_m_s < r.slip_m_s < matched_m_s)
     if not fast and loaded and slipping and view.stopped_s < view.parameters[SLIP_OUT_S] and r.wheel_speed_m_s > 0.0:
-        # Slip to zero first: with equal decelerations the slower belt would stand while the wheel still turns.
+        # Slip to zero first: with equal decelerations the slower belt would stop while the wheel still turns.
         out.wheel_rad_s = wheel_rad_s
         out.belt_m_s = min(r.wheel_speed_m_s, rig.limits.belt_speed_m_s)
     lifted_mm = state.load.lifted_mm(rig.loops.load) if unloaded(view) else 0.0
@@ -59,7 +59,9 @@ def stop_outputs(state: WheelState, view: InterlockInputs) -> None:
 
 
 def stop_ended(state: WheelState, view: InterlockInputs) -> bool:
-    """Tell whether the rig stands, lifted, unloaded and without heat, or the time for it is over ("stop not ended")."""
+    """Return whether the rig is at rest, lifted, unloaded and without heat, or the time for it is over ("stop not
+    ended").
+    """
     r = view.readings
     if r.now_s - state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
         return True

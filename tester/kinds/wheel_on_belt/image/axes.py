@@ -1,4 +1,4 @@
-"""The axes of this machine's conditions, and what its procedures hold of a setpoint."""
+"""The axes of this machine's conditions, and the quantities of a setpoint for its procedures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEAST_SPEED_M_S: Final = 0.05
 class Positioned(Axis):
     """An axis that a drive of its own brings to a position while the wheel is lifted, and holds there under load.
 
-    Its drive stands in the rig file's ``axes`` and its limit in ``limits``, both under its name. Where a rig leaves it
+    Its drive is in the rig file's ``axes`` and its limit in ``limits``, both under its name. Where a rig leaves it
     to a person (``manual: true``) it is held at 0.
     """
 
@@ -63,7 +63,7 @@ AXES: Final = Axes(
     ),
     blocks="temperature",
 )  # fmt: skip
-"""All axes in the order in which they are told. The paper held the wheel at 0.8 m/s and without camber throughout.
+"""All axes in the order of display. The paper held the wheel at 0.8 m/s and without camber throughout.
 
 Slip velocity is wheel speed less belt speed at no sideslip, negative when braking; sideslip is the angle of the wheel's
 plane to the belt's travel, camber its tilt; temperature is the surface's, wheel speed the line speed.
@@ -110,7 +110,7 @@ class Held(NamedTuple):
 
     @property
     def yawed(self) -> bool:
-        """Tell whether the wheel is turned out of its line: it is then in contact only while it slides."""
+        """Return whether the wheel is turned out of its line: it is then in contact only while it slides."""
         return any(self.positions.values())
 
 

@@ -1,4 +1,4 @@
-"""What a run keeps of how far apart the transmitters of its load cell were read."""
+"""Stores a run's statistics of the skew between the transmitters of its load cell."""
 
 from __future__ import annotations
 

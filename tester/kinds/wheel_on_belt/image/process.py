@@ -30,7 +30,7 @@ CELL: Final = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
 
 
 class Press(IntEnum):
-    """What the press axis is asked to do."""
+    """Commands to the press axis."""
 
     LIFT = 0
     """Clear of the wheel, position-controlled to the lifted position."""
@@ -108,10 +108,10 @@ class Readings(BaseReadings):
     """Wheel diameter as it runs: the cold one and what heat has added (``procedures.wheel_life``)."""
 
     def faults(self) -> list[str]:
-        """Return what drives, wires and devices say is wrong with them, in words; the cell's transmitter first."""
-        said = BaseReadings.faults(self)
+        """Return the faults of drives, wires and devices, in words; the cell's transmitter first."""
+        faults = BaseReadings.faults(self)
         blamed = "" if self.joined is None else self.joined.blame(self.now_s, self.cell_old_s)
-        return [blamed, *said] if blamed else said
+        return [blamed, *faults] if blamed else faults
 
     @property
     def cell(self) -> tuple[float, float, float, float]:

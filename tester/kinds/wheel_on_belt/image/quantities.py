@@ -101,4 +101,4 @@ QUANTITIES: Final = Quantities(
     Roles(friction=("force_x_n", "force_y_n"), normal="force_z_n", turn="wheel_angle_rev", temperature="surface_c",
           sliding="slip_m_s"),
 )  # fmt: skip
-"""In the order of a sample's columns. What is shown and not recorded stands behind them."""
+"""In the order of a sample's columns, followed by channels that are shown but not recorded."""

@@ -1,9 +1,8 @@
-"""Notes where a wheel stood and how fast it turned whenever a request over its slip ring failed.
+"""Records angle and speed of the wheel whenever a request over its slip ring fails.
 
-What it notes is stored with the counters of the buses when a run, or a part of one, ends;
-``tester.analysis.ring_errors`` makes something of it. The wheel's angle is the one that the wheel's speed gives: it
-counts from where the wheel stood when it was put on, and runs off by the error of the drive's scale, which the analysis
-takes out.
+The record is stored with the counters of the buses when a run, or a part of one, ends; ``tester.analysis.ring_errors``
+evaluates it. The wheel's angle is integrated from the wheel's speed: it counts from the wheel's position when mounted,
+and drifts by the error of the drive's scale, which the analysis removes.
 """
 
 from __future__ import annotations

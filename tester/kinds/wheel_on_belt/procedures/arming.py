@@ -68,7 +68,7 @@ class Proof(WatchdogProof):
         return abs(axes.wheel.actual) * self.radius_m < least and abs(axes.belt.actual) < least
 
     def begin(self, now: float) -> None:
-        """Turn the wheel; both, where nobody asks whether each follows."""
+        """Turn the wheel; turn both if no proof that each follows is needed."""
         self.bump = Bump.WHEEL
         self._creep(belt=not self.follow)
 

@@ -32,16 +32,17 @@ from tester.machine.motions import Power, Sequence, Settle
 TARE_S: Final = 1.0
 """Averaging time of the zero before each repeat, s [A]: about three turns."""
 TARE_WAIT_S: Final = 0.4
-"""The cell settles this long after lifting, s [A]."""
+"""Time for the cell to settle after lifting, s [A]."""
 TARE_FRESH_S: Final = 110.0
-"""A zero is taken anew before the first burst if it is older than this, s: when the first sample counts, which is some
-seconds later, it is to be at most 120 s old (the cell's zero moves by 0.1 N/K with its temperature)."""
+"""Age from which the zero is renewed before the first burst, s: when the first sample counts, some seconds later, it
+must be at most 120 s old (the cell's zero moves by 0.1 N/K with its temperature).
+"""
 COLDER_K: Final = 0.3
-"""A burst does not start further than this below where it is meant to: its samples would lie too cold, K [A]."""
+"""A burst must not start further than this below its target: its samples would be too cold, K [A]."""
 OFFSET_STEP_K: Final = 0.5
 """How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
 OFFSET_BEYOND_BAND_K: Final = 1.5
-"""How far below the band a burst may start: what warms up before the first sample counts, K [A]."""
+"""How far below the band a burst may start, K [A]: it warms up before the first sample counts."""
 FEW_REVOLUTIONS: Final = 3
 """A burst with fewer whole turns than this starts the next one lower."""
 SLOW_COOLING_S: Final = 45.0
@@ -51,25 +52,28 @@ CENTRED_K: Final = 0.2
 """A start this far below the setpoint still lets samples centre on it [A]."""
 MEAN_LIMIT_K: Final = 0.45
 """A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
-(asked: within 0.7 K)."""
+(required: within 0.7 K).
+"""
 ROLLING_START_K: Final = 0.4
 """Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
 BELOW_K: Final = 0.3
-"""A burst whose samples lie further below the setpoint than this, in the mean, starts the next one higher, K [A]."""
+"""After a burst whose samples are on average further below the setpoint than this, the next one starts higher, K [A].
+"""
 OFFSET_LEAST_K: Final = 0.2
 SPLIT_RISE_K: Final = 0.25
 """A burst that has warmed by this much ends at half the window, any other at a whole one: a second rise tells
 temperature from time [A]."""
 BLIND_S: Final = 20.0
-"""A burst in which nothing has counted for this long is given up, s [A]."""
+"""A burst is given up after this long without a counted sample, s [A]."""
 LIFT_TO_COOL_S: Final = 180.0
-"""Rolling that has not brought the temperature back by then is tried lifted, s [A]."""
+"""If rolling has not brought the temperature back after this time, the wheel is lifted to cool, s [A]."""
 COOL_AT_MOST_S: Final = 360.0
 """Longest cooling lifted before rolling is tried again, s [A]."""
 EMPTY_BURSTS: Final = 3
-"""That many bursts in a row without a whole turn, begun as low as it goes: the condition cannot be held [A]."""
+"""After this many bursts in a row without a whole turn, started as low as possible, the condition cannot be held [A].
+"""
 WARM_SHARE: Final = 1.2
-"""Revolutions a condition must hold, with the ramp, to be called possible: used for the band that would do."""
+"""Revolutions that a condition must hold, with the ramp, to count as possible; used for the band that would suffice."""
 
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
@@ -238,7 +242,7 @@ class MeasureRepeat:
         return False
 
     def _cool(self, ctx: Context) -> None:
-        """Turn lifted until the surface is back, then touch again; the waiting time goes on."""
+        """Turn lifted until the surface is back at its temperature, then touch again; the wait keeps counting."""
         self._demand_heat(ctx)
         self.moves.step(ctx)
         surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
@@ -382,7 +386,7 @@ class MeasureRepeat:
         """Work out how fast the surface warms and which band would hold one whole revolution; return it as text.
 
         The trend's filter needs seconds to follow: of a short burst the rise from reading to reading says more.
-        A band in which nothing could be counted is never said to do.
+        A band in which nothing could be counted is never reported as sufficient.
         """
         r, burst = ctx.readings, self.burst
         turn_s = pi * r.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s

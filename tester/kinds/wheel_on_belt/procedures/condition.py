@@ -51,7 +51,7 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
             within = soak_within_k(step.soak, sp.temperature_c, ctx.ambient_c, step.temperature_band_k)
             self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
             checked = (ZeroCheck(sp.wheel_speed_m_s, self.reference_tare),) if is_due(ctx) else ()
-            # A condition that goes on after a hold has had its check.
+            # A condition that resumes after a hold has had its check.
             self.before = Sequence(*checked, roll(sp.wheel_speed_m_s, sp.load_n))
             if step.wear_check == "each_condition" and self.repeat == self.done_before and not self.voided:
                 check = CheckByRolling(sp.wheel_speed_m_s, self.reference_tare, step.condition)

@@ -141,7 +141,7 @@ class TakeTare(ZeroOfCell):
         """``reference``: shared list, empty until the first tare fills it.
 
         ``ends_run``: a zero that has wandered too far ends the run, which comes to its standstill with that zero: with
-        the one before, its stop would take the cell's drift for a load. Where work goes on, such a zero is not taken.
+        the one before, its stop would take the cell's drift for a load. Otherwise such a zero is not used.
         """
         super().__init__(seconds)
         self.reference = reference

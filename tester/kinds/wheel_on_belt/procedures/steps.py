@@ -31,7 +31,7 @@ class WheelProcedures(Procedures[Context]):
     """The steps of this machine, and what it remembers of wheels from step to step."""
 
     def __init__(self, plan: Plan, results: WheelResults, *, hardware: bool) -> None:
-        """``hardware``: people are asked where a simulated rig just goes on."""
+        """``hardware``: ask people where a simulated rig continues by itself."""
         self.plan = WheelPlan.of(plan)
         self.results = results
         self.hardware = hardware

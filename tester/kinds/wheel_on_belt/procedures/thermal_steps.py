@@ -23,7 +23,7 @@ COOL_AT_MOST_S: Final = 3 * 3600.0
 """Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
 
 SHOW_S: Final = 1.0
-"""How often people are told how far a wait has come, s."""
+"""Period for reporting the progress of a wait, s."""
 
 
 def roll(wheel_speed_m_s: float, load_n: float) -> Sequence:
@@ -119,7 +119,7 @@ class HeatUp:
     def _note_balance(self, ctx: Context) -> None:
         """Record what this heating says of ``observer.thermal``: heat put in over heat shown, where there was enough.
 
-        A hold, or a person at the wheel, has made it another one: nothing is said of it. With its data it is evidence
+        After a hold, or with a person at the wheel, it is not comparable and not reported. With its data it is evidence
         for runs to come (tester.kinds.wheel_on_belt.runs.heatings).
         """
         start, end = self.start, _heat(ctx)

@@ -1,6 +1,6 @@
 """Checks of the wheel's diameter: by rolling at a light load, or a number that a person has measured.
 
-Rolling, at equal load, the press stands deeper by the radius that was lost. What else moves it is taken off or stated:
+Rolling, at equal load, the press is deeper by the lost radius. Its other motions are subtracted or stated:
 the load in the check (its mean is corrected to the nominal one by the contact's stiffness), the cell's zero (a tare
 just before), runout (whole turns), and heat, which makes the wheel grow: every check is brought back to the reference
 temperature with the rig file's ``wear.growth``, so that cold is compared with cold. A wheel's first roll check is the

@@ -60,7 +60,7 @@ class InstallWheel:
         if step.again:
             text = f"mount wheel {step.wheel} again: {step.compound}{note}"
         if step.worn is not None:
-            text = f"the run goes on with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
+            text = f"the run resumes with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
         self.ask = AskAtRest(text)
         self.mounted = False
         self.contact: ShowContact | None = None

@@ -25,7 +25,7 @@ def contact_s(ctx: Context) -> float:
 
 
 def is_due(ctx: Context) -> bool:
-    """Tell whether the zero has to be checked before the contact goes on."""
+    """Return whether to check the zero before the contact continues."""
     return contact_s(ctx) > ctx.rig.interlocks.zero_check_every_s
 
 

@@ -13,7 +13,7 @@ class EstimateConstants:
     """Durations (s) and other figures of the executor's moves, as simulated runs show them. All [A]."""
 
     person_s: float = 600.0
-    """A person mounts a wheel or does what a prompt asks; nobody waits on a simulated rig."""
+    """A person mounts a wheel or does what a prompt asks; a simulated rig takes no time for it."""
     install_s: float = 18.5
     """Standstill, drives off and on, tare 2.1; first contact 16.4 with the way to the wheel. After a question, too."""
     pre_grind_moves_s: float = 10.0

@@ -1,4 +1,4 @@
-"""What a plan for wheels adds, in words and as JSON, to every plan (``tester.inputs.recipe``)."""
+"""The wheel's part of a plan's description, in words and as JSON (common part: ``tester.inputs.recipe``)."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
 
 
 def words(step: Step, one: StepEstimate) -> str:
-    """Return one line that says what a step does."""
+    """Return a description of a step, in a line."""
     match step:
         case Install():
             return f"mount wheel {step.wheel} again" if step.again else f"install wheel {step.wheel}"
@@ -45,8 +45,8 @@ def words(step: Step, one: StepEstimate) -> str:
             bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
             run_in = f", run-in {step.run_in_m:g} m" if step.both_directions and step.run_in_m else ""
             mark = "  reference" if step.reference else ""
-            told = f"{repeats_words(step)} x {window_words(step.window)}{bursts}{run_in}{mark}"
-            return f"{step.condition:>4}  {held}  {told}"
+            scheme = f"{repeats_words(step)} x {window_words(step.window)}{bursts}{run_in}{mark}"
+            return f"{step.condition:>4}  {held}  {scheme}"
         case Cool():
             return f"cool the hub below {step.hub_below_c:g} degC"
         case PromptStep():
@@ -93,7 +93,7 @@ TOLD_APART_PERCENT = (10.0, 5.0)
 
 
 def _telling(plan: WheelPlan) -> Iterator[str]:
-    """Yield how many wheels of each compound tell a difference; repeats and wheels scatter as they are assumed to."""
+    """Yield how many wheels of each compound resolve a difference, with the assumed scatter of repeats and wheels."""
     fewest = min((step.repeats for step in plan.conditions() if not step.reference), default=0)
     if not fewest:
         return
@@ -127,7 +127,7 @@ def _references(plan: WheelPlan) -> Iterator[str]:
 
 
 def plan_fields(plan: WheelPlan, estimate: Estimate) -> dict[str, object]:
-    """Return what a plan's JSON says of wear and heat."""
+    """Return wear and heat for a plan's JSON."""
     return {
         "loss_mm": round(estimate.loss_mm, 4),
         "friction_j": round(estimate.friction_j, 1),
@@ -139,7 +139,7 @@ def plan_fields(plan: WheelPlan, estimate: Estimate) -> dict[str, object]:
 
 
 def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
-    """Return what a plan's JSON says of a step that is no condition; units in the keys."""
+    """Return a step other than a condition for a plan's JSON; units in the keys."""
     match step:
         case Install():
             return {
@@ -214,7 +214,7 @@ class WheelConditionJson(ConditionJson):
         )
 
     def texts(self, step: ConditionStep, one: StepEstimate) -> tuple[object, ...]:
-        """Return what stands under each key."""
+        """Return the value of each key."""
         assert isinstance(step, WheelCondition)
         setpoint, number = step.setpoint, self.number
         speeds = self._speeds(setpoint.values)

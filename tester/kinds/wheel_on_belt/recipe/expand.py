@@ -41,13 +41,13 @@ _BOTH: Final = {"both_directions": True}
 def expand(recipe: WheelRecipe, rig: RigConfig, estimator: WheelEstimator | None = None) -> WheelPlan:
     """Return the plan of a valid recipe on a rig (its wear rate and geometry decide the wheel changes).
 
-    ``estimator``: one for this rig, if the caller goes on to estimate the plan; it remembers every condition.
+    ``estimator``: for this rig, if the caller also estimates the plan; it remembers every condition.
     """
     return _Expansion(recipe, rig, estimator or WheelEstimator(rig)).plan()
 
 
 def change_points(losses: Sequence[Sequence[float]], first_mm: float, limit_mm: float) -> list[set[int]]:
-    """Return, for every block of conditions, the positions in it before which a new wheel goes on.
+    """Return, for every block of conditions, the positions in it before which a new wheel is mounted.
 
     ``losses``: predicted loss of diameter (mm) of the conditions, block by block; ``first_mm``: what preparing a
     wheel costs; ``limit_mm``: loss after which a wheel is replaced. A wheel always takes at least one condition.

@@ -1,8 +1,7 @@
-"""What a recipe asks for beyond the rig's limits, with the position of the value and the source of the limit.
+"""Checks a recipe against the rig's limits; each problem has the position of the value and the source of the limit.
 
-The file's tree is checked rather than the validated recipe, value by value: a recipe with a misspelt key still hears
-of its load beyond the limit, so that everything is reported at once. Values that cannot be read are left to the
-schema's own problems.
+It checks the file's tree, value by value, instead of the validated recipe: a recipe with a misspelt key also gets its
+load beyond the limit reported, so that all problems come at once. The schema reports unreadable values itself.
 """
 
 from __future__ import annotations
@@ -29,11 +28,13 @@ if TYPE_CHECKING:
 DEFAULT_BAND_K = 2.0
 """Temperature band of a recipe that names none (``tester.inputs.recipe.schema.MeasureModel``)."""
 TOUCHES = 1.5
-"""The least load is this times the touching force [A]: the press goes on until it feels that, and runout and noise come
-on top, some 12 N. On the simulated rig 10 N trip "load overshoot", 12 N sometimes do, 15 N do not."""
+"""The least load is this times the touching force [A]: the press moves until it feels that force, and runout and noise
+add some 12 N. On the simulated rig 10 N trip "load overshoot", 12 N sometimes do, 15 N do not.
+"""
 OVERHEAT_K = 3.0
-"""Rubber gets hotter than its band by this [A]: a burst that has to end goes on until the press has lifted, and the
-thermometer shows it late (gates.ir_lag) and off by its bias. On the simulated rig it is 1.2 K, and its bias 1 K."""
+"""Rubber gets hotter than its band by this [A]: a burst that has to end lasts until the press has lifted, and the
+thermometer shows it late (gates.ir_lag) and off by its bias. On the simulated rig it is 1.2 K, and its bias 1 K.
+"""
 POWER_SCATTER = 0.15
 """Friction is greater than the model's by this share [A]: two standard deviations of wheel, condition and repeat."""
 
@@ -49,7 +50,7 @@ def greatest_load_n(rig: RigConfig) -> float:
 
 
 class Given(NamedTuple):
-    """A quantity of the file: its value in the unit asked for, and where it stands."""
+    """A quantity in the file: its value in the requested unit, and its place."""
 
     value: float
     at: Location
@@ -80,14 +81,14 @@ def limit_problems(tree: Tree, rig: RigConfig) -> list[Problem]:
 
 
 class _Limits:
-    """One tree held against one rig."""
+    """Checks one tree against one rig."""
 
     def __init__(self, tree: Tree, rig: RigConfig) -> None:
         self.tree = tree
         self.rig = rig
-        said = self._given(("ambient",), "degC")
-        self.ambient_c = said[0].value if said else rig.ambient_c
-        self.ambient_from = "ambient of this recipe" if said else f'ambient of rig "{rig.name}"'
+        stated = self._given(("ambient",), "degC")
+        self.ambient_c = stated[0].value if stated else rig.ambient_c
+        self.ambient_from = "ambient of this recipe" if stated else f'ambient of rig "{rig.name}"'
         places: list[Location] = [("specimens", index, "compound") for index in self._indices(("specimens",))]
         names = [self._node(at) for at in (*places, (*AT, "compound"))]
         self.compounds = list(dict.fromkeys(name for name in names if isinstance(name, str)))
@@ -149,7 +150,7 @@ class _Limits:
             yield self.tree.problem(given.at, f"{message} {self._limit(key, limit, unit)}")
 
     def _too_light(self, given: Given) -> Iterator[Problem]:
-        """Yield a problem for a load too near to touching to be held; what is no load at all is the schema's to say."""
+        """Yield a problem for a load too near to touching to be held; the schema reports a value that is no load."""
         touch_n = self.rig.loops.load.touch_load_n
         least_n = least_load_n(self.rig)
         if 0.0 < given.value < least_n:
@@ -284,7 +285,7 @@ class _Limits:
                 yield self.tree.problem(slip.at, f"{asked} {nearer}, to what is ever loaded {source}")
 
     def _both(self, at: Location) -> bool:
-        """Tell whether a grid is measured in both directions of slip."""
+        """Return whether a grid is measured in both directions of slip."""
         own = self._node((*at, "both_directions"))
         return (self._node(("measure", "both_directions")) if own is None else own) is True
 

@@ -93,7 +93,7 @@ class OrderCosts:
         )  # fmt: skip
 
     def _settle_s(self, from_c: float, to_c: float) -> float:
-        """Return the seconds in contact from a temperature that was reached to one that stands."""
+        """Return the seconds in contact from reaching a temperature until it is stable."""
         c = self.constants
         level_k = to_c - self.ambient_c
         if level_k <= c.settle_k[0]:

@@ -17,7 +17,7 @@ from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD, ReferenceMo
 from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
 
 AT: Final[Location] = (REFERENCE,)
-"""Where it stands in a recipe."""
+"""Its place in a recipe."""
 
 
 def as_grid(one: ReferenceModel, recipe: WheelRecipe) -> WheelGrid:

@@ -1,6 +1,6 @@
 """When the reference condition comes round in a plan: at the start, after every so many conditions, and at the end.
 
-On whichever wheel is on it stands among the conditions, and its wear counts with theirs. A wheel that is reserved for
+On the present wheel it is one of the conditions, and its wear counts with theirs. A wheel that is reserved for
 it has to be put on each time: it comes round at every change of the wheel as well, where that costs one change more
 instead of two, and the count begins anew.
 """

@@ -1,4 +1,4 @@
-"""What a recipe for this machine may say beyond the common sections: grinding, resting, wheels, slip pulses."""
+"""The recipe's sections for this machine beyond the common ones: grinding, resting, wheels, slip pulses."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class WheelModel(Section, frozen=True):
 
 
 class PersonStepModel(Section, frozen=True):
-    """Something a person does, again and again."""
+    """A recurring task for a person."""
 
     prompt: Text
     """what to do; it is shown and waits to be acknowledged"""
@@ -73,7 +73,7 @@ class WheelMeasure(MeasureModel, frozen=True):
 
 
 class WheelGrid(GridModel, frozen=True):
-    """All combinations of its axes; what is not said here is as in ``measure``."""
+    """All combinations of its axes; missing keys are as in ``measure``."""
 
     max_bursts: MaxBursts | None = None
     wear_check: WearCheckName | None = None
@@ -89,7 +89,7 @@ _WARMTH = AXES["temperature"]
 
 
 class ReferenceModel(ReferenceSection, frozen=True):
-    """A reference condition: without angles, and what is not said here is as in ``measure``."""
+    """A reference condition: without angles; missing keys are as in ``measure``."""
 
     wheel: Text | None = None
     """name of a wheel that is reserved for it; without one it is measured on whichever wheel is on"""

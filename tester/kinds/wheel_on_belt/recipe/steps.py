@@ -17,7 +17,7 @@ WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
 
 @dataclass(frozen=True, slots=True)
 class WornState:
-    """What a wheel that goes on after an interruption was like: diameter in mm, sliding distance in m."""
+    """State of a wheel that is used again after an interruption: diameter in mm, sliding distance in m."""
 
     diameter_mm: float
     sliding_m: float

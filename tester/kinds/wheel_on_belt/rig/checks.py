@@ -1,4 +1,4 @@
-"""What must hold between the sections of a rig of this kind; each section alone is checked by its types."""
+"""Consistency checks between the sections of a rig of this kind; each section alone is checked by its types."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig.config import RigConfig
 
 EQUAL_DECELERATIONS = 0.05
-"""Wheel and belt slow down alike, in m/s2, within this share [A]: unequal, one stands while the other still turns."""
+"""Wheel and belt must decelerate alike, in m/s2, within this share [A]: otherwise one stops before the other."""
 
 _Found = Iterator[tuple[Location, str]]
 
 
 def problems_between(rig: RigConfig) -> _Found:
-    """Yield what does not fit together, with its place in the file."""
+    """Yield inconsistencies, with their places in the file."""
     for check in (_speeds, _decelerations, _units, _press, _temperatures, _skew, _heat_off):
         yield from check(rig)
 
@@ -84,7 +84,7 @@ def _heat_off(rig: RigConfig) -> _Found:
     try:
         profile = profile_of(jacket.profile) if jacket is not None else None
     except ProfileError:
-        return  # said elsewhere
+        return  # another check reports it
     if jacket is None or profile is None or rig.simulated or "lease" in profile.writes:
         return
     if jacket.heat_off == "fallback" and profile.falls_back_s is None:

@@ -1,4 +1,4 @@
-"""A rig of this kind: its sections together, and what its file's reader has to know (tester.inputs.rig.config)."""
+"""A rig of this kind: its sections together, and the knowledge for reading its file (tester.inputs.rig.config)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""How far the press's drive can press: the limit of its torque (0x6072) follows from the limit of the load.
+"""The torque limit of the press's drive (0x6072), which follows from the limit of the load.
 
-The least torque that surely brings about ``limits.load`` is all the drive gets. What the same torque can bring about
-with the least friction must stay clear of harm: that caps the force whatever the load cell says.
+The drive gets only the least torque that surely produces ``limits.load``. The most that this torque can produce, with
+the least friction, must stay clear of harm: that caps the force whatever the load cell shows.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig.config import RigConfig
 
 RIPPLE_N: Final = 10.0
-"""What the tread's runout adds to the load of a press that stands, peak to peak, N [A]: 7 to 10 N at 200 to 400 N."""
+"""Load variation from the tread's runout with the press at rest, peak to peak, N [A]: 7 to 10 N at 200 to 400 N."""
 
 
 def with_torque_limit(rig: RigConfig) -> RigConfig:

@@ -189,10 +189,10 @@ def interlock_values(section: InterlocksConfig) -> Values:
 
 @dataclass(frozen=True, slots=True)
 class ArmingConfig:
-    """What is shown before a run may move anything (tester.kinds.wheel_on_belt.procedures.arming)."""
+    """The proofs before a run may move anything (tester.kinds.wheel_on_belt.procedures.arming)."""
 
     listen_s: Annotated[float, "s", _NOT_NEGATIVE]
-    """Nothing is sent for this long at first: another master on the bus would be heard."""
+    """Time of listening before anything is sent, to detect another master on the bus."""
     bump_test: bool
     """Turn wheel and belt a little, one after the other: each must follow, and only it."""
     watchdog_proof: bool
@@ -221,7 +221,7 @@ class WearConfig:
     """At which a diameter is called cold: that of a new wheel, of every check and of the record."""
     growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE]
     check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE]
-    """Of where the press stands in a roll check, beside what load and heat do."""
+    """Of the press's position in a roll check, apart from the effects of load and heat."""
     check_load_n: Annotated[float, "N", _NOT_NEGATIVE]
     """Of the mean load in a roll check, from one check to another."""
     check_stiffness_percent: Annotated[float, "%", _NOT_NEGATIVE]
@@ -255,7 +255,7 @@ class CertificatesConfig(CalibrationConfig):
 
 @dataclass(frozen=True, slots=True)
 class ObserverConfig:
-    """What software believes of the wheel's thermal behaviour: heat loop, estimates and thermal interlocks use it.
+    """Assumed thermal behaviour of the wheel, for the heat loop, the estimates and the thermal interlocks.
 
     The simulated wheel has parameters of its own (``sim``), so that a wrong belief can be tested.
     """

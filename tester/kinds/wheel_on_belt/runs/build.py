@@ -80,8 +80,11 @@ def build_run(
     heat: KnownRatio = NO_HISTORY,
     procedures: type[WheelProcedures] = WheelProcedures,
 ) -> Run:
-    """Return a run that is ready to be ticked; ``point``: where it goes on, with the remaining plan; ``heat``: what
-    earlier runs on this rig make known of its heat balance (``heatings``); ``procedures``: what serves its steps."""
+    """Return a run that is ready to be ticked.
+
+    ``point``: where it resumes, with the remaining plan; ``heat``: facts from earlier runs on this rig about its heat
+    balance (``heatings``); ``procedures``: selects the activities of its steps.
+    """
     devices = build_devices(rig, ports)
     load = LoadLoop()
     state = WheelState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))

@@ -28,7 +28,7 @@ LEAST_RISE_K: Final = 20.0
 LEAST_J: Final = 10e3
 """From this heat on a balance says something, J [A]: what a late sensor hides is 2 % of it."""
 _IN_HEAT: Final = frozenset(row.name for row in (*hub.ROWS, *surface.ROWS))
-"""Trips after which nothing that the run said of heat is believed."""
+"""Trips after which the run's heat data is not trusted."""
 
 
 def heating_data(rig: RigConfig, put_j: float, shown_j: float, rise_k: float) -> str:
@@ -44,7 +44,7 @@ def beliefs_of(rig: RigConfig) -> str:
 
 
 def known_heat(runs: Path, rig: RigConfig) -> KnownRatio:
-    """Return what the runs in a folder make known of a rig's heat balance; those under way are left out.
+    """Return the facts about a rig's heat balance from the runs in a folder, except runs under way.
 
     A run that cannot be read is no evidence, nor one that tripped in heat.
     """

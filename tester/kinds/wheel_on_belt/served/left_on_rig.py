@@ -1,4 +1,4 @@
-"""What past runs say of this machine: the wheel on it, the load cell's zero, its heat balance."""
+"""Facts about this machine from past runs: the wheel on it, the load cell's zero, its heat balance."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ class WheelLeft:
     run: str
     wheel: PieceInfo | None
     tare_utc: str = ""
-    """"" where no zero was taken, or nobody knows when."""
+    """"" if no zero was taken, or its time is unknown."""
 
     @property
     def known(self) -> bool:
-        """The run mounted a wheel."""
+        """Whether the run mounted a wheel."""
         return self.wheel is not None
 
     def usable(self, rig: Rig) -> bool:
-        """Tell whether the wheel is not worn below the rig's ``least_diameter``: nothing is done with such a one."""
+        """Return whether the wheel is not worn below the rig's ``least_diameter``: a smaller one is not used."""
         own = RigConfig.of(rig)
         return self.wheel is not None and self.wheel.diameter_mm >= own.interlocks.least_diameter_mm
 
 
 @dataclass(frozen=True, slots=True)
 class HeatHistory:
-    """What earlier runs make known of the rig's heat balance."""
+    """Facts about the rig's heat balance from earlier runs."""
 
     ratio: KnownRatio
 
@@ -86,14 +86,14 @@ def zero_check(left: WheelLeft | None, now_utc: str) -> Check:
 
 
 def heat_check(heat: KnownRatio, rig: RigConfig) -> Check:
-    """Return from where on heat that nothing shows is told; a history that tightens nothing is worth a look."""
+    """Return the limit for unexplained heat; a history that does not tighten it deserves a look."""
     limits = rig.interlocks
     tighter = heat.share(limits.heat_share, limits.heat_share_known) < limits.heat_share
     return Check("heat balance", tighter or None, heat.told(limits.heat_share, limits.heat_share_known))
 
 
 def age_words(seconds: float) -> str:
-    """Return an age in the largest unit of which there are two."""
+    """Return an age in the largest unit that it contains at least twice."""
     for size, unit in ((86400.0, "d"), (3600.0, "h")):
         if seconds >= 2.0 * size:
             return f"{seconds / size:.0f} {unit}"

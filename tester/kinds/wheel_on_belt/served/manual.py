@@ -1,4 +1,4 @@
-"""What a person may move by hand on this machine, how far a step goes, and when it is refused.
+"""Manual mode of this machine: its axes, the size of their steps, and the reasons for refusing one.
 
 Single speeds and angles move only lifted: under load a wheel that turns faster than its belt grinds.
 """
@@ -65,7 +65,7 @@ class WheelHand:
     """Turns steps into demands."""
 
     def __init__(self, bounds: Bounds) -> None:
-        """Nothing is wanted: standing, lifted. ``bounds``: how far a person may go, control's too."""
+        """Begin at rest and lifted. ``bounds``: the person's and control's."""
         self.wanted = Asked()
         self.bounds = bounds
         self.taring: TakeTare | None = None
@@ -90,7 +90,7 @@ class WheelHand:
             self._tared(ctx, self.taring)
 
     def tare(self, ctx: Context) -> str:
-        """Begin a tare; return "" or why not."""
+        """Begin a tare; return "", or the reason for refusing."""
         r = ctx.readings
         if self.wanted.load_n > 0.0 or ctx.contact.in_contact:
             return "the wheel is in contact: lift it first"
@@ -103,7 +103,7 @@ class WheelHand:
         return ""
 
     def step(self, ctx: Context, axis: str, sign: float) -> str:
-        """Take one step of an axis; return "" or why not."""
+        """Take one step of an axis; return "", or the reason for refusing."""
         wanted, bounds, r = self.wanted, self.bounds, ctx.readings
         loaded = wanted.load_n > 0.0 or not r.force_z_n < UNLOADED_N
         if loaded and axis in ("wheel", "belt", *wanted.positions):
@@ -160,7 +160,7 @@ class WheelHand:
         return ""
 
     def _tared(self, ctx: Context, tare: TakeTare) -> None:
-        """Say what the tare has changed."""
+        """Report the change of the tare."""
         if tare.failed:
             self.tare_text = f"not taken: {tare.failed}"
         else:
@@ -204,8 +204,8 @@ def take_over(run: Run, worn: PieceInfo | None = None) -> ManualExecutor:
 
 
 def taken_for(left: WheelLeft | None, diameter_mm: float) -> str:
-    """Return which wheel is taken to be on the rig, for people; ``diameter_mm``: what is reckoned with."""
-    known = f"as {left.run} left it" if left is not None else "a new one: no run on this rig says otherwise"
+    """Return the assumed wheel on the rig, for people; ``diameter_mm``: the assumed diameter."""
+    known = f"as {left.run} left it" if left is not None else "a new one: no run on this rig shows otherwise"
     return f"the wheel is taken to have {diameter_mm:.2f} mm, {known}"
 
 

@@ -1,4 +1,4 @@
-"""What the screens show of this machine: its tables, and a look at a run of it between two ticks."""
+"""The screens of this machine: its tables, and the view of a run between two ticks."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ PLOTS: Final = (
 BY_HAND: Final = (
     "wheel_speed", "belt_speed", "slip", "load", "press", *(one.name for one in POSITIONED), "surface", "hub", "heat",
 )  # fmt: skip
-"""Values that move when somebody moves the machine."""
+"""Values that change in manual mode."""
 
 MACHINE: Final = MachineView(
     KIND,
@@ -68,7 +68,7 @@ class WheelPanel(Panel):
         self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_ir_s, limits.stale_jacket_s)
 
     def news(self) -> dict[str, News]:
-        """Return the news of the devices; the drives' are those of the one that was heard of least lately."""
+        """Return the news of the devices; for the drives, that of the drive with the oldest data."""
         r, (cell_s, can_s, surface_s, jacket_s) = self.engine.ctx.readings, self._stale_s
         return {
             "cell": News(r.cell_at_s, r.cell_valid, cell_s),
@@ -113,7 +113,7 @@ class WheelPanel(Panel):
         )  # fmt: skip
 
     def checks(self) -> tuple[Check, ...]:
-        """Return what the connected rig says of its readiness."""
+        """Return the connected rig's own checks before a start."""
         wheel = self.engine.ctx.wheel
         worn = f"{wheel.cold_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
         plan = self.engine.executor.plan

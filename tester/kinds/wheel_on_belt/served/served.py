@@ -25,7 +25,7 @@ from tester.store.recorder import Recorder
 
 
 class WheelOnBelt:
-    """Answers what a service asks of the kind."""
+    """The kind's answers to a service."""
 
     machine: MachineView = MACHINE
     quantities: Quantities = QUANTITIES
