@@ -90,26 +90,26 @@ def _refuse(
 
 def _judgement(
     results: Sequence[RepeatResult],
-    found: Drift,
+    drift: Drift,
     blocks: Sequence[Sequence[Block]],
     revolutions: float | None,
     seconds: float | None,
 ) -> Judgement:
-    trend, carries = trend_of(results, found.per_kelvin_percent)
-    carries |= _go_the_same_way(results, found)
-    flags = [word for word, on in ((NOT_SHOWN, not found.stable), (CARRY_OVER, carries)) if on]
+    trend, carries = trend_of(results, drift.per_kelvin_percent)
+    carries |= _go_the_same_way(results, drift)
+    flags = [word for word, on in ((NOT_SHOWN, not drift.stable), (CARRY_OVER, carries)) if on]
     return Judgement(
-        drift_percent=found.drift_percent,
-        drift_error_percent=found.error_percent,
-        drift_bound_percent=found.bound_percent,
-        per_kelvin_percent=found.per_kelvin_percent,
+        drift_percent=drift.drift_percent,
+        drift_error_percent=drift.error_percent,
+        drift_bound_percent=drift.bound_percent,
+        per_kelvin_percent=drift.per_kelvin_percent,
         repeat_windows=_windows(blocks, revolutions, seconds),
         trend_percent=trend,
         flags=joined(flags),
     )
 
 
-def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
+def _go_the_same_way(results: Sequence[RepeatResult], drift: Drift) -> bool:
     """Return whether the refused repeats indicate a run-in: the first is among them, or the others drift as well.
 
     A run-in is at its worst in the first repeat; where only later ones were refused, the drift of the others must be
@@ -117,8 +117,8 @@ def _go_the_same_way(results: Sequence[RepeatResult], found: Drift) -> bool:
     """
     if (first := next((r for r in results if r.valid or r.drifts), None)) is not None and first.drifts:
         return True
-    refused = [r.drift_percent * found.drift_percent > 0.0 for r in results if r.drifts]
-    return found.shown and bool(refused) and all(refused)
+    refused = [r.drift_percent * drift.drift_percent > 0.0 for r in results if r.drifts]
+    return drift.shown and bool(refused) and all(refused)
 
 
 def _left_with_refused(
@@ -153,8 +153,8 @@ def _each_alone(
     )  # fmt: skip
 
 
-def _bound(found: Drift) -> float:
-    return found.bound_percent if isfinite(found.bound_percent) else inf
+def _bound(drift: Drift) -> float:
+    return drift.bound_percent if isfinite(drift.bound_percent) else inf
 
 
 def _windows(blocks: Sequence[Sequence[Block]], revolutions: float | None, seconds: float | None) -> float:

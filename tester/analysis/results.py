@@ -134,9 +134,9 @@ class Swings(Protocol):
 SwingsT = TypeVar("SwingsT", bound=Swings)
 
 
-def most_swinging(given: Iterable[SwingsT]) -> SwingsT:
+def most_swinging(items: Iterable[SwingsT]) -> SwingsT:
     """Return the item whose friction swings most; an unknown swing ranks last. Needs at least one item."""
-    return max(given, key=lambda item: item.swing_percent if item.swing_percent >= 0.0 else -1.0)
+    return max(items, key=lambda item: item.swing_percent if item.swing_percent >= 0.0 else -1.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -149,7 +149,7 @@ class OppositePairs:
         result = combine_repeats(pairs, planned, min_valid, ended, reason, judged=judged, by_hand=hands,
                                 combining=combining, changed_percent=_changed(results, by_hand),
                                 counted=COUNTED)  # fmt: skip
-        out = {one.position: one.reason for one in result.excluded}
+        out = {exclusion.position: exclusion.reason for exclusion in result.excluded}
         kept = [halves(results, pair) for pair in range(len(pairs)) if pair not in out]
         kept = [(a, b) for a, b in kept if max(a, b) < len(results)]
         excluded = [

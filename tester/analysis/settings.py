@@ -131,9 +131,9 @@ def difference_of(first: SettingMeasurement, second: SettingMeasurement) -> Diff
         if not (error.common and error.common in shared)
     ]
     for key in dict.fromkeys([*first_parts, *second_parts]):
-        found = [each.get(key) for each in (first_parts, second_parts)]
-        off = [part.value if part is not None else 0.0 for part in found]
-        parts.append((off[1] - off[0], "", min(part.df for part in found if part is not None)))
+        pair = [each.get(key) for each in (first_parts, second_parts)]
+        off = [part.value if part is not None else 0.0 for part in pair]
+        parts.append((off[1] - off[0], "", min(part.df for part in pair if part is not None)))
     standard = sqrt(sum(value * value for value, _, _ in parts))
     return Difference(second.mu - first.mu, standard, effective_df(_by_estimate(parts), standard))
 

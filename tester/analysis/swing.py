@@ -128,15 +128,15 @@ def _stretches(contacts: list[dict[str, Array]], step_s: float, orders: int) -> 
     return [_stretch(contact, step_s, orders) for contact in cut]
 
 
-def _stretch(one: dict[str, Array], step_s: float, orders: int) -> _Stretch:
+def _stretch(contact: dict[str, Array], step_s: float, orders: int) -> _Stretch:
     """Return a stretch at equal times, without a trend of second degree."""
     import numpy as np
 
-    mu: Array = np.hypot(one["along"], one["across"]) / one["normal"]
-    begins, ends = float(one["time_s"][0]), float(one["time_s"][-1])
+    mu: Array = np.hypot(contact["along"], contact["across"]) / contact["normal"]
+    begins, ends = float(contact["time_s"][0]), float(contact["time_s"][-1])
     times: Array = begins + step_s * np.arange(int((ends - begins) / step_s + 1.5), dtype=np.float64)
-    turned = 2.0 * np.pi * _at(times, one["time_s"], one["position"])
-    friction = _at(times, one["time_s"], mu)
+    turned = 2.0 * np.pi * _at(times, contact["time_s"], contact["position"])
+    friction = _at(times, contact["time_s"], mu)
     waves: list[Array] = []
     for order in range(1, orders + 1):
         waves += [np.cos(order * turned), np.sin(order * turned)]
@@ -150,8 +150,8 @@ def _at(times: Array, there: Array, values: Array) -> Array:
     """Return values at other times, interpolated linearly."""
     import numpy as np
 
-    found: Array = np.asarray(np.interp(times, there, values), dtype=np.float64)  # pyright: ignore[reportUnknownMemberType]
-    return found
+    interpolated: Array = np.asarray(np.interp(times, there, values), dtype=np.float64)  # pyright: ignore[reportUnknownMemberType]
+    return interpolated
 
 
 def _without_orders(stretches: list[_Stretch]) -> tuple[list[Array], float]:

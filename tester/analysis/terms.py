@@ -158,9 +158,9 @@ def with_settings(terms: Iterable[Term], settings: Mapping[str, str] = _NO_SETTI
     )
 
 
-def _set(name: str, given: float, settings: Mapping[str, str]) -> float:
+def _set(name: str, default: float, settings: Mapping[str, str]) -> float:
     text = settings.get(f"{PREFIX}{name}") if name else None
-    return given if text is None else setting_of(f"{PREFIX}{name}", text)
+    return default if text is None else setting_of(f"{PREFIX}{name}", text)
 
 
 def setting_of(name: str, text: str) -> float:

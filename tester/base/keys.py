@@ -29,7 +29,7 @@ HOLD: Final = Meaning("hold", ("space",), (" ",), "space", "HOLD")
 RELEASE: Final = Meaning("release", ("r",), ("r", "R"), "r", "go on")
 MEANINGS: Final = (STOP, FAST_STOP, HOLD, RELEASE)
 """Meanings that work wherever a run is shown."""
-HELP: Final = "   ".join(f"{one.shown} {one.does}" for one in MEANINGS)
+HELP: Final = "   ".join(f"{meaning.shown} {meaning.does}" for meaning in MEANINGS)
 
 
 def pieces_of(typed: str) -> list[tuple[str, Meaning | None]]:

@@ -274,13 +274,13 @@ class Means(Mapping[str, float]):
         return self._role(self.table.roles.sliding) if self.table is not None else _NAN
 
 
-def mean_of(given: Iterable[Means]) -> Means:
+def mean_of(parts: Iterable[Means]) -> Means:
     """Return the mean of at least one ``Means``, each of equal weight."""
-    listed = list(given)
+    listed = list(parts)
     columns = zip(*(means.values() for means in listed), strict=True)
     return Means(listed[0].table, [sum(column) / len(column) for column in columns])
 
 
-def temperatures(given: Iterable[Means]) -> list[float]:
+def temperatures(parts: Iterable[Means]) -> list[float]:
     """Return the surface temperatures of means, degC; zeros where the table has none: nothing depends on it then."""
-    return [block.temperature if block.table is None or block.table.roles.temperature else 0.0 for block in given]
+    return [block.temperature if block.table is None or block.table.roles.temperature else 0.0 for block in parts]

@@ -222,8 +222,8 @@ def _message(detail: ErrorDetails, value: Value) -> str:
     return message
 
 
-def _choice(value: str, choices: str, given: str) -> str:
+def _choice(value: str, choices: str, value_words: str) -> str:
     names = choices.replace(" or ", ", ").replace("'", "").split(", ")
     near = difflib.get_close_matches(value.casefold()[:40], names, n=1, cutoff=0.6)
     meant = f", did you mean {near[0]}?" if near else ""
-    return f"{given} is not accepted{meant} (expected {choices})"
+    return f"{value_words} is not accepted{meant} (expected {choices})"

@@ -107,15 +107,15 @@ def overlay_charts(values: Sequence[ChartValue]) -> Iterator[Chart]:
             yield Chart(f"{along.name}-of-runs", title, labelled(along), Y_LABEL, tuple(panels), BARS, log_x=log_x)
 
 
-def _overlaid(own: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> ChartPanel | None:
+def _overlaid(alike: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> ChartPanel | None:
     """Return the panel of values that differ only in ``along`` and the run."""
     series: list[Series] = []
     for style, run in enumerate(runs):
-        points = [point for point in own if point.run == run]
+        points = [point for point in alike if point.run == run]
         if len({along.number(point.held) for point in points}) > 1:
             series.append(_points(run, points, along, "measured", style))
-    named = [axis for axis in own[0].held.axes if axis.name != along.name and not axis.at_default(own[0].held)]
-    return ChartPanel(condition_words(own[0].held, named), tuple(series)) if len(series) > 1 else None
+    named = [axis for axis in alike[0].held.axes if axis.name != along.name and not axis.at_default(alike[0].held)]
+    return ChartPanel(condition_words(alike[0].held, named), tuple(series)) if len(series) > 1 else None
 
 
 def _varied(values: Sequence[ChartValue]) -> list[Axis]:
@@ -169,18 +169,18 @@ def _panelled(values: Iterable[ChartValue]) -> list[list[ChartValue]]:
     return [panels[key] for key in sorted(panels)]
 
 
-def _panel(material: Material, own: Sequence[ChartValue], along: Axis, across: Axis | None) -> ChartPanel | None:
+def _panel(material: Material, values: Sequence[ChartValue], along: Axis, across: Axis | None) -> ChartPanel | None:
     """Return the panel of values of one group (``_panelled``)."""
-    compound = own[0].held.compound
+    compound = values[0].held.compound
     free = {along.name, *([across.name] if across is not None else [])}
-    fixed = _usual(own, free)
-    own = _fixed(own, fixed)
+    fixed = _usual(values, free)
+    values = _fixed(values, fixed)
     published = _fixed([value for value in material.published if value.held.compound == compound], fixed)
     series: list[Series] = []
     # A style means the same value of ``across`` in all panels.
     levels = sorted({across.number(value.held) for value in material.measured}) if across is not None else [0.0]
     for style, level in enumerate(levels):
-        here = [point for point in own if across is None or across.number(point.held) == level]
+        here = [point for point in values if across is None or across.number(point.held) == level]
         if len({along.number(point.held) for point in here}) < 2:
             continue
         label = f"{plain(level)} {unit_of(across)}" if across is not None else "measured"
@@ -192,8 +192,8 @@ def _panel(material: Material, own: Sequence[ChartValue], along: Axis, across: A
             series.append(_curve(material.law, here, along, style))
     if not series:
         return None
-    named = [axis for axis in own[0].held.axes if axis.name not in free and not axis.at_default(own[0].held)]
-    return ChartPanel(condition_words(own[0].held, named), tuple(series))
+    named = [axis for axis in values[0].held.axes if axis.name not in free and not axis.at_default(values[0].held)]
+    return ChartPanel(condition_words(values[0].held, named), tuple(series))
 
 
 def _usual(values: Sequence[ChartValue], free: set[str]) -> dict[str, AxisValue]:
@@ -233,14 +233,16 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
     """Yield the coefficient over two axes, for each compound at the setpoints that most of its conditions share."""
     panels: list[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]] = []
     for kind in _panelled(values):
-        own = _fixed(kind, _usual(kind, {along.name, upward.name}))
-        x, y = (tuple(sorted({axis.number(value.held) for value in own})) for axis in (along, upward))
+        group = _fixed(kind, _usual(kind, {along.name, upward.name}))
+        x, y = (tuple(sorted({axis.number(value.held) for value in group})) for axis in (along, upward))
         if len(x) < 2 or len(y) < 2:
             continue
-        at = {(along.number(value.held), upward.number(value.held)): value.mu for value in own}
-        named = [axis for axis in own[0].held.axes if axis not in (along, upward) and not axis.at_default(own[0].held)]
+        at = {(along.number(value.held), upward.number(value.held)): value.mu for value in group}
+        named = [
+            axis for axis in group[0].held.axes if axis not in (along, upward) and not axis.at_default(group[0].held)
+        ]
         grid = tuple(tuple(at.get((value, other), NAN) for value in x) for other in y)
-        panels.append((condition_words(own[0].held, named), x, y, grid))
+        panels.append((condition_words(group[0].held, named), x, y, grid))
     if panels:
         title = f"{Y_LABEL} over {name_of(along)} and {name_of(upward)}"
         note = "empty: not measured"

@@ -74,9 +74,9 @@ def alt_text(figure: Figure) -> str:
     return _plain("; ".join(sentences), 4 * LONGEST)
 
 
-def _spans(*given: Iterator[float]) -> list[str]:
+def _spans(*groups: Iterator[float]) -> list[str]:
     spans: list[str] = []
-    for values in given:
+    for values in groups:
         known = [value for value in values if isfinite(value)]
         spans.append(f"{min(known):.4g} to {max(known):.4g}" if known else "")
     return spans

@@ -62,14 +62,14 @@ _SIDES: dict[str, Callable[[BothWays], SlidingWay]] = {
     "reversed": lambda ways: ways.backward,
 }
 _WAY: dict[str, Callable[[SlidingWay], Value]] = {
-    "n": lambda one: one.n,
-    "mu_as_measured": lambda one: one.mu,
-    "s": lambda one: one.s,
-    "mu_longitudinal_as_measured": lambda one: one.along,
-    "drift_percent": lambda one: one.drift_percent,
-    "load_n": lambda one: one.means.normal,
-    "sliding_m_s": lambda one: one.means.sliding,
-    "surface_c": lambda one: one.means.temperature,
+    "n": lambda way: way.n,
+    "mu_as_measured": lambda way: way.mu,
+    "s": lambda way: way.s,
+    "mu_longitudinal_as_measured": lambda way: way.along,
+    "drift_percent": lambda way: way.drift_percent,
+    "load_n": lambda way: way.means.normal,
+    "sliding_m_s": lambda way: way.means.sliding,
+    "surface_c": lambda way: way.means.temperature,
 }
 _PAIRS: Column[DirectionRow] = Column("pairs", "pairs", lambda row: row.pairs, "", 0)
 _ANGLE: tuple[Column[DirectionRow], ...] = (

@@ -18,7 +18,7 @@ from tester.store.amend import add_exclusion, standing
 from tester.store.reader import DATABASE, RunReader
 from tester.store.records import StoredExclusion, StoredRepeat
 
-MADE_ANEW = frozenset({DATABASE, *(one.file for one in FORMATS.values() if one.kept is not None)})
+MADE_ANEW = frozenset({DATABASE, *(kind.file for kind in FORMATS.values() if kind.kept is not None)})
 """Files of a run's folder that an exclusion changes, beside the manifest."""
 LONGEST = 2000
 """Most characters of a reason."""

@@ -11,16 +11,16 @@ from tester.analysis.fit.trends import Interval
 from tester.base.words import Json, finite
 
 
-def interval(given: Interval) -> Json:
+def interval(ends: Interval) -> Json:
     """Return both ends."""
-    return [finite(one) for one in given]
+    return [finite(end) for end in ends]
 
 
-def errors(given: Errors | None) -> Json:
+def errors(figures: Errors | None) -> Json:
     """Return errors, None where there are none."""
-    if given is None:
+    if figures is None:
         return None
-    return {name: finite(value) if isinstance(value, float) else value for name, value in asdict(given).items()}
+    return {name: finite(value) if isinstance(value, float) else value for name, value in asdict(figures).items()}
 
 
 def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> dict[str, Json]:
@@ -49,8 +49,8 @@ def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> d
         "validation": errors(validation),
         "residuals": {
             variable.name: [
-                {"value": variable.scale * one.value, "unit": variable.unit, "mean": one.mean, "count": one.count}
-                for one in residual
+                {"value": variable.scale * row.value, "unit": variable.unit, "mean": row.mean, "count": row.count}
+                for row in residual
             ]
             for variable, residual in zip(law.variables, fit.residuals, strict=True)
         },
@@ -61,16 +61,16 @@ def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> d
             "at": {v.name: v.scale * x for v, x in zip(law.variables, fit.trends.at, strict=True)},
             "each": [
                 {
-                    "variable": one.variable.name,
-                    "trend": one.word,
-                    "peak": finite(one.variable.scale * one.peak),
-                    "peak_interval": [finite(one.variable.scale * end) for end in one.peak_interval] if sure else None,
-                    "inside": one.inside,
-                    "exponent" if one.variable.ratio else "per_unit": one.exponent,
-                    "interval": interval(one.exponent_interval) if sure and not one.own_heat else None,
-                    "agree": finite(one.agree),
+                    "variable": row.variable.name,
+                    "trend": row.word,
+                    "peak": finite(row.variable.scale * row.peak),
+                    "peak_interval": [finite(row.variable.scale * end) for end in row.peak_interval] if sure else None,
+                    "inside": row.inside,
+                    "exponent" if row.variable.ratio else "per_unit": row.exponent,
+                    "interval": interval(row.exponent_interval) if sure and not row.own_heat else None,
+                    "agree": finite(row.agree),
                 }
-                for one in (fit.trends.each if sure or not fit.lack.shown else ())
+                for row in (fit.trends.each if sure or not fit.lack.shown else ())
             ],
         },
     }
@@ -90,14 +90,14 @@ def _lack(fit: GroupFit) -> dict[str, Json]:
     }
 
 
-def table(given: PublishedTable) -> dict[str, Json]:
+def table(published: PublishedTable) -> dict[str, Json]:
     """Return a publication's table with the verdict."""
     return {
-        "title": given.title,
-        "lines": [_line(line) for line in given.lines],
-        "compared": {how: [_line(line) for line in lines] for how, lines in given.compared.items()},
-        "claims": [{"said": claim.said, "found": claim.found} for claim in given.claims],
-        "missed": [*given.missed],
+        "title": published.title,
+        "lines": [_line(line) for line in published.lines],
+        "compared": {how: [_line(line) for line in lines] for how, lines in published.compared.items()},
+        "claims": [{"said": claim.said, "found": claim.found} for claim in published.claims],
+        "missed": [*published.missed],
     }
 
 

@@ -53,9 +53,9 @@ def _needs(free: Sequence[LawParameter]) -> dict[tuple[str, int], list[str]]:
     return by_need
 
 
-def _too_few(group: str, variable: Variable, needed: int, found: Sequence[float], names: Sequence[str]) -> str:
-    there = ", ".join(map(variable.words, found))
-    many = f"one {variable.name} only" if len(found) == 1 else f"{len(found)} values of {variable.name}"
+def _too_few(group: str, variable: Variable, needed: int, values: Sequence[float], names: Sequence[str]) -> str:
+    there = ", ".join(map(variable.words, values))
+    many = f"one {variable.name} only" if len(values) == 1 else f"{len(values)} values of {variable.name}"
     listed = ",".join(names)
     return (
         f"{group}: {many} ({there}), and {', '.join(names)} need at least {needed}: "

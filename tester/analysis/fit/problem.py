@@ -53,9 +53,9 @@ class FitProblem:
             raise FitError(f"no parameter {', '.join(unknown)} of the law {law.name} (it has {', '.join(law.names)})")
         self.free = tuple(i for i, parameter in enumerate(law.parameters) if parameter.name not in held)
         self._positive = np.array([parameter.positive for parameter in law.parameters])
-        for one in law.parameters:
-            if one.positive and one.name in held and not held[one.name] > 0.0:
-                raise FitError(f"{one.name} is held at {held[one.name]:g} (expected above 0)")
+        for parameter in law.parameters:
+            if parameter.positive and parameter.name in held and not held[parameter.name] > 0.0:
+                raise FitError(f"{parameter.name} is held at {held[parameter.name]:g} (expected above 0)")
         self._held = np.array([held.get(parameter.name, 1.0) for parameter in law.parameters])
         self.x: Array = np.array([point.measured for point in points], dtype=np.float64)
         self.y: Array = np.log(np.array([point.value for point in points], dtype=np.float64))

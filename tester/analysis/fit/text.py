@@ -58,16 +58,20 @@ def verdict_words(fit: GroupFit) -> str:
     return "no departure from the law is seen"
 
 
-def _independent(found: Denominator) -> str:
-    repeats = dict.fromkeys(source.repeats for source in found.sources if source.repeats)
-    between = dict.fromkeys(source.between for source in found.sources if source.between)
-    parts = [f"repeats {100.0 * found.repeats:.1f} %: {'; '.join(repeats) or 'as stated'}"]
-    parts += [f"terms of the budget of each condition by itself {100.0 * found.own:.1f} %"] if found.own else []
-    if found.between:
-        parts.append(f"scatter between conditions {100.0 * found.between:.1f} %: {'; '.join(between) or 'as stated'}")
+def _independent(denominator: Denominator) -> str:
+    repeats = dict.fromkeys(source.repeats for source in denominator.sources if source.repeats)
+    between = dict.fromkeys(source.between for source in denominator.sources if source.between)
+    parts = [f"repeats {100.0 * denominator.repeats:.1f} %: {'; '.join(repeats) or 'as stated'}"]
+    parts += (
+        [f"terms of the budget of each condition by itself {100.0 * denominator.own:.1f} %"] if denominator.own else []
+    )
+    if denominator.between:
+        parts.append(
+            f"scatter between conditions {100.0 * denominator.between:.1f} %: {'; '.join(between) or 'as stated'}"
+        )
     else:
         parts.append("no scatter between conditions is declared")
-    return f"{100.0 * found.standard:.1f} % ({', '.join(parts)})"
+    return f"{100.0 * denominator.standard:.1f} % ({', '.join(parts)})"
 
 
 def group_lines(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> Iterator[str]:

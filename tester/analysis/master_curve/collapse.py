@@ -218,30 +218,30 @@ def _golden(value: Callable[[float], float], low: float, high: float) -> float:
     return 0.5 * (low + high)
 
 
-def _with_interval(one: Collapse, bounds: tuple[float, float], resamples: int, seed: int) -> Collapse:
+def _with_interval(point_estimate: Collapse, bounds: tuple[float, float], resamples: int, seed: int) -> Collapse:
     """Return a collapse with the uncertainty of its Ts."""
-    of, n = one.of, one.residual.size
-    moved = padded(of, one.moved_by_ts())
-    columns = one.design()
-    u_k = one.scatter / _length(left_over(orthonormal(columns), moved))
+    of, n = point_estimate.of, point_estimate.residual.size
+    moved = padded(of, point_estimate.moved_by_ts())
+    columns = point_estimate.design()
+    u_k = point_estimate.scatter / _length(left_over(orthonormal(columns), moved))
     factors = np.column_stack([columns, padded(of, of.in_block)])
-    u_factors_k = one.scatter / _length(left_over(orthonormal(factors), moved))
+    u_factors_k = point_estimate.scatter / _length(left_over(orthonormal(factors), moved))
     random = np.random.default_rng(seed)
-    spread = one.residual * sqrt(n / max(n - one.parameters, 1))
+    spread = point_estimate.residual * sqrt(n / max(n - point_estimate.parameters, 1))
     drawn_alone = random.choice(spread - np.mean(spread), (n, resamples))
-    in_common = _between(one.residual, of) * random.standard_normal((len(of.blocks_c), resamples))
-    y = padded(of, (of.log_mu - one.residual)[:, None] + drawn_alone + in_common[of.block])
+    in_common = _between(point_estimate.residual, of) * random.standard_normal((len(of.blocks_c), resamples))
+    y = padded(of, (of.log_mu - point_estimate.residual)[:, None] + drawn_alone + in_common[of.block])
     thermometer_k = of.thermometer_k * random.standard_normal(resamples)
-    if not one.searched:
-        drawn = Drawn(y, np.full(resamples, one.ts_c), thermometer_k)
-        return replace(one, u_factors_k=u_factors_k, drawn=drawn)
+    if not point_estimate.searched:
+        drawn = Drawn(y, np.full(resamples, point_estimate.ts_c), thermometer_k)
+        return replace(point_estimate, u_factors_k=u_factors_k, drawn=drawn)
     reach = min(max(_REACH * u_k, 0.2), BELOW_K)
-    trials = np.linspace(max(bounds[0], one.ts_c - reach), min(bounds[1], one.ts_c + reach), 49)
-    left = np.array([_left_of(of, float(at), one.interior, y) for at in trials])
+    trials = np.linspace(max(bounds[0], point_estimate.ts_c - reach), min(bounds[1], point_estimate.ts_c + reach), 49)
+    left = np.array([_left_of(of, float(at), point_estimate.interior, y) for at in trials])
     ts_drawn = _lowest(trials, left)
     low, high = np.quantile(ts_drawn + thermometer_k, [0.025, 0.975])
     return replace(
-        one, interval=(float(low), float(high)), u_fit_k=float(np.std(ts_drawn)), u_factors_k=u_factors_k,
+        point_estimate, interval=(float(low), float(high)), u_fit_k=float(np.std(ts_drawn)), u_factors_k=u_factors_k,
         drawn=Drawn(y, ts_drawn, thermometer_k),
     )  # fmt: skip
 

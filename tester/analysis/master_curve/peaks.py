@@ -93,7 +93,7 @@ def peaks_of(collapse: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], 
     peaks: list[Peak] = []
     for x, mu in maxima:
         reach = min([0.5 * abs(x - other) for other in places if other != x], default=REACH_DECADES)
-        near = [min(own, key=lambda at, x=x: abs(at - x)) for own in again if own]
+        near = [min(maxima_again, key=lambda at, x=x: abs(at - x)) for maxima_again in again if maxima_again]
         same = [at for at in near if abs(at - x) <= reach]
         if len(same) >= SURE * len(again):
             moved = min((at - x for at in places_finer if abs(at - x) <= reach), key=abs, default=0.0)

@@ -41,9 +41,9 @@ def summary_lines(master: Master) -> Iterator[str]:
     of, judged = master.collapse.of, master.judged
     first = master.points[0]
     sources = ", ".join(dict.fromkeys(point.source.name for point in master.points))
-    held = "".join(f", {words}" for words in first.held.values())
+    others = "".join(f", {words}" for words in first.held.values())
     yield (
-        f"{first.compound}{held}: {len(master.points)} conditions of {sources}, {len(of.blocks_c)} temperatures from"
+        f"{first.compound}{others}: {len(master.points)} conditions of {sources}, {len(of.blocks_c)} temperatures from"
         f" {of.blocks_c[0]:g} to {of.blocks_c[-1]:g} degC"
     )
     yield f"Ts {_ts_words(master)}; reference {master.reference_c:g} degC"

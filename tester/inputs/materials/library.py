@@ -79,7 +79,7 @@ class Library:
         for folder in self.folders:
             here = [LibraryEntry(role, name, path, folder) for path, name in _named(folder / FOLDERS[role])]
             _refuse_doubled(here)
-            nearer = {one.name for one in listed}
+            nearer = {entry.name for entry in listed}
             listed += [LibraryEntry(role, e.name, e.path, folder, hidden=e.name in nearer) for e in here]
         return listed
 

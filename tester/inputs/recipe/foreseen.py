@@ -92,14 +92,14 @@ def _foreseen(step: ConditionStep, outlook: Outlook, estimator: Estimator, more:
     return Foreseen(step, mu, outlook, instruments, budget([*instruments.contributions, repeating]))
 
 
-def halved(one: Foreseen, estimator: Estimator, terms: Sequence[Term]) -> Halved | None:
+def halved(prediction: Foreseen, estimator: Estimator, terms: Sequence[Term]) -> Halved | None:
     """Return the first change that makes the largest contribution half as large or less; None where none does.
 
     Each is tried with the budget itself. ``terms``: those of the rig.
     """
-    name, limit = one.largest.name, 0.5 * one.largest.standard * (1.0 + 1e-9)
-    for words, outlook, more in _changes(one, estimator):
-        changed = _foreseen(one.step, outlook, estimator, more)
+    name, limit = prediction.largest.name, 0.5 * prediction.largest.standard * (1.0 + 1e-9)
+    for words, outlook, more in _changes(prediction, estimator):
+        changed = _foreseen(prediction.step, outlook, estimator, more)
         smaller = changed and next((c for c in changed.whole.contributions if c.name == name), None)
         if changed and smaller and smaller.standard <= limit:
             return Halved(words, changed.percent_of(smaller))
@@ -108,12 +108,12 @@ def halved(one: Foreseen, estimator: Estimator, terms: Sequence[Term]) -> Halved
         return None
     known = f"{0.5 * term.bound:g} {term.unit}".removesuffix(" 1")
     words = f"knowing it to {known} (experiment: {{uncertainty.{term.setting}: {0.5 * term.bound:g}}})"
-    return Halved(words, 0.5 * one.percent_of(one.largest))
+    return Halved(words, 0.5 * prediction.percent_of(prediction.largest))
 
 
-def _changes(one: Foreseen, estimator: Estimator) -> Iterator[tuple[str, Outlook, int]]:
+def _changes(prediction: Foreseen, estimator: Estimator) -> Iterator[tuple[str, Outlook, int]]:
     """Yield the possible changes: in words, the resulting outlook, and the factor on the repeats."""
-    step, outlook = one.step, one.outlook
+    step, outlook = prediction.step, prediction.outlook
     if not outlook.checked and outlook.loss_mm > 0.0:
         yield "measure: {wear_check: each_condition}", replace(outlook, checked=True), 1
     if not outlook.slope.known:
@@ -160,13 +160,13 @@ def _held(step: ConditionStep, axes: Axes | None) -> _Held:
     return setpoint.compound, tuple(axis.of(setpoint) for axis in setpoint.axes if axis.name != name)
 
 
-def foreseen_lines(found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> Iterator[str]:
+def foreseen_lines(predictions: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> Iterator[str]:
     """Yield the predicted uncertainty, for people: the range, the most, its largest term, and the change that halves
     that."""
-    if not found:
+    if not predictions:
         return
-    worst, least = max(found, key=_percent), min(found, key=_percent)
-    span = f"{least.percent:.2g} to {worst.percent:.2g}" if len(found) > 1 else f"{worst.percent:.2g}"
+    worst, least = max(predictions, key=_percent), min(predictions, key=_percent)
+    span = f"{least.percent:.2g} to {worst.percent:.2g}" if len(predictions) > 1 else f"{worst.percent:.2g}"
     yield f"uncertainty       {span} % of this piece (expanded, 95 %), without drift"
     largest = worst.largest
     where = condition_words(worst.step.setpoint)
@@ -176,15 +176,15 @@ def foreseen_lines(found: Sequence[Foreseen], estimator: Estimator, terms: Seque
         yield f"                  halved by {better.words}: {better.percent:.2g} %"
 
 
-def _percent(one: Foreseen) -> float:
-    return one.percent
+def _percent(prediction: Foreseen) -> float:
+    return prediction.percent
 
 
-def foreseen_fields(found: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> dict[str, object]:
+def foreseen_fields(predictions: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> dict[str, object]:
     """Return the same as plain data, per cent of the coefficient; empty where no condition slides."""
-    if not found:
+    if not predictions:
         return {}
-    worst, least = max(found, key=_percent), min(found, key=_percent)
+    worst, least = max(predictions, key=_percent), min(predictions, key=_percent)
     better = halved(worst, estimator, terms)
     return {
         "least_percent": round(least.percent, 3),

@@ -30,12 +30,12 @@ def floor_percent(foreseen: Foreseen) -> float:
     return 100.0 * foreseen.instruments.expanded / foreseen.mu
 
 
-def until_for_total(total_percent: float, found: Sequence[Foreseen]) -> float:
+def until_for_total(total_percent: float, predictions: Sequence[Foreseen]) -> float:
     """Return the repeatability (expanded, per cent) that gives every condition this total uncertainty.
 
     Raises PrecisionError where the instruments alone have more.
     """
-    highest = max(found, key=floor_percent, default=None)
+    highest = max(predictions, key=floor_percent, default=None)
     if highest is None:
         return total_percent
     floor = floor_percent(highest)
@@ -72,12 +72,12 @@ def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
 
 
 def precision_lines(
-    plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool], found: Sequence[Foreseen]
+    plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool], predictions: Sequence[Foreseen]
 ) -> Iterator[str]:
     """Yield the cost of the requested precision: repeats, the origin of s, the instruments' part. Nothing without a
     request.
 
-    ``found``: the predictions for the plan's conditions.
+    ``predictions``: those for the plan's conditions.
     """
     asked = [step for step in plan.conditions() if step.until_percent is not None]
     if not asked:
@@ -99,9 +99,9 @@ def precision_lines(
         step = short[0]
         most = reached_percent(step, estimator.s_percent(step.setpoint.compound))
         yield f"                  at_most {step.at_most} repeats reach {most:.2g} % only, in {len(short)} conditions"
-    highest = max(found, key=floor_percent, default=None)
+    highest = max(predictions, key=floor_percent, default=None)
     if highest is not None:
-        least = min(map(floor_percent, found))
+        least = min(map(floor_percent, predictions))
         part = "largest: {}, {:.2g} %".format(*_largest(highest))
         yield f"                  the instruments add {least:.2g} to {floor_percent(highest):.2g} % ({part})"
 
