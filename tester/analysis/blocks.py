@@ -104,6 +104,7 @@ class BlockCounter:
         """
         rows = self._rows
         burst, key = sample[self._burst_at], sample[self._key_at]
+        # A closed gate ends the stretch, and drops its incomplete block.
         if sample[self._gate_at] != 0.0 or burst == 0.0:
             if rows:
                 rows.clear()

@@ -57,6 +57,7 @@ def change_within(blocks: Sequence[Block]) -> float:
         later_c += c[k]
         tt = k * (n - k) / n
         determinant = tt * information - later_c * later_c
+        # A step here is collinear with the temperature: it cannot be separated from it.
         if determinant <= 1e-9 * tt * information:
             continue
         step = (later_y * information - cy * later_c) / determinant

@@ -251,9 +251,11 @@ def _fit(series: Sequence[_Series]) -> _Fit:
     variance = sum(_dot(s.y, s.y) for s in series) / count
     slope = per_kelvin = slope_of = 0.0
     noise = _Noise(variance, 0.0, 1.0, 1.0)
+    # The noise sets the weight of the prior, and the fit yields the noise: three rounds are enough.
     for _ in range(3):
         information = cc + variance / (0.01 * PER_KELVIN_PERCENT) ** 2
         determinant = tt * information - tc * tc
+        # Where time and temperature are collinear the fit leaves the sensitivity out.
         if determinant > 1e-9 * tt * information:
             slope, per_kelvin = (ty * information - cy * tc) / determinant, (cy * tt - ty * tc) / determinant
             slope_of = information / determinant

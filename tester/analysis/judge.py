@@ -53,6 +53,7 @@ def judge(
     valid = [i for i, result in enumerate(results) if result.valid]
     if any("rolling" in flags_in(results[i].flags) for i in valid):
         return judged, NOT_JUDGED
+    # Without siblings there is nothing to pool.
     if planned <= ALONE and valid:
         return judged, _each_alone([results[i] for i in valid], [blocks[i] for i in valid], revolutions, seconds)
     # Drift first: a drifting repeat also fluctuates, and the reason must be the drift.

@@ -68,6 +68,7 @@ def slope_of_pairs(at_c: float, points: Sequence[tuple[float, float]]) -> Slope 
     """
     apart: list[tuple[float, float]] = []
     for point in sorted(points, key=lambda candidate: abs(candidate[0] - at_c)):
+        # Of temperatures close together only the one nearest to the condition counts.
         if all(abs(point[0] - other) >= LEAST_STEP_K for other, _ in apart):
             apart.append(point)
     near = sorted(apart[:3])

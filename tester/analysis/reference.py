@@ -169,6 +169,7 @@ def _between(
     import numpy as np
 
     stated, df = known.between**2, len(pieces) - len(compounds) - 1
+    # Too few pieces for an estimate: the stated deviation counts alone.
     if df < 1:
         return known.between, float(STATED_DF)
     groups = [[reference for reference in used if reference.piece == piece] for piece in pieces]

@@ -201,6 +201,7 @@ def _exclusions(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> 
         if not result.valid and i not in by_hand
     ]
     kept = [i for i, result in enumerate(results) if result.valid and i not in by_hand]
+    # Excess fluctuation is relative to the siblings, so the test is repeated after each exclusion.
     while True:
         worst = excess_fluctuation([results[i] for i in kept])
         if worst is None:

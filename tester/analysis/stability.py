@@ -87,6 +87,7 @@ def _transient(blocks: Sequence[Block], mu: list[float]) -> int:
     n = len(blocks)
     mean = sum(mu) / n
     values = [value - mean for value in mu]
+    # Bursts differ in surface temperature: its effect must not look like a transient.
     if blocks[0].burst != blocks[-1].burst:
         surface = temperatures(block.means for block in blocks)
         middle = sum(surface) / n

@@ -100,6 +100,7 @@ def swing_of(trace: Trace) -> Swing:
     if (found := _swing(spectrum, max(LOWEST_HZ, highest_hz), fastest_hz)) is not None:
         percent, at_hz = found
         return Swing(NAN, at_hz, _skewness(rests), percent)
+    # A large order of the wheel may hide stick-slip beside it.
     return UNKNOWN if ordered_percent > LIMIT_PERCENT else NO_SWING
 
 

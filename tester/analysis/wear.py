@@ -125,6 +125,7 @@ def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
     fitted = spread @ design.T @ weights @ volumes
     off = volumes - design @ fitted
     rate, variance = float(fitted[-1]), float(spread[-1, -1])
+    # Birge ratio: scatter beyond the stated uncertainties widens the result, and less never narrows it.
     if count > unknown:
         variance *= max(float(off @ weights @ off) / (count - unknown), 1.0)
     relative = 0.01 * max(check.u_rate_percent for check in used)

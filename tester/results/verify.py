@@ -97,6 +97,7 @@ def _chain(chain: ChainFound, kept: str) -> list[str]:
 
 def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]:
     """Return what an ended run lacks: its manifest, with the chain's head."""
+    # The manifest is written only at a run's end.
     if results.status in (RunStatus.RUNNING, RunStatus.INTERRUPTED) or under_way(folder) is not None:
         return []
     if not (folder / MANIFEST).is_file():

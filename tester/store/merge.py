@@ -180,6 +180,7 @@ class Merge:
 
     def _block(self, data: Cell, base: int) -> Cell:
         """Return a block of samples with later times and higher keys."""
+        # The first part keeps its times and keys.
         if not isinstance(data, bytes) or (base == 0 and self.rig_seconds == 0.0):
             return data
         width, time_at = len(self._channels.names), self._channels.index(TIME)

@@ -166,6 +166,7 @@ class RunReader:
             raise StoreError(f"{self.path}: {error}") from error
         if version == schema.VERSION:
             return connection
+        # Created, but cut off before the schema was committed.
         if version == 0:
             connection.close()
             raise NotBegunError(f"{self.path}: the run was not begun")

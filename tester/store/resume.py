@@ -102,6 +102,7 @@ def resume_point(reader: RunReader) -> ResumePoint:
 def _so_far(reader: RunReader, attempts: list[StoredRepeat], stored: StoredCondition) -> ConditionSoFar:
     committed = {r.repeat: r for r in attempts if r.result.status not in (RepeatStatus.OPEN, RepeatStatus.VOID)}
     in_order: list[StoredRepeat] = []
+    # A gap ends the committed part: later repeats are done again.
     while len(in_order) + 1 in committed:
         in_order.append(committed[len(in_order) + 1])
     counted: dict[int, int] = {}

@@ -302,6 +302,7 @@ class RunWriter(Recorder):
                 self._batches.append(item)
                 self._urgent |= item.urgent
             elif origin := self.origin_s:
+                # A resumed run counts on from its interruption.
                 self._rows.append((item[0] + origin, *item[1:]))
             else:
                 self._rows.append(item)

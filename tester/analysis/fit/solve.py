@@ -112,6 +112,7 @@ def solve_many(problem: FitProblem, start: Array, y: Array, prior: Array, counts
         better = new <= costs[at]
         taken = at[better]
         z[taken], residuals[taken], costs[taken] = tried[better], moved[better], new[better]
+        # A step that does not lower the cost is tried again with more damping.
         damping[at] = np.clip(np.where(better, 0.2, 5.0) * damping[at], *_DAMPING)
         small = np.max(np.abs(step), axis=-1) < _SMALL * (1.0 + 1e3 * better)
         ended[at] = small

@@ -232,6 +232,7 @@ def _with_interval(point_estimate: Collapse, bounds: tuple[float, float], resamp
     in_common = _between(point_estimate.residual, of) * random.standard_normal((len(of.blocks_c), resamples))
     y = padded(of, (of.log_mu - point_estimate.residual)[:, None] + drawn_alone + in_common[of.block])
     thermometer_k = of.thermometer_k * random.standard_normal(resamples)
+    # A Ts that the caller fixed has no interval.
     if not point_estimate.searched:
         drawn = Drawn(y, np.full(resamples, point_estimate.ts_c), thermometer_k)
         return replace(point_estimate, u_factors_k=u_factors_k, drawn=drawn)

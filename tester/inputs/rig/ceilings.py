@@ -155,6 +155,7 @@ def _values(rig: Rig) -> Iterator[tuple[Ceiling, tuple[str, ...], float]]:
             location = tuple(ceiling.key.replace("*", name).split("."))
             value = value_at(rig, location)
             common = value_at(rig, ("can", _SAID_ONCE.get(location[-1], ""))) if name else None
+            # A value that `can` sets for all axes is reported once, there.
             if value is not None and value != common:
                 yield ceiling, location, value
 

@@ -146,6 +146,7 @@ def _resolve(kind: type[Rig], tree: Tree) -> None:
     for name, axis in axes.items():
         if not isinstance(axis, dict):
             continue
+        # Set by a person: the axis has no drive.
         if name in kind.manual and axis.get("manual") is True and len(axis) == 1:
             axes[name] = None
             continue

@@ -37,6 +37,7 @@ class LocalIndex:
         except sqlite3.OperationalError:
             self._connection = _opened(None)  # the folder is read-only, or missing
         except sqlite3.DatabaseError:
+            # Damaged, or of another version: it is rebuilt from the runs.
             with suppress(OSError):
                 path.unlink()
             self._connection = _opened(path)
