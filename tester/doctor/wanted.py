@@ -20,7 +20,7 @@ STATE: tuple[Key, ...] = (
     (o.POSITION_ACTUAL, 0),
     (o.VELOCITY_ACTUAL, 0),
 )
-"""How a drive is now."""
+"""Present state of a drive."""
 
 
 def objects_of(config: AxisConfig) -> list[Key]:

@@ -61,7 +61,7 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         self.sample: tuple[float, ...] = ()
         """The row recorded in the scan before: a value for each recorded channel."""
         self.setpoints: Any = None
-        """What the scan commands, as it is recorded: the kind's own."""
+        """The scan's setpoints, for the record: the kind's own."""
         self.repeat_key = 0
         self.burst = 0
         self.gate = 0
@@ -82,7 +82,7 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         """Take note of what control has just made of the demand."""
 
     def touching(self) -> bool:
-        """Tell whether contact is wanted, or measured: then every scan is recorded."""
+        """Return whether contact is wanted, or measured: then every scan is recorded."""
         return False
 
     def known(self) -> list[str]:

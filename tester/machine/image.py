@@ -70,7 +70,7 @@ class BaseDemand:
 
 @dataclass(slots=True)
 class BaseSetpoints:
-    """What goes to the drives of any machine at the end of a scan."""
+    """Setpoints for the drives of any machine at the end of a scan."""
 
     enable: bool = False
     quick_stop: bool = False

@@ -20,7 +20,7 @@ READINGS: Final = 2.0
 
 
 def measured(devices: DeviceList) -> bool:
-    """Tell whether enough replies of every device were measured."""
+    """Return whether enough replies of every device were measured."""
     return all(
         one.driver.station.reply.count >= (REPLIES if one.driver.profile.blocks[0].period_s < SELDOM_S else
                                            SELDOM_REPLIES)

@@ -48,7 +48,7 @@ def failures(counters: Counters) -> int:
 class Inspector:
     """Looks at the Modbus devices of a rig; ``due_s`` is when to look again.
 
-    ``fault``: the first device that refuses what it is asked or says that our commands do not come; "" = none.
+    ``fault``: the first device that refuses a request or misses our commands; "" = none.
     ``noisy`` names the device with the largest share, where that is one in ten or more; "" = none.
     ``line_errors``: the largest share of failed requests among the devices, of the last few seconds, 0..1.
     """

@@ -42,7 +42,7 @@ class WatchdogProof:
     emergency: int = HEARTBEAT_LOST
     """Code of the EMCY by which a drive says that it has noticed."""
     unloaded: tuple[str, ...] = ()
-    """What has been shown before the proof began."""
+    """Facts proven before this proof began."""
 
     def __init__(self, devices: DeviceList, *, follow: bool, watchdog: bool, withhold_s: float) -> None:
         """Nothing moves before the first ``step``.
@@ -91,7 +91,7 @@ class WatchdogProof:
         return [drive for drive in self.devices.drives if drive.config.proves_watchdog]
 
     def ran_on(self, name: str) -> str:
-        """Say that a drive did not."""
+        """Return the failure text for a drive that did not."""
         return (
             f"the {name} drive did not stop with EMCY 0x8130 when our heartbeat was missing"
             f" for {self.withhold_s * 1000:g} ms (0x1016, 0x6007)"
@@ -163,7 +163,7 @@ class WatchdogProof:
             self._restore(now, elapsed)
 
     def enter(self, stage: ProofStage, now: float) -> None:
-        """Be in a stage from ``now`` on; a kind enters ``MOVE`` anew with each of its moves."""
+        """Enter a stage at ``now``; a kind enters ``MOVE`` again with each of its moves."""
         self.stage = stage
         self.since_s = now
 

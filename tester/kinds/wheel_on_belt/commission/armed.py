@@ -28,7 +28,7 @@ class ArmedSeat:
     """The rig as the later steps see it (tester.machine.commission.step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
-        """Nothing is sent; the simulated rig gets a new wheel."""
+        """Send nothing; the simulated rig gets a new wheel."""
         self.rig = rig
         self.hands = hands
         self.run = build_run(rig, WheelPlan(COMMISSIONING, (), (), 1), ports, hands, NullRecorder(), Prompts())
@@ -61,7 +61,7 @@ class ArmedSeat:
 
     @property
     def shown(self) -> str:
-        """What arming has shown of the drives."""
+        """Results of the arming for the drives."""
         return self.run.connector.shown
 
     def tick(self, now: float) -> float:

@@ -82,7 +82,7 @@ def jog_axis(axis: JoggedAxis, seat: QuietSeat, notes: Notes) -> Dialogue:
     share = abs(read / axis.shown(first))
     least = 2.0 * axis.reading / abs(axis.shown(first))
     if not abs(share - 1.0) <= max(FIRST_SHARE, least):
-        raise StepRefused(_wrong_scale(axis, seat, share, "on the first, little way: measure it anew after the change"))
+        raise StepRefused(_wrong_scale(axis, seat, share, "on the first, little way: measure again after the change"))
     moved, whole = 0.0, speeds.way
     yield from _mark(axis)
     while abs(moved) < abs(whole) - 1e-3 * abs(whole):
@@ -166,7 +166,7 @@ def _wrong_scale(axis: JoggedAxis, seat: QuietSeat, share: float, why: str) -> s
     """Return what is wrong with a scale, and the lines of the rig file that would be right."""
     config = seat.believed.axes.driven()[axis.name]
     if not abs(share) > 1e-6:
-        return f"the {axis.name} axis has not moved by what was read: nothing to reckon a scale from"
+        return f"the {axis.name} axis has not moved according to the reading: no scale can be computed"
     right = [f"axes.{axis.name}.velocity_increments: {config.velocity_increments / share:.7g}"]
     if config.position_increments:
         right.append(f"axes.{axis.name}.position_increments: {config.position_increments / share:.7g}")

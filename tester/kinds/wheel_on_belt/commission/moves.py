@@ -1,4 +1,4 @@
-"""Who says what an armed rig is to do while it is commissioned."""
+"""The source of an armed rig's demand during commissioning."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class MovesExecutor(Executor[Any]):
     """Serves one activity after the other, as a procedure hands them in; between two the demand stays."""
 
     def __init__(self) -> None:
-        """Nothing is wanted."""
+        """Begin without a demand."""
         super().__init__(WheelPlan(COMMISSIONING, (), (), 1), Procedures())
         self.watch: Activity[Context] | None = None
 

@@ -21,7 +21,7 @@ class SettlingFit:
     """Means of a temperature, each ``MEAN_S`` long, and the end of their tail."""
 
     def __init__(self) -> None:
-        """Nothing was read."""
+        """Begin without readings."""
         self.means: list[float] = []
 
     def add(self, mean: float) -> None:

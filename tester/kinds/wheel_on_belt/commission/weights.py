@@ -192,7 +192,7 @@ def _due() -> Generator[Waits, str, str]:
 
 
 def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weights: str, due: str) -> None:
-    """Say and keep what was found, and the lines for the rig file."""
+    """Report and record the results, and print the lines for the rig file."""
     by_name = {channel.name: channel for channel in channels}
     gains = {name: channel.slopes()[channel.own] for name, channel in by_name.items()}
     standards = {name: channel.standard() for name, channel in by_name.items()}

@@ -1,6 +1,6 @@
-"""What has to be the case before heat, load and motion are commanded, and how far a command may go.
+"""Permissives for heat, load and motion, and the bounds of their commands.
 
-A permissive is a level too: it is asked in every scan, and a command whose permissive goes away is withdrawn in that
+A permissive is also a level: it is checked in every scan, and a command that loses its permissive is withdrawn in that
 scan, before any interlock's delay is over.
 """
 
@@ -30,7 +30,7 @@ _RADIANS: Final = pi / 180.0
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """How far commands may go: the least of what recipe, rig and harm allow."""
+    """Bounds of the commands: the least of what recipe, rig and harm allow."""
 
     load_n: float
     wheel_speed_m_s: float
@@ -71,7 +71,7 @@ def confirmed_speed_m_s(p: Values) -> float:
 
 
 def may_heat(state: WheelState, readings: Readings, p: Values) -> bool:
-    """Tell whether the jacket may heat: wheel seen turning for a while, both temperatures fresh and valid."""
+    """Return whether the jacket may heat: wheel seen turning for a while, both temperatures fresh and valid."""
     r, now = readings, readings.now_s
     return (
         now - state.turning_since_s >= p[TURNING_CONFIRMED_S]
@@ -83,7 +83,7 @@ def may_heat(state: WheelState, readings: Readings, p: Values) -> bool:
 
 
 def may_load(state: WheelState, demand: Demand, readings: Readings, p: Values, most_n: float) -> bool:
-    """Tell whether the press may approach or press.
+    """Return whether the press may approach or press.
 
     Both speeds confirmed and their difference bounded, the angles in place before touching, the load fresh and the
     wanted one allowed. The drives' data are fresh: stale ones trip.

@@ -65,7 +65,7 @@ class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
         self.view.look(demand, readings, scan_s, dt)
 
     def unfit(self, readings: Readings) -> list[str]:
-        """Tell a thermometer that looks elsewhere: with a cold hub it shows what the hub shows."""
+        """Detect a misaligned thermometer: with a cold hub it must read the same as the hub."""
         r, p = readings, self._parameters
         cold = abs(r.hub_c - self.rig.ambient_c) <= p[COLD_K]
         if cold and not abs(r.surface_c - r.hub_c) <= p[START_K]:

@@ -72,7 +72,7 @@ def stop_ended(state: WheelState, view: InterlockInputs) -> bool:
 
 
 def heat_off(view: InterlockInputs) -> bool:
-    """Tell whether the heat is known to be off: no output and the contactor open.
+    """Return whether the heat is known to be off: no output and the contactor open.
 
     Once the time for both is over, one of them is enough, for it keeps the heat off; the other one's row has tripped.
     """

@@ -26,7 +26,7 @@ class Positioned(Axis):
     most: float
     """The most that a rig's limit may be, in ``recipe_unit``."""
     hardest: str
-    """How far the limit goes without a risk being accepted (tester.inputs.rig.ceilings), with its unit ..."""
+    """Hardest limit without an accepted risk (tester.inputs.rig.ceilings), with its unit ..."""
     because: str
     """... and why there."""
     symbol: str
@@ -38,7 +38,7 @@ class Positioned(Axis):
     trend: str = ""
     """Column of its channel in the trend."""
     step: float = 1.0
-    """How far one step by hand goes, in ``recipe_unit``."""
+    """Size of a step in manual mode, in ``recipe_unit``."""
 
 
 AXES: Final = Axes(
@@ -83,7 +83,7 @@ _NAMES = tuple(axis.name for axis in POSITIONED)
 
 
 class Held(NamedTuple):
-    """What a setpoint holds on this machine. Speeds m/s, load N, surface temperature degC."""
+    """The quantities of a setpoint on this machine. Speeds m/s, load N, surface temperature degC."""
 
     compound: str
     slip_velocity_m_s: float

@@ -115,13 +115,13 @@ class Readings(BaseReadings):
 
     @property
     def cell(self) -> tuple[float, float, float, float]:
-        """What the load cell shows, tare applied, in the order of ``CELL``."""
+        """Readings of the load cell, tare applied, in the order of ``CELL``."""
         return self.force_x_n, self.force_y_n, self.force_z_n, self.moment_z_nm
 
 
 @dataclass(slots=True)
 class Demand(BaseDemand):
-    """What the running step wants; control bounds it and may refuse it."""
+    """The demand of the present step; control bounds it and may refuse it."""
 
     wheel_speed_m_s: float = 0.0
     belt_speed_m_s: float = 0.0
@@ -138,7 +138,7 @@ class Demand(BaseDemand):
 
 @dataclass(slots=True)
 class Setpoints(BaseSetpoints):
-    """What goes to the devices at the end of a scan, already inside every limit."""
+    """Setpoints for the devices at the end of a scan, already inside every limit."""
 
     wheel_rad_s: float = 0.0
     belt_m_s: float = 0.0

@@ -16,11 +16,11 @@ from tester.machine.modbus_health import failures
 from tester.store.recorder import Recorder
 
 BUS: Final = "slip ring"
-"""Under this name the record's table of bus counters has what is noted."""
+"""Name of the data in the record's table of bus counters."""
 MOST_NOTED: Final = 2000
-"""Of so many failed requests of a wheel the angle is kept [A]: more say no more, and fill the record."""
+"""Most failed requests of a wheel whose angle is recorded [A]: more would add nothing, and fill the record."""
 DEVICE: Final = "jacket"
-"""What is beyond the ring."""
+"""Device beyond the ring."""
 _TURN: Final = 2.0 * pi
 
 

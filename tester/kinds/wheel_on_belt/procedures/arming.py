@@ -36,7 +36,7 @@ class Proof(WatchdogProof):
     unloaded = ("lifted and unloaded", "decelerations equal")
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Nothing moves before the first ``step``."""
+        """Move nothing before the first ``step``."""
         arming = rig.arming
         super().__init__(devices, follow=arming.bump_test, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)
         self.axes = devices.axes
@@ -63,7 +63,7 @@ class Proof(WatchdogProof):
         axes.wheel.target = axes.belt.target = axes.press.target = 0.0
 
     def still(self) -> bool:
-        """Tell whether wheel and belt stand."""
+        """Return whether wheel and belt stand."""
         axes, least = self.axes, 0.1 * self.creep_m_s
         return abs(axes.wheel.actual) * self.radius_m < least and abs(axes.belt.actual) < least
 

@@ -22,7 +22,7 @@ class Phase(Enum):
 
 @dataclass(slots=True)
 class BurstNotes:
-    """What is known of the burst in progress."""
+    """State of the burst in progress."""
 
     began_s: float = 0.0
     began_c: float = float("nan")

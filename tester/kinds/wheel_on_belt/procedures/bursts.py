@@ -197,7 +197,7 @@ class MeasureRepeat:
         self._roll()
 
     def _tare_again(self) -> None:
-        """Take the zero anew: the wait for the temperature was long, and the cell has warmed meanwhile."""
+        """Renew the zero: the wait for the temperature was long, and the cell has warmed meanwhile."""
         self.phase = Phase.TARE
         self.tare = None
 
@@ -322,7 +322,7 @@ class MeasureRepeat:
             self._end_burst(ctx)
 
     def _complete(self, ctx: Context) -> bool:
-        """Tell whether the repeat has what it collects; without siblings, whether its drift is shown to be small."""
+        """Return whether the repeat has what it collects; without siblings, whether its drift is shown to be small."""
         window = self.condition.window
         alone = self.condition.repeats <= ALONE and not self.rolling_only
         return collected(self.counter, window.revolutions, window.seconds, window.extend_to, alone=alone)

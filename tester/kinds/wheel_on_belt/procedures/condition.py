@@ -70,7 +70,7 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
         return False
 
     def _check_soak(self, ctx: Context) -> None:
-        """Put on record whether thermometer and hub agree, and say so where they do not."""
+        """Record whether thermometer and hub agree, and report a disagreement."""
         check = soak_check(ctx, self.condition.condition)
         if check is None:
             return

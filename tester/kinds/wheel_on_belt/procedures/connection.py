@@ -1,4 +1,4 @@
-"""What this machine asks of its devices, and shows, before a run may begin."""
+"""This machine's checks of its devices, and proofs, before a run may begin."""
 
 from __future__ import annotations
 

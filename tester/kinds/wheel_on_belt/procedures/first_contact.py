@@ -135,11 +135,11 @@ class FirstContact:
     """
 
     def __init__(self) -> None:
-        """Nothing moves before the first step."""
+        """Move nothing before the first step."""
         self.moves: Sequence | None = None
 
     def resume(self, ctx: Context) -> None:
-        """Begin anew after a hold."""
+        """Start again after a hold."""
         self.moves = None
 
     def step(self, ctx: Context) -> bool:

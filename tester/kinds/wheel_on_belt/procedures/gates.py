@@ -56,7 +56,7 @@ class Average:
 
 @dataclass(slots=True)
 class Target:
-    """What the gates compare with; written by the activity that measures."""
+    """Targets of the gates; written by the activity that measures."""
 
     load_n: float = 0.0
     wheel_speed_m_s: float = 0.0

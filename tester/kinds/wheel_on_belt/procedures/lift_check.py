@@ -40,7 +40,7 @@ class Unloaded:
     """
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Nothing moves before the first ``step``; no drive but the press's is enabled here."""
+        """Move nothing before the first ``step``; only the press's drive is enabled here."""
         self.devices = devices
         self.rig = rig
         self.failure = ""

@@ -65,7 +65,7 @@ class Turn(Move):
 
 
 def speeds_reached(ctx: Context) -> bool:
-    """Tell whether both measured speeds are at their demands."""
+    """Return whether both measured speeds are at their demands."""
     r, d = ctx.readings, ctx.demand
     return abs(r.wheel_speed_m_s - d.wheel_speed_m_s) <= max(
         SPEED_SHARE * abs(d.wheel_speed_m_s), SPEED_FLOOR_M_S
@@ -104,7 +104,7 @@ def straight(r: Readings) -> dict[str, float]:
 
 
 def near(r: Readings, positions: Mapping[str, float]) -> bool:
-    """Tell whether positioned axes are at positions, by name."""
+    """Return whether positioned axes are at positions, by name."""
     return all(abs(r.positions[name] - wanted) < NEAR for name, wanted in positions.items())
 
 
@@ -149,7 +149,7 @@ class TakeTare(ZeroOfCell):
         self.stop_n = stop_n
         self.ends_run = ends_run
         self.drift_n = 0.0
-        """How far off the reference the zero is, N: of the three forces the one that has moved most."""
+        """Drift of the zero from the reference, N: that of the force that has moved most."""
 
     def step(self, ctx: Context) -> bool:
         """Done when the average is taken; ``failed`` says why the zero is not to be trusted."""

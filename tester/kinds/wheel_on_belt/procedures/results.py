@@ -1,4 +1,4 @@
-"""What a repeat leaves on record of the wheel beside its result, and what a condition will cost of it."""
+"""Records the wheel's state after a repeat, and predicts the wear of a condition."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tester.store.records import Travel
 
 
 def record_state(recorder: Recorder, ctx: Context, now_s: float) -> None:
-    """Put on record how worn the wheel is at a rig time, and how far belt and wheel have come."""
+    """Record the wheel's wear at a rig time, and the travel of belt and wheel."""
     wheel = ctx.wheel
     recorder.piece_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, now_s)
     recorder.travelled(wheel.wheel, travel_of(ctx))
@@ -38,7 +38,7 @@ class WheelResults(StoredResults[Context]):
         return ctx.wheel.wheel
 
     def record_mounted(self, ctx: Context) -> None:
-        """Put the wheel's diameter and the distances on record."""
+        """Record the wheel's diameter and the distances."""
         record_state(self.recorder, ctx, ctx.now)
 
     def predicted_loss_mm(self, step: WheelCondition, rig: RigConfig) -> float:

@@ -24,7 +24,7 @@ class RunIn:
 
 
 def slides_reversed(step: WheelCondition, repeat: int) -> bool:
-    """Tell whether a repeat of a condition, from 1, slides the other way than is asked for."""
+    """Return whether a repeat of a condition, from 1, slides the other way than is asked for."""
     return step.both_directions and is_reversed(repeat)
 
 

@@ -20,7 +20,7 @@ HUB_K: Final = 0.5
 """Error of the hub's sensor, K, at most [A]: Pt100 class B at 60 degC is 0.6 K, and the line through the slip ring is
 watched by itself."""
 MODEL_SHARE: Final = 0.15
-"""What the observer's drop from hub to surface may be off by, a share [A]: a fifth more film of air makes 12 %."""
+"""Tolerance of the observer's drop from hub to surface, a share [A]: a fifth more film of air makes 12 %."""
 
 
 def allowed_k(hub_c: float, model_c: float) -> float:

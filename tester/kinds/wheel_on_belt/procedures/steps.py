@@ -61,7 +61,7 @@ class WheelProcedures(Procedures[Context]):
         demand.belt_speed_m_s = demand.wheel_speed_m_s
 
     def measuring(self, activity: Activity[Context]) -> bool:
-        """Tell whether a condition has been soaked and makes its repeats."""
+        """Return whether a condition has been soaked and makes its repeats."""
         return isinstance(activity, MeasureWheelCondition) and activity.measuring is not None
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: Context) -> Activity[Context]:
@@ -161,7 +161,7 @@ class WheelProcedures(Procedures[Context]):
     # -- a wheel that the plan did not foresee ----------------------------------------------------------------
 
     def _wheel_too_worn(self, step: WheelCondition, ctx: Context) -> bool:
-        """Tell whether what is left of the wheel does not cover this condition's predicted wear."""
+        """Return whether what is left of the wheel does not cover this condition's predicted wear."""
         left_mm = self.plan.replace_after_mm - ctx.wheel.loss_mm
         return ctx.wheel.wheel == self.measured_wheel and self.results.predicted_loss_mm(step, ctx.rig) > left_mm
 

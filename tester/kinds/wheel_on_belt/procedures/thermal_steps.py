@@ -35,7 +35,7 @@ class Straighten:
     """Bring the positioned axes to zero, lifting first if they are not there."""
 
     def __init__(self) -> None:
-        """Nothing is known before the first scan."""
+        """Begin without data before the first scan."""
         self.moves: Sequence | None = None
 
     def step(self, ctx: Context) -> bool:

@@ -33,7 +33,7 @@ LARGER_BY: Final = 3.0
 """A wheel that measures larger than at the check before by more than this many standard uncertainties has not grown:
 that check is not believed [A]."""
 CLEAR_BY: Final = 4.0
-"""A loss of this many standard uncertainties tells the wheel's rate well enough to reckon with it [A]: to 25 %."""
+"""A loss of this many standard uncertainties gives the wheel's rate well enough for use [A]: to 25 %."""
 QUESTION: Final = "measure the wheel's diameter and answer with it, such as 89.62 mm (yes: not measured)"
 
 
@@ -44,7 +44,7 @@ class RollCheck:
     """
 
     def __init__(self, before: int = NO_CONDITION) -> None:
-        """Nothing is averaged yet."""
+        """Begin without readings."""
         self.before = before
         self.hold = Load(ROLL_CHECK_N, for_s=1.0)
         self.held = False
@@ -97,7 +97,7 @@ class CheckByRolling:
         self.moves: Sequence | None = None
 
     def resume(self, ctx: Context) -> None:
-        """Begin anew after a hold."""
+        """Start again after a hold."""
         self.moves = None
 
     def step(self, ctx: Context) -> bool:
@@ -164,7 +164,7 @@ def measured_mm(answer: str) -> float | None:
 
 
 class Taken(NamedTuple):
-    """What a check found: loss of diameter and its standard uncertainty, mm, and what they come from."""
+    """Result of a check: loss of diameter and its standard uncertainty, mm, and their sources."""
 
     method: str
     reference_s: float
@@ -176,7 +176,7 @@ class Taken(NamedTuple):
 
 
 def conclude(ctx: Context, before: int, taken: Taken) -> None:
-    """Put a check on record and reckon with its loss of diameter from now on, where it can be believed."""
+    """Record a check and use its loss of diameter from now on, if it is trustworthy."""
     wheel, wear, loss_mm, u_mm = ctx.wheel, ctx.rig.wear, taken.loss_mm, taken.u_mm
     check = WearCheck(
         piece=wheel.wheel,

@@ -19,7 +19,7 @@ from tester.kinds.wheel_on_belt.rig import WearConfig
 _INF: Final = inf
 SAME_SIZE_K: Final = 0.25
 """A change of the rubber's temperature that is waited for, K [A]: 2 um, 0.02 mm/s at 0.8 m/s. The thermometer's noise
-would otherwise command the drives anew in every scan."""
+would otherwise send the drives a new command in every scan."""
 
 
 def rubber_c(hub_c: float, surface_c: float) -> float:
@@ -34,7 +34,7 @@ def rubber_c(hub_c: float, surface_c: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class CheckReference:
-    """The first roll check of a wheel: when, where the press stood, and what was reckoned to be lost by then."""
+    """The first roll check of a wheel: its time, the press's position, and the estimated loss by then."""
 
     at_s: float
     press_mm: float
@@ -66,7 +66,7 @@ class WheelLife:
     """Mean temperature of the rubber that this is for."""
     sliding_m: float = 0.0
     rate_mm3_per_n_m: float = 0.0
-    """Wear rate that checks of this wheel have shown; 0: none has, the rig file's is reckoned with."""
+    """Wear rate from checks of this wheel; 0: none yet, the rig file's rate is used."""
     exposure_n_m: float = 0.0
     """Normal force times distance slid since installation: what wear is proportional to."""
     condition: int = 0

@@ -30,7 +30,7 @@ class ShowContact:
         self.moves = Sequence()
 
     def resume(self, ctx: Context) -> None:
-        """Begin anew after a hold."""
+        """Start again after a hold."""
         self.tare = None
 
     def step(self, ctx: Context) -> bool:
@@ -66,7 +66,7 @@ class InstallWheel:
         self.contact: ShowContact | None = None
 
     def resume(self, ctx: Context) -> None:
-        """Take the tare anew, where it had begun."""
+        """Repeat the tare, if it had begun."""
         self.ask.resume(ctx)
         if self.contact is not None:
             self._begin_contact()

@@ -57,5 +57,5 @@ class ZeroCheck:
         return True
 
     def resume(self, ctx: Context) -> None:
-        """Begin anew after a hold."""
+        """Start again after a hold."""
         self.tare = None

@@ -1,4 +1,4 @@
-"""What measuring one condition takes: closed formulas, remembered by what is held and how it is measured.
+"""Cost of measuring one condition: closed formulas, cached by setpoint and settings.
 
 How long a slip pulse may last follows from the square root of time by which friction heats a half-space (H. S.
 Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: rise = 2 q sqrt(t / pi) / sqrt(k rho c)).
@@ -31,11 +31,11 @@ ROLLING_M_S = 1e-9
 
 
 class Procedure(Counted, Protocol):
-    """How a condition is measured, as far as its cost goes: a WheelCondition, or a grid's WheelSettings."""
+    """Settings of a condition that affect its cost: a WheelCondition, or a grid's WheelSettings."""
 
     @property
     def window(self) -> Window:
-        """What a repeat collects."""
+        """The window of a repeat."""
         ...
 
     @property

@@ -56,7 +56,7 @@ def words(step: Step, one: StepEstimate) -> str:
 
 
 def heading(plan: WheelPlan, step: Install) -> str:
-    """Return what is on a wheel: compound, note, replicate, and what it is predicted to lose in all."""
+    """Return a wheel's compound, note, replicate, and its predicted total loss."""
     replicated = any(one.replicate > 1 for one in plan.wear)
     note = f" ({step.note})" if step.note else ""
     replicate = f", replicate {step.replicate}" if replicated else ""
@@ -180,11 +180,11 @@ class WheelConditionJson(ConditionJson):
     """Conditions on wheels as JSON: with wheel, belt speed, slip pulses and wear."""
 
     def __init__(self, axes: Axes) -> None:
-        """Belt speeds are written once, too."""
+        """Format each belt speed only once."""
         super().__init__(axes)
         self._held = axes.numbers_of(*(axis.name for axis in axes))
         self._speeds = axes.numbers_of("wheel_speed", "slip_velocity")
-        """What the belt's speed follows from."""
+        """Axes that determine the belt's speed."""
         self._belts: dict[tuple[float, ...], str] = {}
 
     def keys(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""How long a plan takes, what it rubs off and how warm it gets: closed formulas, no simulation.
+"""Estimates a plan's duration, wear and temperatures: closed formulas, no simulation.
 
 The times are sums of the moves that the executor makes; those of a condition are in ``.cost``.
 """
@@ -143,7 +143,7 @@ class WheelEstimator:
         return self.constants.roll_check_s + ROLL_CHECK_TURNS * turn_s
 
     def _begins_part(self, plan: Plan, place: int, part: tuple[int, int]) -> bool:
-        """Tell whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.
+        """Return whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.
 
         ``part``: specimen and replicate before, zeros for none. A rig of its own is at ambient, with nothing to cool.
         """

@@ -89,7 +89,7 @@ def _changes(sums: list[float], start: int, room: float, fresh: float) -> int:
 
 @dataclass(slots=True)
 class _Wheel:
-    """What the wheel in hand has been given so far."""
+    """The work assigned to the present wheel so far."""
 
     number: int
     specimen: int

@@ -1,4 +1,4 @@
-"""What the order of the steps costs: heating up, the hub that leads and has to come down, heat of the condition before.
+"""Cost of the order of the steps: heating up, the hub's lead that has to decay, heat of the condition before.
 
 Closed formulas; their constants show what simulated runs do (``tester.kinds.wheel_on_belt.recipe.constants``).
 """
@@ -21,7 +21,7 @@ NEAR_K = 2.0
 
 
 class Before:
-    """What the last steps left: the surface before heating up, degC, or the heat of the condition before, W."""
+    """State after the last steps: the surface before heating up, degC, or the heat of the condition before, W."""
 
     __slots__ = ("from_c", "heat_w", "pooled", "rolled")
 
@@ -39,7 +39,7 @@ class Before:
 
 
 class OrderCosts:
-    """What comes on top of a condition for its place in the plan."""
+    """Extra cost of a condition for its place in the plan."""
 
     def __init__(self, rig: RigConfig, constants: EstimateConstants, body: Body) -> None:
         """Take what the formulas need of the rig."""

@@ -1,4 +1,4 @@
-"""What this machine says about recipes (``tester.inputs.recipe.part``)."""
+"""This machine's part for recipes (``tester.inputs.recipe.part``)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The reference condition of this machine: what it is held at, and what makes no sense of it."""
+"""The reference condition of this machine: its setpoint, and checks of it."""
 
 from __future__ import annotations
 

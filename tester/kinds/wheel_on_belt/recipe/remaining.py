@@ -1,4 +1,4 @@
-"""What is left of a plan after an interruption: the fifth reader of the plan's steps.
+"""The rest of a plan after an interruption: the fifth reader of the plan's steps.
 
 Goes on at the first condition that is not over, with the wheel that is on the rig if that is the one it is to be
 measured with: it is mounted as it is (worn), ground in only where that was not complete, rested where nothing had been

@@ -1,4 +1,4 @@
-"""What cannot be measured in both directions: where the reversed slip is not the same condition the other way round."""
+"""Finds conditions that cannot be measured in both directions: the reversed slip is not the same condition."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class ReferenceRounds:
         """``conditions``: of one replicate; ``ambient_c``: at the rig, degC."""
         asked = recipe.reference
         self.condition: Condition[WheelSettings] | None = reference_condition(recipe)
-        """What is measured each time; None where the recipe has no references. Its row is 0."""
+        """The reference condition; None if the recipe has no references. Its row is 0."""
         self.reserved = ReservedWheel(asked.wheel) if self.condition and asked and asked.wheel else None
         self.every = asked.every if asked is not None else 0
         self.since = 0
@@ -48,7 +48,7 @@ class ReferenceRounds:
         self._first_row = conditions * len(recipe.specimens) + 1
         self._last = (len(recipe.specimens), recipe.replicates)
         self.specimens: tuple[Specimen, ...] = ()
-        """What the reserved wheel is a specimen of, behind the recipe's own."""
+        """Specimens of the reserved wheel, after the recipe's own."""
         self.metadata = dict(reference_metadata(asked if self.condition else None))
         if self.reserved is not None and asked is not None:
             compound = asked.compound or recipe.specimens[0].compound
@@ -61,7 +61,7 @@ class ReferenceRounds:
         return self.condition if self.reserved is None else None
 
     def due_on_reserved(self) -> bool:
-        """Tell whether the reserved wheel is to come on before the next condition."""
+        """Return whether the reserved wheel is to come on before the next condition."""
         return self.reserved is not None and self.since >= self.every
 
     def inserted(

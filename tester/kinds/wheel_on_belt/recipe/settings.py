@@ -1,4 +1,4 @@
-"""How the conditions of a grid are measured on this machine: in how many slip pulses, and whether wear is checked."""
+"""Settings of a grid's conditions on this machine: number of slip pulses, and whether wear is checked."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Said = TypeVar("Said", bool, float)
 
 @dataclass(frozen=True, slots=True)
 class WheelSettings(Settings):
-    """How every condition of a grid is measured."""
+    """Settings of every condition of a grid."""
 
     max_bursts: int
     wear_check: WearCheck

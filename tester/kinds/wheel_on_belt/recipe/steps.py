@@ -105,7 +105,7 @@ WheelStep: TypeAlias = Install | PreGrind | Rest | Heat | WheelCondition | Cool 
 
 @dataclass(frozen=True, slots=True)
 class WheelWear:
-    """What a wheel is predicted to lose in the plan: loss of diameter in mm, sliding distance in m."""
+    """Predicted wear of a wheel in the plan: loss of diameter in mm, sliding distance in m."""
 
     wheel: int
     specimen: int
@@ -117,7 +117,7 @@ class WheelWear:
 
 @dataclass(frozen=True, slots=True)
 class PreparePolicy:
-    """What a new wheel goes through before it measures; None where the recipe leaves a step out.
+    """Preparation of a new wheel before it measures; None if the recipe leaves a step out.
 
     ``person_steps`` are prompts after every installation, in the recipe's order. ``ready_c`` and
     ``ready_within_k``: the surface is this near to ambient before pre-grinding.

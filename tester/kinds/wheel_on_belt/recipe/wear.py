@@ -1,4 +1,4 @@
-"""What a wheel would not outlast: grinding it and one condition wear it beyond ``wheel.replace_after``."""
+"""Finds conditions that a wheel would not outlast: grinding plus one condition exceed ``wheel.replace_after``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sections of this kind's rig file, and what must fit together in them."""
+"""The sections of this kind's rig file, and their consistency checks."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""How far each safety key of this rig may be loosened: its direction, its hardest value, and why there.
+"""Ceilings of this rig's safety keys: direction, hardest value, and the reason.
 
-The parameters of interlocks say it themselves (tester.inputs.rig.parameter); the keys of the other sections stand here.
+The parameters of interlocks carry their own (tester.inputs.rig.parameter); the keys of the other sections are here.
 """
 
 from __future__ import annotations

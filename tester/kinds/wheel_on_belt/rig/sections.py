@@ -211,7 +211,7 @@ class ArmingConfig:
 class WearConfig:
     """Wear law V = k F s: what the plan predicts and the current diameter is estimated with.
 
-    Then what a check of the diameter reckons with (procedures.wear_check); uncertainties are standard ones.
+    Also the parameters of a check of the diameter (procedures.wear_check); uncertainties are standard ones.
     """
 
     rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]

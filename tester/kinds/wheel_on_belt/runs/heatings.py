@@ -1,7 +1,7 @@
 """Heatings as evidence: what a run's record keeps of them, and what later runs on the rig read there.
 
-They are events of the kind ``heat`` whose data is JSON: the rig, what its ratio was reckoned with, and the numbers. A
-rig file with other beliefs is another rig as far as its heat goes, and starts anew.
+They are events of the kind ``heat`` whose data is JSON: the rig, the assumptions behind its ratio, and the numbers. A
+rig file with other assumptions counts as another rig for its heat, and starts without evidence.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _IN_HEAT: Final = frozenset(row.name for row in (*hub.ROWS, *surface.ROWS))
 
 
 def heating_data(rig: RigConfig, put_j: float, shown_j: float, rise_k: float) -> str:
-    """Return what an event keeps of a heating: heat put in and heat shown, J, and the hub's rise, K."""
+    """Return a heating as an event's data: heat put in and heat shown, J, and the hub's rise, K."""
     numbers = {"put_j": round(put_j, 1), "shown_j": round(shown_j, 1), "rise_k": round(rise_k, 2)}
     return json.dumps({"rig": rig.name, "beliefs": beliefs_of(rig), **numbers})
 
@@ -52,7 +52,7 @@ def known_heat(runs: Path, rig: RigConfig) -> KnownRatio:
 
 
 def known_from(ratios: Sequence[float], rig: RigConfig) -> KnownRatio:
-    """Return what ratios, the oldest first, make known of a rig's heat balance."""
+    """Return the facts about a rig's heat balance from ratios, the oldest first."""
     return known_ratio(ratios, rig.interlocks.heat_share, rig.interlocks.heat_share_known)
 
 

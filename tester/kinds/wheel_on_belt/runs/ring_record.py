@@ -1,4 +1,4 @@
-"""The slip ring of the jacket, as runs have it on record (``ring_watch`` stores it)."""
+"""The jacket's slip ring in the record of a run (``ring_watch`` stores it)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tester.store.reader import RunReader
 
 
 def ring_of(reader: RunReader, name: str) -> RingRun:
-    """Return what a run has on record. Raises StoreError where it cannot be read."""
+    """Return a run's record of its ring. Raises StoreError if it is unreadable."""
     found = RingRun(name, reader.run().info.started_utc)
     for counter, value in reader.bus_statistics(BUS):
         if counter == "wheel":

@@ -28,11 +28,11 @@ from tester.store.resume import ResumePoint
 
 
 class WheelRuns:
-    """Says how a run of this machine is built, and what goes with it."""
+    """Builds a run of this machine, and supplies its further parts."""
 
     plant: str = "wheel_on_belt"
     procedures: ClassVar[type[WheelProcedures]] = WheelProcedures
-    """What serves the steps of a plan; a laboratory's own kind may do more before and after one."""
+    """Selects the activities for the steps of a plan; a laboratory's own kind may extend it."""
 
     def split(self, plan: Plan) -> tuple[Part, ...]:
         """Return a part for each specimen and replicate."""
@@ -58,7 +58,7 @@ class WheelRuns:
         attendant.install(0, 0, compound or "1#", new_specimen=True)
 
     def history(self, runs: Path, rig: Rig) -> HeatHistory:
-        """Return what the runs make known of the heat balance."""
+        """Return the facts about the heat balance from the runs."""
         return HeatHistory(known_heat(runs, RigConfig.of(rig)))
 
     def calibration(self, rig: Rig) -> Iterator[Calibration]:

@@ -1,1 +1,1 @@
-"""What a service and its screens need of a wheel on a belt: tables, hands, what past runs left on the rig."""
+"""A wheel on a belt for a service and its screens: tables, manual mode, facts from past runs."""

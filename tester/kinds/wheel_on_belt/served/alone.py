@@ -1,4 +1,4 @@
-"""What the rig's devices do by themselves when the process that owns the rig is gone: their own watchdogs, in words."""
+"""Describes what the rig's devices do by themselves once the process that owns the rig is gone."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ HAND: Final = (
 
 @dataclass(slots=True)
 class Asked:
-    """What the person has asked for so far."""
+    """The person's requests so far."""
 
     wheel_m_s: float = 0.0
     belt_m_s: float = 0.0
