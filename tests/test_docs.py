@@ -191,6 +191,12 @@ def test_what_the_page_on_kinds_shows_of_the_lamp_is_the_lamps() -> None:
     assert [text for path, text in quoted if text not in (DOCS.parent / path).read_text(encoding="utf-8")] == []
 
 
+def test_the_pages_stay_few_and_short() -> None:
+    pages = [page.read_text(encoding="utf-8") for page in DOCS.rglob("*.md")]
+    words = sum(bool(re.search(r"\w", token)) for text in pages for token in text.split())
+    assert len(pages) <= 60 and words <= 70_000, f"{len(pages)} pages, {words} words"
+
+
 def test_every_page_is_linked_from_the_first() -> None:
     first = (DOCS / "README.md").read_text(encoding="utf-8")
     pages = {str(page.relative_to(DOCS).as_posix()) for page in DOCS.rglob("*.md")}
