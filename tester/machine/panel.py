@@ -13,7 +13,7 @@ from tester.machine.engine import Engine
 from tester.machine.served import News, Wanted
 
 
-class Panel:
+class RunPanel:
     """A ``MachinePanel`` of a machine that has gates and soaks nothing. A kind adds its devices and checks."""
 
     gates_of: ClassVar[Mapping[str, int]] = {}

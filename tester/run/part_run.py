@@ -42,7 +42,7 @@ STATE_EVERY_S = 1.0
 """Period for storing the specimen's state, s of wall time: an interruption loses at most this much."""
 
 
-class Watch(Protocol):
+class PartWatch(Protocol):
     """Watches a part while it runs."""
 
     statistics: TickStatistics
@@ -106,7 +106,7 @@ class RunNotes:
             self.kind.store_state(self.run, self.recorder, now_s)
 
 
-def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: Watch, prompts: Prompts) -> PartEnd:
+def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: PartWatch, prompts: Prompts) -> PartEnd:
     """Run a part; its record is closed on return. Raises OSError, sqlite3.Error, StoreError."""
     folder = work.folder_of(part, job.folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -165,7 +165,7 @@ def _broken_off(kind: type[BaseException], error: BaseException | None) -> str:
 
 
 def _execute(
-    job: Job, work: Work, part: Part, writer: RunWriter, watch: Watch, prompts: Prompts
+    job: Job, work: Work, part: Part, writer: RunWriter, watch: PartWatch, prompts: Prompts
 ) -> tuple[Outcome, str, float]:
     rig = work.rig
     log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
@@ -214,7 +214,7 @@ def _tick(
     pace: Pace | None,
     lapse: float | None,
     recorder: RunWriter,
-    watch: Watch,
+    watch: PartWatch,
     good: GoodRun | None,
 ) -> float:
     notes = RunNotes(run, recorder, good, watch.say)

@@ -207,7 +207,7 @@ class Session:
             self.run_.reason = self.run_.reason or text
         self.stop(StopLevel.UNSEEN)
 
-    # -- a watch over the part in this process (tester.run.part_run.Watch) -----------------------------------
+    # -- a watch over the part in this process (tester.run.part_run.PartWatch) -----------------------------------
 
     def begun(self, run: Run) -> None:
         """Store the run of a part, and apply a stop that arrived between two parts."""

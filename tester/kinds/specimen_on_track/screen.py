@@ -11,7 +11,7 @@ from tester.kinds.specimen_on_track.procedures.steps import TemperAir
 from tester.kinds.specimen_on_track.process import GATE_CONTACT, GATE_SETTLING, GATE_SPEED, GATE_TEMPERATURE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.engine import Engine
-from tester.machine.panel import Panel, soak_view
+from tester.machine.panel import RunPanel, soak_view
 from tester.machine.served import News, Wanted
 
 HAND: Final = (
@@ -39,7 +39,7 @@ MACHINE: Final = MachineView(
 )
 
 
-class TrackPanel(Panel):
+class TrackPanel(RunPanel):
     """One run on this machine, to look at."""
 
     gates_of: ClassVar[Mapping[str, int]] = {

@@ -14,7 +14,7 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.plain import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
-from tester.machine.panel import NotReused, Panel, drives_alone
+from tester.machine.panel import NotReused, RunPanel, drives_alone
 from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.ports import Ports
@@ -28,7 +28,7 @@ STEPS_TO_TOP: Final = 20
 """By hand a drive gets to its greatest speed in this many steps [A]."""
 
 
-class PlainPanel(Panel):
+class PlainPanel(RunPanel):
     """One run on a plain machine, to look at."""
 
     gates_of: ClassVar[Mapping[str, int]] = {"speed": GATE_SPEED}

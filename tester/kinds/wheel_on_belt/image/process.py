@@ -10,11 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import IntEnum
 from math import inf
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-from drivers.joined_cell import JoinedCell
 from tester.kinds.wheel_on_belt.image.axes import straight
 from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpoints
+
+if TYPE_CHECKING:
+    from drivers.joined_cell import JoinedCell  # loads Modbus, which a plan has no use for
 
 # Gates that are closed, as bits of the channel ``gate``; 0 = the sample is accepted.
 GATE_LOAD: Final = 1

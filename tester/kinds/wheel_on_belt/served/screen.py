@@ -22,7 +22,7 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
 from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.served.manual import HAND
 from tester.machine.engine import Engine
-from tester.machine.panel import Panel, soak_view
+from tester.machine.panel import RunPanel, soak_view
 from tester.machine.served import News, Wanted
 
 KIND: Final = "wheel_on_belt"
@@ -52,7 +52,7 @@ MACHINE: Final = MachineView(
 )
 
 
-class WheelPanel(Panel):
+class WheelPanel(RunPanel):
     """One run on this machine, to look at."""
 
     gates_of: ClassVar[Mapping[str, int]] = {
