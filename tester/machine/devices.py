@@ -16,10 +16,10 @@ from drivers.modbus import ModbusLink
 from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
-from tester.machine.drivers import RigDrivers
 from tester.machine.field_device import FieldDevice
 from tester.machine.image import NEVER, BaseReadings, BaseSetpoints
 from tester.machine.modbus_health import Inspector
+from tester.machine.rig_drivers import RigDrivers
 from tester.machine.silence import fault_text, name_of, refusals, silent_lines, unheard
 from tester.store.recorder import Recorder
 

@@ -8,10 +8,10 @@ from typing import Final
 
 from tester.inputs.rig.plain import PlainRig
 from tester.machine.devices import DeviceList
-from tester.machine.drivers import RigDrivers
 from tester.machine.image import NEVER
 from tester.machine.plain.image import PlainReadings, PlainSetpoints
 from tester.machine.ports import Ports
+from tester.machine.rig_drivers import RigDrivers
 
 STANDING_SHARE: Final = 0.01
 """A drive slower than this share of its greatest speed stands [A]."""

@@ -18,7 +18,7 @@ from tester.kinds.wheel_on_belt.image.cell_skew import CellSkew
 from tester.kinds.wheel_on_belt.image.process import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch
 from tester.machine.devices import DeviceList
-from tester.machine.drivers import RigDrivers
+from tester.machine.rig_drivers import RigDrivers
 
 CELL_CHANNELS: Final = ("fx", "fy", "fz", "mz")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""

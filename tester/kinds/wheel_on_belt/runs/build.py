@@ -27,11 +27,11 @@ from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.machine.connect import Connector
-from tester.machine.drivers import RigDrivers, load_cell_of
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
 from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_drivers import RigDrivers, load_cell_of
 from tester.machine.run import Run
 from tester.machine.sampler import Sampler
 from tester.store.recorder import Recorder
