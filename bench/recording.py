@@ -16,7 +16,7 @@ from bench.stopwatch import cpu_ns
 from tester.base import clock
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.machine.tickers import collector_at_rest
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 
 PERIOD_S = 0.01

@@ -28,8 +28,8 @@ from tester.service.client import Client, NoServiceError
 from tester.service.commands import RunRecipe, Stop
 from tester.service.gateway_link import GatewayLink, LinkConfig
 from tester.service.gateway_process import serve_link
-from tester.service.link import OwnerEnd
 from tester.service.service import Service, ServiceOptions
+from tester.service.service_link import OwnerEnd
 
 PERIOD_S = 0.01
 POLL_EVERY = 2

@@ -43,7 +43,7 @@ def test_changed_samples_are_told_by_the_coefficient_even_with_all_made_anew(
 def test_a_head_from_before_is_told_with_what_came_since(
     runs: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tester.store.reader import RunReader
+    from tester.store.run_reader import RunReader
 
     with RunReader(runs[0]) as reader:
         chain = reader.chain()

@@ -31,7 +31,7 @@ KINDLESS = (
     "tester/tui",
 )
 """Folders that hold no such word. Add a folder once it is clean."""
-NAMED_SO = ("tester/results/formats.py", "tester/store/schema.py")
+NAMED_SO = ("tester/results/formats.py", "tester/store/record_schema.py")
 """``wheel.csv`` is the name of a table that a run's folder gets; a soak's ``hub_c`` is a column of its record."""
 
 

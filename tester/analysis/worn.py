@@ -13,7 +13,7 @@ from math import hypot, isfinite, pi
 
 from tester.analysis.results import NAN
 from tester.analysis.terms import Size
-from tester.analysis.wear import WearCheck, wear_rate
+from tester.analysis.wear_rate import WearCheck, wear_rate
 
 
 @dataclass(frozen=True, slots=True)

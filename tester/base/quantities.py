@@ -2,7 +2,8 @@
 
 Every channel of the table is sampled, stored, averaged, exported and shown; no other list or order of channels exists.
 This module defines the types. Each kind has its own table, to which the further sensors of a rig add rows
-(tester.inputs.rig.sensors). A run's record keeps a copy of it, so that a stored run can be read without its kind.
+(tester.inputs.rig.further_sensors). A run's record keeps a copy of it, so that a stored run can be read without its
+kind.
 """
 
 from __future__ import annotations

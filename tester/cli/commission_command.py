@@ -16,8 +16,8 @@ from tester.cli.tui_command import SWITCH_S, SpeedType, need_terminal
 
 if TYPE_CHECKING:
     from tester.inputs.rig import Rig
-    from tester.machine.commission.engine import CommissionOutcome
-    from tester.machine.commission.step import CommissionStep
+    from tester.machine.commission.commission_step import CommissionStep
+    from tester.machine.commission.step_engine import CommissionOutcome
     from tester.run.commissioning import CommissionOptions
 
 
@@ -47,11 +47,11 @@ def commission(
     What stands on record is not done again, unless the rig file has changed under it. Exit codes: 0 everything stands,
     3 a step was refused (with what to change), 1 it failed, 5 stopped, 6 left before the end.
     """
-    from tester.machine.commission.engine import Ended
     from tester.machine.commission.record import RecordError, record_path
+    from tester.machine.commission.step_engine import Ended
     from tester.run.commissioning import CommissionOptions, commission, part_of
     from tester.run.endings import CannotStartError
-    from tester.run.kinds import load_rig
+    from tester.run.kind_lookup import load_rig
 
     found = load_rig(rig, overrides, accept_risk)
     simulated = found.can.interface == "sim"
@@ -109,8 +109,8 @@ def _on_screen(load: Callable[[], Rig], options: CommissionOptions, theme: str, 
     """Commission with whoever is at this screen; however it ends, what moves is at rest when this returns."""
     need_terminal("tester commission --tui", "`tester commission RIG` asks line by line")
     from tester.base.processes import handled
-    from tester.tui.guide.app import GuideApp
     from tester.tui.guide.guide import Guide
+    from tester.tui.guide.guide_app import GuideApp
 
     guide = Guide(load, options)
     app = GuideApp(guide, theme=theme, plain=plain)
@@ -135,8 +135,7 @@ def _on_screen(load: Callable[[], Rig], options: CommissionOptions, theme: str, 
 
 def _list(path: Path, steps: tuple[CommissionStep, ...], rig: Rig) -> None:
     """Print a line a step: whether it stands, since when, by whom."""
-    from tester.machine.commission.record import CommissionRecord
-    from tester.machine.commission.standing import standing_of
+    from tester.machine.commission.record import CommissionRecord, standing_of
 
     for one in standing_of(CommissionRecord(path, str, ""), steps, rig):
         click.echo(f"{one.step.name:16} {one.words}")

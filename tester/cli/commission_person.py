@@ -6,8 +6,8 @@ import sys
 from typing import Final
 
 from tester.base.keys import FAST_STOP, STOP, pieces_of
+from tester.cli.command_keys import Keys, keys_of
 from tester.cli.console import Outlet
-from tester.cli.keys import Keys, keys_of
 from tester.machine.commission.person import Question
 
 MOST_TYPED: Final = 200

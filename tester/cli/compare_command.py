@@ -9,8 +9,8 @@ import click
 
 from tester.base.axes import ListWords
 from tester.base.words import Json
-from tester.cli.formatting import dump, shown
-from tester.cli.run_lookup import run_folder
+from tester.cli.options import run_folder
+from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
     from tester.results.columns import Table
@@ -91,8 +91,8 @@ def _lines(table: Table[Pair], compounds: tuple[str, str] | None) -> Iterator[st
 
 def _results(name: str) -> RunResults:
     from tester.results.run_results import results_of
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     try:
         with RunReader(run_folder(name)) as reader:

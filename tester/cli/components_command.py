@@ -9,13 +9,12 @@ import click
 
 from tester.base.axes import ListWords
 from tester.base.words import Json, coefficient, finite
-from tester.cli.formatting import dump, shown
-from tester.cli.options import json_option
-from tester.cli.run_lookup import run_folder
+from tester.cli.options import json_option, run_folder
+from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
     from tester.analysis.components import PartValue
-    from tester.results.components import FilmPair, SharesMean
+    from tester.results.components_table import FilmPair, SharesMean
 
 ASSUMED = (
     "assumed: the film takes all adhesion away, leaves all hysteresis, and does not lift the specimen",
@@ -38,10 +37,10 @@ def components(run: str, as_json: bool) -> None:
     hysteresis is the coefficient with the film, adhesion the dry one less that, each with its expanded uncertainty;
     share is that of hysteresis in the dry coefficient. Ends with the mean share of each compound.
     """
-    from tester.results.components import film_pairs, has_interfaces, means_of
+    from tester.results.components_table import film_pairs, has_interfaces, means_of
     from tester.results.run_results import results_of
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     try:
         with RunReader(run_folder(run)) as reader:

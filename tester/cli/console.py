@@ -17,8 +17,8 @@ from rich.text import Text
 
 from tester.base.keys import FAST_STOP, HELP, HOLD, STOP, commands_of, pieces_of
 from tester.base.words import conditions_done, duration
+from tester.cli.command_keys import keys_of
 from tester.cli.ending import ending_lines
-from tester.cli.keys import keys_of
 from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import DONE, Prompt, Prompts
 from tester.machine.time_left import RunPosition

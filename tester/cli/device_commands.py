@@ -15,8 +15,8 @@ from tester.cli.options import json_option, print_json, rig_option, set_option
 
 if TYPE_CHECKING:
     from drivers.canopen.scan import ObjectAnswer
-    from tester.doctor.parameters import ParameterDump
-    from tester.doctor.wires import Wires
+    from tester.doctor.device_parameters import ParameterDump
+    from tester.doctor.open_wires import Wires
     from tester.inputs.rig import Rig
     from tester.run.set_up import Parameters
 
@@ -34,7 +34,7 @@ class RigBusyError(click.ClickException):
 def rig_alone(rig: Rig, what: str, seed: int = 0) -> Generator[Wires]:
     """Yield the wires of a rig that nobody else uses; ``seed``: of a simulated one. Raises RigBusyError."""
     from tester.base.lock import ExclusiveUse
-    from tester.doctor.wires import wires_of
+    from tester.doctor.open_wires import wires_of
     from tester.run.endings import CannotStartError
     from tester.run.preconditions import hold_rig
 
@@ -82,7 +82,7 @@ def sdo(node: str, name: str, rig_name: str, overrides: tuple[str, ...], value: 
 def _accessed(rig: Rig, wires: Wires, number: int, key: tuple[int, int], value: str | None, kind: str | None) -> int:
     from drivers.canopen.dictionary import DICTIONARY
     from drivers.canopen.objects import DataType
-    from tester.doctor.sdo import NodeAccess, WriteRefusedError
+    from tester.doctor.sdo_reads import NodeAccess, WriteRefusedError
 
     access = NodeAccess(wires.can(rig.can.bitrate), wires, number)
     before = access.read(key)
@@ -177,9 +177,9 @@ def compare(rig_name: str, other: str, out: str, as_json: bool) -> int:
     Without either: with the newest run on a rig of this name that went through its plan. Exit code 1 where something
     differs that this program does not write at every connect.
     """
-    from tester.doctor.parameters import DumpError
+    from tester.doctor.device_parameters import DumpError
     from tester.run.set_up import differences
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
 
     try:
         where, before = _before(rig_name, other, Path(out))
@@ -208,8 +208,8 @@ def compare(rig_name: str, other: str, out: str, as_json: bool) -> int:
 
 
 def _dump(rig_name: str) -> ParameterDump:
+    from tester.doctor.device_parameters import dumped
     from tester.doctor.examination import Examination
-    from tester.doctor.parameters import dumped
     from tester.doctor.system import ThisComputer
     from tester.kinds import load_rig
 
@@ -223,7 +223,7 @@ def _dump(rig_name: str) -> ParameterDump:
 
 def _before(rig_name: str, other: str, runs: Path) -> tuple[str, Parameters]:
     """Return what is compared with, and how it is called. Raises DumpError, StoreError, OSError."""
-    from tester.doctor.parameters import read_dump, stored_in
+    from tester.doctor.device_parameters import read_dump, stored_in
     from tester.kinds import load_rig
     from tester.run.set_up import last_good
 
@@ -232,7 +232,7 @@ def _before(rig_name: str, other: str, runs: Path) -> tuple[str, Parameters]:
         return other, read_dump(Path(other)).devices
     folder = last_good(rig, runs) if not other else None
     if folder is None:
-        from tester.store.catalogue import find_run
+        from tester.store.run_folders import find_run
 
         folder = find_run(other or "latest", runs)
     return folder.name, stored_in(rig, folder)

@@ -8,14 +8,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from textwrap import wrap
 
-from tester.cli.formatting import shown
-from tester.cli.text_table import WIDTH, table_lines
+from tester.cli.text_table import WIDTH, shown, table_lines
 from tester.results.columns import Output
 from tester.results.conditions_table import axis_keys, conditions_table, recipe_rows
 from tester.results.run_results import RunResults, results_of
 from tester.results.tally import flag_lines, tally_of
-from tester.store.reader import RunReader
-from tester.store.schema import StoreError
+from tester.store.record_schema import StoreError
+from tester.store.run_reader import RunReader
 
 ROWS_AT_MOST = 200
 """A longer table is for a spreadsheet: its beginning is shown, with the file that has it all."""

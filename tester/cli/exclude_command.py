@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 
 import click
 
-from tester.cli.formatting import shown
-from tester.cli.run_lookup import run_folder
+from tester.cli.options import run_folder
+from tester.cli.text_table import shown
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -42,8 +42,8 @@ def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: 
     from tester.base.lock import user
     from tester.results.exclude import CannotExcludeError, Word, parse_target, record_word
     from tester.results.run_results import results_of
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     folder = run_folder(run)
     try:

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.formatting import shown
 from tester.cli.law_parts import OVERS, At, parts_chart
-from tester.cli.options import QuantityType
-from tester.cli.run_lookup import run_folder
+from tester.cli.options import QuantityType, run_folder
+from tester.cli.text_table import shown
 
 if TYPE_CHECKING:
     from tester.report.chart import Figure
@@ -120,8 +119,8 @@ def _draw(figures: Sequence[Figure], names: Sequence[str], target: Path, ending:
 def _results(name: str) -> tuple[str, RunResults]:
     """Return the name of a run's folder and its results; raises ClickException where it cannot be read."""
     from tester.results.run_results import results_of
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     folder = run_folder(name)
     try:
@@ -149,7 +148,7 @@ def _masters(name: str) -> list[Figure]:
     """Return a run's master curves."""
     from tester.cli.master_figures import master_charts
     from tester.kinds import UnknownKindError, find
-    from tester.store.reader import RunReader
+    from tester.store.run_reader import RunReader
 
     folder = run_folder(name)
     with RunReader(folder) as reader:

@@ -9,13 +9,13 @@ import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.base.words import Json
-from tester.cli.formatting import dump, shown
 from tester.cli.options import json_option
+from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
+    from tester.analysis.fit.fit_law import FitPoint, Law, Sourced
+    from tester.analysis.fit.fit_part import FitPart
     from tester.analysis.fit.joint import GroupFit
-    from tester.analysis.fit.law import FitPoint, Law, Sourced
-    from tester.analysis.fit.part import FitPart
     from tester.kinds.kind import Kind
 
 
@@ -70,8 +70,8 @@ def fit(
 
     Exit code 1: a law does not describe the conditions, a parameter has no meaning, or a figure of --check misses.
     """
+    from tester.analysis.fit.fit_law import FitError, by_group
     from tester.analysis.fit.joint import fit_group
-    from tester.analysis.fit.law import FitError, by_group
     from tester.base.plugins import MissingExtraError
 
     fitted, others = _conditions(sources), _conditions(validation) if validation else None
@@ -106,7 +106,7 @@ def fit(
         _print(law, fits, rows, fitted, others, force)
     if table is not None:
         from tester.analysis.fit import as_json as plain
-        from tester.analysis.fit.text import table_lines
+        from tester.analysis.fit.fit_text import table_lines
 
         told["check"] = plain.table(table)
         if not as_json:
@@ -149,10 +149,10 @@ def _conditions(names: Sequence[str]) -> Conditions:
 
 def _source(name: str) -> tuple[Kind, Sourced]:
     from tester.base.source import InvalidSource
-    from tester.cli.run_lookup import run_folder
+    from tester.cli.options import run_folder
     from tester.kinds import UnknownKindError, find, packaged_conditions
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     kind = packaged_conditions().get(name)
     if kind is not None:
@@ -212,8 +212,8 @@ def _print(
     others: Conditions | None,
     force: bool,
 ) -> None:
+    from tester.analysis.fit.fit_text import all_lines, group_lines, law_line, trend_lines, verdict_lines
     from tester.analysis.fit.joint import overall
-    from tester.analysis.fit.text import all_lines, group_lines, law_line, trend_lines, verdict_lines
 
     click.echo(law_line(law))
     for one in fits:

@@ -9,7 +9,7 @@ import click
 if TYPE_CHECKING:
     from tester.kinds.kind import Kind
     from tester.report.charts import Material
-    from tester.report.record import MachineWords
+    from tester.report.record_section import MachineWords
     from tester.results.run_results import RunResults
     from tester.store.records import RunInfo
 
@@ -50,7 +50,7 @@ def material_of(results: RunResults, law: str, published: bool) -> Material:
 def words_of(info: RunInfo) -> MachineWords:
     """Return what a run's kind says of itself, and its packaged rig file that the run's is like, or its first."""
     from tester.kinds import load_rig, packaged_rigs, packaged_text
-    from tester.report.record import MachineWords
+    from tester.report.record_section import MachineWords
 
     kind = kind_of(info)
     if kind is None:

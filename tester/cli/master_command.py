@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
-from tester.cli.formatting import dump, shown
 from tester.cli.options import QuantityType, json_option
+from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
     from sim.physics.materials import Rubber
-    from tester.analysis.master_curve.made import Master
+    from tester.analysis.master_curve.fitted_curve import Master
     from tester.analysis.master_curve.points import MasterPoint, MasterRun
     from tester.inputs.materials.compound import LoadedCompound
     from tester.kinds.kind import Kind
@@ -63,7 +63,7 @@ def master(
 
     Exit code 0: it collapses; 1: it does not, or is refused; 6: these conditions cannot tell.
     """
-    from tester.analysis.master_curve.made import master_of
+    from tester.analysis.master_curve.fitted_curve import master_of
     from tester.analysis.master_curve.points import MasterError
     from tester.analysis.master_curve.verdict import Verdict
 
@@ -123,7 +123,7 @@ def _compound_file(run: str, compound: str) -> LoadedCompound | None:
     """Return a compound's file: the run's copy, else the laboratory's or the packaged one; None where there is none."""
     from sim.physics.materials import UnknownMaterialError
     from tester.base.source import InvalidSource
-    from tester.cli.run_lookup import run_folder
+    from tester.cli.options import run_folder
     from tester.inputs.materials.library import Library
 
     try:
@@ -160,10 +160,10 @@ def _runs(names: Sequence[str]) -> list[MasterRun]:
 
 def _run(name: str) -> tuple[Kind, MasterRun]:
     from tester.base.source import InvalidSource
-    from tester.cli.run_lookup import run_folder
+    from tester.cli.options import run_folder
     from tester.kinds import UnknownKindError, find, packaged_conditions
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     kind = packaged_conditions().get(name)
     if kind is not None and kind.masters is not None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tester.analysis.master_curve.made import master_of
+from tester.analysis.master_curve.fitted_curve import master_of
 from tester.analysis.master_curve.points import MasterError, MasterPoint
 from tester.kinds.kind import Kind
 from tester.report.law_charts import master_chart

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tester.inputs.materials.compound import LoadedCompound
     from tester.inputs.materials.files import DataFile, Findings, Role
     from tester.inputs.materials.library import Library, LibraryEntry
-    from tester.inputs.materials.surface import LoadedSurface
+    from tester.inputs.materials.surface_file import LoadedSurface
 
     Loaded = LoadedCompound | LoadedSurface
 
@@ -177,8 +177,8 @@ def check(file: Path, as_json: bool) -> int | None:
 def _load(file: Path) -> Loaded:
     from tester.base.source import read_tree
     from tester.inputs.materials.compound import load_compound
-    from tester.inputs.materials.schema import CompoundModel, SurfaceModel
-    from tester.inputs.materials.surface import load_surface
+    from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
+    from tester.inputs.materials.surface_file import load_surface
 
     if file.parent.name in ("compounds", "surfaces"):
         return load_surface(file) if file.parent.name == "surfaces" else load_compound(file)
@@ -261,7 +261,7 @@ def scan(
     from tester.base.plugins import MissingExtraError
     from tester.inputs.materials.files import Findings
     from tester.inputs.materials.radial import Detrend
-    from tester.inputs.materials.scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
+    from tester.inputs.materials.surface_scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
     from tester.inputs.materials.written import surface_text
 
     way = cast("Detrend", detrend)

@@ -12,7 +12,7 @@ from tester.base.source import InvalidSource, Problem
 from tester.base.units import expected
 
 if TYPE_CHECKING:
-    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig
 
 Answer = TypeVar("Answer")
@@ -33,7 +33,7 @@ class Draft:
     @classmethod
     def on(cls, rig: str) -> Draft:
         """Return an empty recipe for a rig, given by name or file; raises InvalidSource."""
-        from tester.run.kinds import load_rig, recipe_part
+        from tester.run.kind_lookup import load_rig, recipe_part
 
         loaded = load_rig(rig)
         return cls(rig, loaded, recipe_part(loaded))
@@ -78,7 +78,7 @@ class Draft:
 
     def checked(self) -> Sequence[Problem]:
         """Return what is doubtful about the whole recipe; raises InvalidSource for what the rig cannot do."""
-        from tester.run.kinds import checked_recipe
+        from tester.run.kind_lookup import checked_recipe
 
         return checked_recipe(self.text(), self.rig, "the new recipe").doubts
 

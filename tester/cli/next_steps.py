@@ -58,7 +58,7 @@ def _runs(folder: Path) -> list[Path]:
     """Return the runs of a folder, the newest first."""
     if not folder.is_dir():
         return []  # nothing of the store is loaded: a first call answers at once
-    from tester.store.catalogue import run_folders
+    from tester.store.run_folders import run_folders
 
     return sorted(run_folders(folder), reverse=True)
 
@@ -67,9 +67,9 @@ def _unfinished(runs: list[Path]) -> Iterator[NextStep]:
     """Yield how to resume the newest runs that did not reach the end of their plan and that no process works on."""
     if not runs:
         return
-    from tester.store.catalogue import run_status, under_way
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_folders import run_status, under_way
+    from tester.store.run_reader import RunReader
 
     for folder in runs[:LOOKED_AT]:
         with suppress(StoreError, OSError), RunReader(folder) as reader:

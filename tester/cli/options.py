@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -12,6 +13,7 @@ from tester.base.units import UnitError, parse
 
 if TYPE_CHECKING:
     from tester.inputs.rig import Rig
+
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -106,3 +108,14 @@ def say_packaged_keys(rig_name: str, overrides: Sequence[str]) -> None:
     if keys:
         click.echo(f"{rig_name}: packaged values count for {', '.join(keys)}", err=True)
         click.echo(f"{rig_name}: `tester rig upgrade {rig_name}` writes them in", err=True)
+
+
+def run_folder(name: str) -> Path:
+    """Return the folder of a run; a name that is none is a usage error."""
+    from tester.store.record_schema import StoreError
+    from tester.store.run_folders import find_run
+
+    try:
+        return find_run(name)
+    except StoreError as error:
+        raise click.UsageError(str(error)) from error

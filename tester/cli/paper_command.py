@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED
-from tester.cli.formatting import Json, dump
 from tester.cli.options import json_option
+from tester.cli.text_table import Json, dump
 
 if TYPE_CHECKING:
-    from tester.analysis.fit.part import PublishedTable
+    from tester.analysis.fit.fit_part import PublishedTable
     from tester.analysis.papers.item import Paper
 
 
@@ -36,7 +36,7 @@ def paper(every: bool, as_json: bool) -> int:
 
 def _one(as_json: bool) -> int:
     from tester.analysis.fit import as_json as plain
-    from tester.analysis.fit.text import table_lines
+    from tester.analysis.fit.fit_text import table_lines
 
     table = _table()
     if as_json:
@@ -56,7 +56,7 @@ def _table() -> PublishedTable:
 
 
 def _all(as_json: bool) -> int:
-    from tester.analysis.papers.page import page_text
+    from tester.analysis.papers.papers_page import page_text
     from tester.kinds import packaged_papers
 
     papers = packaged_papers()
@@ -68,7 +68,7 @@ def _all(as_json: bool) -> int:
 
 
 def _as_json(papers: Sequence[Paper]) -> Json:
-    from tester.analysis.papers.page import judged_items
+    from tester.analysis.papers.papers_page import judged_items
 
     return {
         entry.name: [

@@ -27,12 +27,12 @@ from tester.cli.options import (
 if TYPE_CHECKING:
     from tester.analysis.uncertainty import Pool
     from tester.base.source import Problem
-    from tester.inputs.materials.schema import CompoundModel
+    from tester.inputs.materials.material_schema import CompoundModel
     from tester.inputs.recipe.foreseen import Foreseen
-    from tester.inputs.recipe.part import RecipePart
-    from tester.inputs.recipe.schema import Recipe
+    from tester.inputs.recipe.recipe_part import RecipePart
+    from tester.inputs.recipe.recipe_schema import Recipe
     from tester.inputs.rig import Rig
-    from tester.run.materials import UsedMaterials
+    from tester.run.run_materials import UsedMaterials
 
 
 def recipe_file(name_or_path: str) -> tuple[Path, str]:
@@ -62,9 +62,9 @@ def check(
     """
     from tester.base.source import InvalidSource
     from tester.inputs.recipe.conditions import conditions_of, merged_of
-    from tester.inputs.recipe.reference import REFERENCE, ReferenceSection
-    from tester.run.kinds import checked_recipe, load_rig, recipe_part
-    from tester.run.materials import used_materials
+    from tester.inputs.recipe.reference_section import REFERENCE, ReferenceSection
+    from tester.run.kind_lookup import checked_recipe, load_rig, recipe_part
+    from tester.run.run_materials import used_materials
 
     path, name = recipe_file(recipe)
     rig = load_rig(rig_name, overrides, accept_risk)
@@ -138,10 +138,9 @@ def plan(
 ) -> None:
     """List the steps of RECIPE (a file, or the name of a packaged recipe) with durations and totals."""
     from tester.inputs.recipe.conditions import merged_of
-    from tester.inputs.recipe.describe import lines
-    from tester.inputs.recipe.estimate import estimate
     from tester.inputs.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines, known_slopes
     from tester.inputs.recipe.plan_json import json_chunks
+    from tester.inputs.recipe.plan_text import lines
     from tester.inputs.recipe.precision import (
         PrecisionError,
         precision_lines,
@@ -149,8 +148,9 @@ def plan(
         until_for_total,
         with_precision,
     )
-    from tester.run.kinds import checked_recipe, load_rig, recipe_part
-    from tester.run.materials import described_compounds
+    from tester.inputs.recipe.time_estimate import estimate
+    from tester.run.kind_lookup import checked_recipe, load_rig, recipe_part
+    from tester.run.run_materials import described_compounds
 
     if precision is not None and total is not None:
         raise click.UsageError("--precision and --total exclude each other")
@@ -172,7 +172,7 @@ def plan(
     pools: dict[str, Pool] = {}
     if _asks_precision(wanted):
         from tester.cli.history import repeatability
-        from tester.store.catalogue import RUNS
+        from tester.store.run_folders import RUNS
 
         compounds = dict.fromkeys(one.compound for one in wanted.specimens)
         pools = repeatability(out or RUNS, compounds, simulated=rig.simulated)
@@ -232,12 +232,12 @@ def schema(what: str) -> None:
     """Print the JSON Schema of recipes, or of compounds or surfaces, for editors and other programs."""
     if what != "recipe":
         from tester.base.section import editor_text
-        from tester.inputs.materials.schema import CompoundModel, SurfaceModel
+        from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 
         click.echo(editor_text(CompoundModel if what == "compound" else SurfaceModel), nl=False)
         return
     from tester import kinds
-    from tester.inputs.recipe.schema import schema_text
+    from tester.inputs.recipe.recipe_schema import schema_text
 
     part = kinds.find(kinds.DEFAULT).recipe
     assert part is not None

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.run_lookup import run_folder
+from tester.cli.options import run_folder
 
 if TYPE_CHECKING:
     from tester.report.charts import Material
-    from tester.report.record import RunRecord
+    from tester.report.record_section import RunRecord
 
 
 @click.command()
@@ -32,8 +32,8 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     """
     from tester.base.plugins import MissingExtraError
     from tester.cli.kind_words import material_of
-    from tester.report.build import report_of
     from tester.report.page import page_of
+    from tester.report.report_build import report_of
     from tester.results import write_file
 
     records = [_record(run_folder(name)) for name in dict.fromkeys(runs)]
@@ -54,9 +54,9 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
 def _record(folder: Path) -> RunRecord:
     """Return what is told of a run; raises ClickException where it cannot be read."""
     from tester.cli.kind_words import words_of
-    from tester.report.record import read_record
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.report.record_section import read_record
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     try:
         with RunReader(folder) as reader:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.words import Json, duration, finite
-from tester.cli.formatting import dump, shown
-from tester.cli.run_lookup import run_folder
+from tester.cli.options import run_folder
+from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
     from tester.results.formats import Format
@@ -41,8 +41,8 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
     compound, which any other piece of it comes with.
     """
     from tester.results.run_results import results_of
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     folder = run_folder(run)
     try:
@@ -64,7 +64,7 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
         dump(_summary(folder.name, results) | history)
         return
     if with_budget:
-        from tester.cli.budget import budget_lines
+        from tester.cli.budget_lines import budget_lines
 
         for text in budget_lines(results):
             click.echo(text)
@@ -111,7 +111,7 @@ def _trip(trip: StoredTrip) -> Json:
 
 
 def _summary(name: str, results: RunResults) -> dict[str, Json]:
-    from tester.cli.watch import watch_json
+    from tester.cli.watch_json import watch_json
     from tester.results.pieces_table import pieces_table
     from tester.results.tally import tally_of
 
@@ -148,7 +148,7 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
 
 def _conditions(results: RunResults) -> Iterator[Json]:
     """Yield the rows of the table of conditions, each with its budget and, but for a combined one, its repeats."""
-    from tester.results.budget import terms_table
+    from tester.results.budget_table import terms_table
     from tester.results.conditions_table import conditions_table
     from tester.results.repeats_table import repeats_table
 
@@ -253,8 +253,8 @@ def export(run: str, kind: Format, out: Path | None, decimals: int) -> None:
     """
     from tester.base.plugins import MissingExtraError
     from tester.results import Record, write_format
-    from tester.store.reader import RunReader
-    from tester.store.schema import StoreError
+    from tester.store.record_schema import StoreError
+    from tester.store.run_reader import RunReader
 
     if out is None and not kind.is_text:
         raise click.UsageError(f"{kind.name} is not text: name a file with --out")

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.words import Json, duration
-from tester.cli.formatting import dump, shown
-from tester.store.catalogue import RunStatus
+from tester.cli.text_table import dump, shown
+from tester.store.run_folders import RunStatus
 
 if TYPE_CHECKING:
     from tester.results.catalogue.entries import RunEntry
@@ -34,7 +34,7 @@ def runs(
     """
     from tester.results.catalogue import open_catalogue
     from tester.results.catalogue.entries import CatalogueError, WantedRuns, refresh
-    from tester.store.catalogue import RUNS
+    from tester.store.run_folders import RUNS
 
     under = out or RUNS
     wanted = WantedRuns(compound, _date(since, "--since"), _end_of(_date(until, "--until")), recipe)
@@ -64,7 +64,7 @@ def runs(
 def standing(run: RunEntry, under: Path) -> str:
     """Return a run's status and what goes with it, in words: by whom, how many values, how much is committed."""
     from tester.results.catalogue.entries import origin_of
-    from tester.store.catalogue import under_way
+    from tester.store.run_folders import under_way
 
     status = RunStatus(run.status)
     if status is RunStatus.DONE:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tester.service.address import Address
     from tester.service.client import Client
     from tester.service.commands import Action
-    from tester.service.state import StateView
+    from tester.service.state_view import StateView
 
 NO_SERVICE = "no service is running: start one with `tester serve`"
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
@@ -61,8 +61,8 @@ def serve(
     """
     from pathlib import Path
 
-    from tester.service.host import host
     from tester.service.service import ServiceOptions
+    from tester.service.service_process import host
 
     return host(ServiceOptions(rig_name, overrides, Path(out), accept_risk, allowed), address, port, notify)
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.formatting import dump
-from tester.cli.run_lookup import run_folder
+from tester.cli.options import run_folder
+from tester.cli.text_table import dump
 
 if TYPE_CHECKING:
     from tester.analysis.ring_runs import RingRun
@@ -47,7 +47,7 @@ def _ring_of(name: str) -> RingRun:
     """Return what a run has on record; raises ClickException where its machine has no ring."""
     from dataclasses import replace
 
-    from tester.run.kinds import ring_in
+    from tester.run.kind_lookup import ring_in
 
     found = ring_in(run_folder(name))
     if found is None:

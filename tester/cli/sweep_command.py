@@ -104,7 +104,7 @@ class _Printer:
 
     def ran(self, result: CaseResult, done: int) -> None:
         """Say how a run ended, and name what is missing."""
-        from tester.run.sweep.tables import row_record
+        from tester.run.sweep.sweep_tables import row_record
 
         record = {key: _json(value) for key, value in asdict(result).items() if key not in ("point", "rows")}
         record["set"] = dict(zip(self.keys, result.point, strict=True))

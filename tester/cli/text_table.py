@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
+import click
 from rich.cells import cell_len
 
-from tester.base.words import NONE
-from tester.cli.formatting import shown
+from tester.base.words import NONE, Json
 from tester.results.columns import R, Table
+
+
+def shown(text: str) -> str:
+    """Return text that a person or a device wrote, harmless for a terminal."""
+    return "".join(c if c.isprintable() else "�" for c in text)
+
+
+def dump(value: Json) -> None:
+    """Print JSON, indented."""
+    click.echo(json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1))
+
 
 WIDTH = 80
 """Columns of a terminal; remarks that do not fit get a line of their own."""

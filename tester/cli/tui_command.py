@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from tester.cli.options import rig_option
+from tester.cli.options import rig_option, run_folder
 from tester.cli.service_commands import connect_option
 
 MAX = "max"
@@ -104,3 +104,25 @@ def _serve(port: int, address: str) -> int:
     except ImportError:
         raise click.UsageError(needs("--web", "textual-serve", "web")) from None
     return 0
+
+
+@click.command()
+@click.argument("run")
+@click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours.")
+@click.option("--ascii", "plain", is_flag=True, help="Draw with ASCII characters only.")
+def replay(run: str, theme: str | None, plain: bool) -> int:
+    """Show RUN (a folder, a name under runs, or latest) as it went; space plays, arrows seek. No rig is needed."""
+    from tester.store.record_schema import StoreError
+    from tester.tui.playback import load
+    from tester.tui.replay import ReplayApp
+    from tester.tui.stored import read
+
+    folder = run_folder(run)
+    need_terminal("tester replay", "`tester show` needs none")
+    try:
+        playback, stored = load(folder), read(str(folder), folder.parent)
+    except StoreError as error:
+        raise click.ClickException(str(error)) from error
+    app = ReplayApp(playback, stored, plain=plain, theme=theme or "")
+    app.run()
+    return app.return_code or 0

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from tester.doctor.bus_watch import RigWatch, watched
 from tester.doctor.can_survey import CanSurvey, survey_can
 from tester.doctor.line_survey import LineSurvey, survey_line
+from tester.doctor.open_wires import Wires
 from tester.doctor.system import ComputerDoor
-from tester.doctor.watch import RigWatch, watched
-from tester.doctor.wires import Wires
 from tester.inputs.rig import Rig
 
 

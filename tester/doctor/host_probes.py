@@ -9,7 +9,7 @@ from typing import Any, cast
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
 from tester.inputs.rig import LineConfig
-from tester.inputs.rig.load import risks_of
+from tester.inputs.rig.rig_files import risks_of
 from tester.store.disk import CONTACT_ROWS_S, FIXED_BYTES, MARGIN, ROW_BYTES
 
 DAY_S = 8 * 3600.0

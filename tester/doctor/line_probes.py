@@ -7,11 +7,11 @@ from math import isfinite, nan
 from statistics import median
 
 from drivers.profiles.model import RegisterBlock, Signal, WordOrder
+from tester.doctor.bus_watch import UnitWatch
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
 from tester.doctor.line_survey import LineSurvey, UnitSurvey
-from tester.doctor.watch import UnitWatch
-from tester.inputs.rig.sensors import title_of
+from tester.inputs.rig.further_sensors import title_of
 
 READINGS_S = 40.0
 """Least rate of a device that is read in every scan, readings a second."""

@@ -9,8 +9,8 @@ from drivers.modbus.line import Parity
 from drivers.modbus.scan import LineAnswer, LineScan, RegisterQuestion
 from drivers.ports import BusLost, LinePort
 from drivers.profiles.model import DeviceProfile
+from tester.doctor.open_wires import Wires
 from tester.doctor.wanted import configuration
-from tester.doctor.wires import Wires
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 

@@ -9,9 +9,9 @@ from typing import Final, NamedTuple
 from zipfile import ZIP_DEFLATED, ZipFile
 
 from tester.doctor import can_probes, host_probes, line_probes
+from tester.doctor.device_parameters import dumped
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding
-from tester.doctor.parameters import dumped
 from tester.run.provenance import git_revision, library_versions
 
 Probe = Callable[[Examination], Iterator[Finding]]

@@ -85,8 +85,9 @@ def packaged_papers() -> tuple[Paper, ...]:
 
 
 def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
-    """Return the rig of a file, or the packaged one of that name; raises InvalidSource (tester.inputs.rig.load)."""
-    from tester.inputs.rig.load import load
+    """Return the rig of a file, or the packaged one of that name; raises InvalidSource
+    (tester.inputs.rig.rig_files)."""
+    from tester.inputs.rig.rig_files import load
 
     kind, tree = _opened(source)
     return load(kind.rig(), tree, overrides, accept_risk)
@@ -98,7 +99,7 @@ def load_rig_text(text: str | Path, name: str | None = None) -> Rig:
     Its risks were accepted when the run began, or are asked for where it goes on (tester.run.session).
     """
     from tester.base.source import load_tree
-    from tester.inputs.rig.load import checked
+    from tester.inputs.rig.rig_files import checked
 
     tree = load_tree(text, name or ("rig.yaml" if isinstance(text, str) else None))
     return checked(_kind_of(tree).rig(), tree)

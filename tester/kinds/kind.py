@@ -1,8 +1,8 @@
 """What a kind of rig brings: the list of everything that the rest of the program asks a kind for.
 
 A kind is a package: ``tester.kinds.<name>``, or a laboratory's own. Its ``KIND`` is found by name in one place
-(tester.kinds.find), and ``tester.run.kinds`` asks it for the rest of the program. Making a ``KIND`` imports nothing:
-what is large is behind a function.
+(tester.kinds.find), and ``tester.run.kind_lookup`` asks it for the rest of the program. Making a ``KIND`` imports
+nothing: what is large is behind a function.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tester.analysis.fit.part import FitPart
+    from tester.analysis.fit.fit_part import FitPart
     from tester.analysis.master_curve.points import MasterPart
     from tester.analysis.papers.item import Paper
-    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig
-    from tester.machine.commission.part import CommissionPart
+    from tester.machine.commission.commission_step import CommissionPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind

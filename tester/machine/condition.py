@@ -8,7 +8,7 @@ from tester.analysis.stability import REPEAT_WINDOWS
 from tester.inputs.recipe.plan import ConditionStep
 from tester.machine.context import AnyContext
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
-from tester.machine.results import MeasuredRepeat, StoredResults
+from tester.machine.result_keeping import MeasuredRepeat, StoredResults
 
 LAST: Final = (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED)
 """A repeat that ends so ends its condition."""

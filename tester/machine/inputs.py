@@ -11,8 +11,8 @@ from math import inf, nan
 from typing import Any, Final
 
 from tester.inputs.rig import Rig
+from tester.inputs.rig.further_sensors import further_channels
 from tester.inputs.rig.parameter import Values
-from tester.inputs.rig.sensors import further_channels
 from tester.machine.image import BaseDemand, BaseReadings
 from tester.machine.state import ControlState, Mode, StopProgress
 

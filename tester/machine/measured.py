@@ -7,7 +7,7 @@ from enum import Enum
 from math import nan
 
 from tester.analysis.results import RepeatStatus
-from tester.store.statements import Ticket
+from tester.store.sql import Ticket
 
 
 class Ending(Enum):

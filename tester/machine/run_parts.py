@@ -1,6 +1,6 @@
 """A kind's part of a run: how to build it, what to store beside its scan, what to learn from earlier runs.
 
-Types only. ``tester.run`` runs recipes through ``KindRun``; ``tester.run.kinds`` finds a rig's kind.
+Types only. ``tester.run`` runs recipes through ``KindRun``; ``tester.run.kind_lookup`` finds a rig's kind.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from tester.base.screen import Check
     from tester.inputs.recipe.plan import Plan
     from tester.inputs.rig import Rig
-    from tester.machine.ports import Ports
     from tester.machine.prompts import Prompts
+    from tester.machine.rig_ports import Ports
     from tester.machine.run import Run
     from tester.machine.served import History, Left
     from tester.store.recorder import Recorder
     from tester.store.records import Calibration
-    from tester.store.resume import ResumePoint
+    from tester.store.resumable import ResumePoint
 
 
 @dataclass(frozen=True, slots=True)

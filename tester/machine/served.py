@@ -1,7 +1,7 @@
 """A kind's answers to a service: the view of a run, the facts from past runs, and manual mode.
 
-A service looks at a run between two ticks and changes nothing by it. Types only; ``tester.run.kinds`` finds a rig's
-kind.
+A service looks at a run between two ticks and changes nothing by it. Types only; ``tester.run.kind_lookup`` finds a
+rig's kind.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from tester.inputs.rig import Rig
     from tester.machine.engine import Engine
     from tester.machine.manual import ManualExecutor
-    from tester.machine.ports import Ports
+    from tester.machine.rig_ports import Ports
     from tester.machine.run import Run
-    from tester.store.reader import RunReader
     from tester.store.recorder import Recorder
+    from tester.store.run_reader import RunReader
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from tester.analysis.uncertainty import Contribution
 from tester.base.axes import condition_words
 from tester.report.layout import Columns, Paragraph, Part, ReportRow, ReportSection, ReportTable, heads, rendered
-from tester.report.record import RunRecord
-from tester.results.budget import TermRow, budgeted_rows, sums, terms_of, terms_table
+from tester.report.record_section import RunRecord
+from tester.results.budget_table import TermRow, budgeted_rows, sums, terms_of, terms_table
 from tester.results.columns import Column, Output, Table
 from tester.results.conditions_table import ConditionRow, conditions_table
 

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from tester.analysis.master_curve.made import Master
+from tester.analysis.master_curve.fitted_curve import Master
 from tester.report.chart import Chart, ChartPanel, Look, Series
 from tester.report.charts import Y_LABEL
 

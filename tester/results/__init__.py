@@ -9,7 +9,7 @@ from tester.results.formats import FORMATS, Format, Record
 from tester.results.manifest import MANIFEST, manifest_text
 from tester.results.run_results import TableRow, results_of
 from tester.store.disk import write_whole
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 
 def write_file(path: Path, chunks: Iterable[bytes]) -> None:

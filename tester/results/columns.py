@@ -16,7 +16,7 @@ from typing import Generic, TypeAlias, TypeVar
 from tester.base.axes import Axes, Axis
 from tester.base.quantities import Channel, Means
 from tester.base.words import NONE, Json, decimal, significant
-from tester.results.cells import Cell, nominal
+from tester.results.table_cells import Cell, nominal
 from tester.store.records import ConditionInfo
 
 Value: TypeAlias = str | int | float | tuple[str, ...] | None

@@ -16,7 +16,7 @@ from tester.analysis.counts import Counts
 from tester.analysis.flags import flags_in
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN, mark_of
-from tester.analysis.wear import ConditionWear
+from tester.analysis.wear_rate import ConditionWear
 from tester.base.axes import Axis
 from tester.base.quantities import Means
 from tester.results.columns import Column, Output, Table, Value, mean_column, setting_columns

@@ -15,8 +15,8 @@ from tester.results import write_all
 from tester.results.formats import FORMATS
 from tester.results.manifest import MANIFEST, manifest_problems
 from tester.store.amend import add_exclusion, standing
-from tester.store.reader import DATABASE, RunReader
 from tester.store.records import StoredExclusion, StoredRepeat
+from tester.store.run_reader import DATABASE, RunReader
 
 MADE_ANEW = frozenset({DATABASE, *(kind.file for kind in FORMATS.values() if kind.kept is not None)})
 """Files of a run's folder that an exclusion changes, beside the manifest."""

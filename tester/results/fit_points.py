@@ -7,7 +7,7 @@ from math import inf, isfinite, sqrt
 from statistics import median
 from typing import Final, NamedTuple
 
-from tester.analysis.fit.law import Common, FitPoint, Source
+from tester.analysis.fit.fit_law import Common, FitPoint, Source
 from tester.analysis.flags import REFERENCE, flags_in
 from tester.analysis.kelvin import TEMPERATURE_SENSITIVITY
 from tester.analysis.measurand import REPEATABILITY

@@ -13,17 +13,17 @@ from functools import cached_property
 from typing import BinaryIO
 
 from tester.base.plugins import PluginError, plugins
-from tester.results.budget import budget_table
-from tester.results.cells import Cell, encode
-from tester.results.directions import directions_table
+from tester.results.budget_table import budget_table
+from tester.results.directions_table import directions_table
 from tester.results.parquet import write_parquet
 from tester.results.pieces_table import checks_table, pieces_table
 from tester.results.references_table import references_table
 from tester.results.repeats_table import repeats_table
 from tester.results.run_results import RunResults, results_of
 from tester.results.settings_table import settings_table
+from tester.results.table_cells import Cell, encode
 from tester.results.tables import appendix_rows, condition_rows, marked, sample_rows
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 
 @dataclass(frozen=True)

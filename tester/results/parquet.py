@@ -10,8 +10,8 @@ from typing import BinaryIO, Protocol, cast
 from tester.base.quantities import Channel
 from tester.results.tables import OWNER, RISK_COLUMN
 from tester.store.arrow import arrow_module
-from tester.store.reader import RunReader, SampleBlock
 from tester.store.records import StoredRepeat
+from tester.store.run_reader import RunReader, SampleBlock
 
 _BLOCKS_PER_GROUP = 128
 """Row groups of up to 65,536 samples: 13 MB in memory."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Final
 
-from tester.analysis.wear import WearCheck, WearRate
+from tester.analysis.wear_rate import WearCheck, WearRate
 from tester.base.words import duration
 from tester.results.columns import Column, Output, Table, piece_key
 from tester.results.run_results import RunResults

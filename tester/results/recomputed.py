@@ -16,8 +16,8 @@ from tester.analysis.results import RepeatResult, RepeatStatus
 from tester.analysis.swing import swing_of
 from tester.analysis.trace import Trace
 from tester.results.formats import FORMATS, Record
-from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredRepeat
+from tester.store.run_reader import RunReader
 
 TOLERANCE = 1e-9
 """Relative. Doubles are stored bit by bit; a mean over a revolution is summed in another order, and merged parts have

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tester.analysis.ring_runs import RingRun
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 
 @dataclass(frozen=True, slots=True)

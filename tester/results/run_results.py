@@ -23,16 +23,16 @@ from tester.analysis.reference import (
 )
 from tester.analysis.repeats import ConditionResult, combine_replicates
 from tester.analysis.results import ConditionStatus, SoakCheck
-from tester.analysis.wear import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
+from tester.analysis.wear_rate import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
 from tester.base.axes import Axes, condition_words
 from tester.base.quantities import Quantities
 from tester.base.words import coefficient
-from tester.results.settings import RepeatedSetting, SettingsOf, in_doubt
+from tester.results.settings_compared import RepeatedSetting, SettingsOf, in_doubt
 from tester.results.surroundings import Reduced, SurroundingsOf
 from tester.store.amend import standing
-from tester.store.catalogue import RunStatus, run_status, under_way
-from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, PieceInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
+from tester.store.run_folders import RunStatus, run_status, under_way
+from tester.store.run_reader import RunReader
 
 
 @dataclass(frozen=True, slots=True)

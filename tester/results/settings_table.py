@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from tester.analysis.difference import Difference
-from tester.analysis.settings import SettingMeasurement, difference_of
+from tester.analysis.repeated_settings import SettingMeasurement, difference_of
 from tester.results.columns import Column, Table, axis_column, piece_key
 from tester.results.run_results import RunResults
-from tester.results.settings import RepeatedSetting
+from tester.results.settings_compared import RepeatedSetting
 from tester.store.records import ConditionInfo
 
 

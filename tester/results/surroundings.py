@@ -13,12 +13,12 @@ from tester.analysis.repeats import REPEATABILITY, ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
 from tester.analysis.uncertainty import Pool
-from tester.analysis.wear import WearCheck
+from tester.analysis.wear_rate import WearCheck
 from tester.analysis.worn import Worn
 from tester.base.axes import AxisValue, Setpoint
-from tester.store.reader import RunReader
+from tester.store.record_schema import StoreError
 from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun, Travel
-from tester.store.schema import StoreError
+from tester.store.run_reader import RunReader
 
 _Held = tuple[str, tuple[AxisValue, ...]]
 """Common to conditions of a pair: the compound, and every axis but temperature."""

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isnan
 
-from tester.results.cells import Cell, Number, exact, nominal
 from tester.results.conditions_table import conditions_table
 from tester.results.run_results import RunResults
-from tester.store.reader import RunReader
+from tester.results.table_cells import Cell, Number, exact, nominal
 from tester.store.records import RunInfo
+from tester.store.run_reader import RunReader
 
 HEAD_COLUMN = "record_head"
 RISK_COLUMN = "accepted_risk"

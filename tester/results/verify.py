@@ -18,12 +18,12 @@ from tester.results.recomputed import coefficient_problems, table_problems
 from tester.results.run_results import RunResults
 from tester.store.amend import problems as exclusion_problems
 from tester.store.amend import standing
-from tester.store.catalogue import RunStatus, under_way
 from tester.store.chain import ChainFound
-from tester.store.reader import RunReader
+from tester.store.record_schema import StoreError
 from tester.store.records import StoredExclusion, StoredRun
-from tester.store.schema import StoreError
-from tester.store.statements import calibration_sha256, text_sha256
+from tester.store.run_folders import RunStatus, under_way
+from tester.store.run_reader import RunReader
+from tester.store.sql import calibration_sha256, text_sha256
 
 LISTED = 5
 """Most of the rows newer than a kept head that are named."""

@@ -17,7 +17,7 @@ from tester.machine.prompts import DONE, Prompt, Prompts
 from tester.machine.time_left import RunPosition
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 STOPS: Final = frozenset({STOP.command, FAST_STOP.command})
 COMMANDS: Final = frozenset(meaning.command for meaning in MEANINGS)

@@ -15,12 +15,11 @@ from tester.base.lock import ExclusiveUse, RigInUseError, user
 from tester.base.processes import handled
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.rig import Rig
-from tester.machine.commission.engine import Commissioning, CommissionOutcome
-from tester.machine.commission.onlooker import Onlooker
-from tester.machine.commission.part import AtTheTwin, CommissionPart
+from tester.machine.commission.commission_step import AtTheTwin, CommissionPart
 from tester.machine.commission.person import Person
-from tester.machine.commission.record import FOLDER, CommissionRecord, record_path
-from tester.machine.ports import Ports
+from tester.machine.commission.record import FOLDER, CommissionRecord, Onlooker, record_path
+from tester.machine.commission.step_engine import Commissioning, CommissionOutcome
+from tester.machine.rig_ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.run.commission_run import run_recipe
 from tester.run.endings import CannotStartError

@@ -9,20 +9,20 @@ from math import fsum
 from pathlib import Path
 
 from tester.base import clock
-from tester.inputs.recipe.estimate import Estimate
 from tester.inputs.recipe.plan import Plan
-from tester.inputs.recipe.schema import Recipe
+from tester.inputs.recipe.recipe_schema import Recipe
+from tester.inputs.recipe.time_estimate import Estimate
 from tester.inputs.rig import Rig
-from tester.machine.results import condition_records
+from tester.machine.result_keeping import condition_records
 from tester.machine.run_parts import Part
 from tester.machine.served import History
 from tester.machine.time_left import Earlier, PartTime
 from tester.run.endings import CannotStartError
-from tester.run.kinds import checked_recipe, load_rig_text, recipe_part, run_parts
+from tester.run.kind_lookup import checked_recipe, load_rig_text, recipe_part, run_parts
 from tester.run.set_up import GoodRun
 from tester.store.disk import write_text
 from tester.store.records import RunInfo, SpecimenInfo
-from tester.store.resume import ResumePoint
+from tester.store.resumable import ResumePoint
 from tester.store.writer import RunWriter
 
 PARTS = "parts"

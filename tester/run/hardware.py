@@ -11,7 +11,7 @@ from drivers.transports.tcp_line import TcpLine, open_tcp_line
 from tester.base.clock import UrgentPace
 from tester.base.processes import RealTimePriority
 from tester.inputs.rig import LineConfig, Rig
-from tester.machine.ports import Ports
+from tester.machine.rig_ports import Ports
 from tester.run.bus_log import BusLog
 
 CATCH_UP_S = 0.002

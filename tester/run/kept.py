@@ -13,7 +13,7 @@ from drivers.canopen.dictionary import DICTIONARY
 from drivers.canopen.scan import Key, SdoScan
 from drivers.ports import BusLost
 from tester.inputs.rig import Rig
-from tester.machine.ports import Ports
+from tester.machine.rig_ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.store.recorder import Recorder
 

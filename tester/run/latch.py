@@ -17,10 +17,10 @@ from tester.inputs.rig import Rig
 from tester.results import write_all
 from tester.results.manifest import MANIFEST, manifest_problems
 from tester.store.amend import acknowledge_trips
-from tester.store.catalogue import run_folders, under_way
-from tester.store.reader import RunReader
+from tester.store.record_schema import StoreError
 from tester.store.records import StoredTrip
-from tester.store.schema import StoreError
+from tester.store.run_folders import run_folders, under_way
+from tester.store.run_reader import RunReader
 
 MANUAL_RUNS = ".manual"
 """Folder beside the runs for the journals of manual mode."""

@@ -12,13 +12,13 @@ from shutil import rmtree
 from tester.base import clock
 from tester.base.quantities import Quantities
 from tester.base.trouble import in_words
-from tester.inputs.rig.sensors import quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.run.endings import PartEnd, RunEnding, StopLevel, ending_of
 from tester.run.folder import PARTS, Begin, Job, Work
 from tester.store.disk import sync_folder
 from tester.store.merge import Merge
-from tester.store.reader import DATABASE
-from tester.store.schema import NotBegunError, StoreError
+from tester.store.record_schema import NotBegunError, StoreError
+from tester.store.run_reader import DATABASE
 from tester.store.writer import RunWriter
 
 MERGED = "parts.merged"

@@ -12,10 +12,10 @@ from tester.base import clock
 from tester.base.clock import Pace
 from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
-from tester.inputs.rig.sensors import quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.attendant import NoAttendant
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.run import Outcome, Run
 from tester.machine.run_parts import Part
 from tester.machine.tickers import Ticked, TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
@@ -24,11 +24,11 @@ from tester.run.bus_log import BusLog
 from tester.run.endings import PartEnd
 from tester.run.folder import Begin, Job, Work
 from tester.run.kept import record_kept
-from tester.run.kinds import run_parts
+from tester.run.kind_lookup import run_parts
 from tester.run.provenance import record_parameters, record_statistics
 from tester.run.set_up import GoodRun
 from tester.run.simulated import Witnessed, truth_of
-from tester.store.reader import DATABASE
+from tester.store.run_reader import DATABASE
 from tester.store.writer import RESERVE_BYTES, RunWriter
 
 if TYPE_CHECKING:

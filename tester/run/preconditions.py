@@ -9,16 +9,16 @@ from pathlib import Path
 from recipes import find
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
 from tester.base.processes import EXIT_INVALID
-from tester.inputs.recipe.estimate import Estimate
 from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.time_estimate import Estimate
 from tester.inputs.rig import Rig
 from tester.inputs.rig.checks import other_settings
 from tester.machine.run import Outcome
 from tester.run.endings import EXIT_CODES, CannotStartError
 from tester.run.folder import Work, work_of
-from tester.run.kinds import checked_recipe, load_rig, recipe_part
-from tester.run.materials import UsedMaterials, used_materials
+from tester.run.kind_lookup import checked_recipe, load_rig, recipe_part
+from tester.run.run_materials import UsedMaterials, used_materials
 from tester.store.disk import expected_bytes, too_little_room
 
 

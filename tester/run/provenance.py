@@ -22,12 +22,12 @@ from tester.inputs.recipe.foreseen import known_slopes
 from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
-from tester.inputs.rig.load import risks_of
+from tester.inputs.rig.further_sensors import title_of
 from tester.inputs.rig.profiles import profile_of
-from tester.inputs.rig.sensors import title_of
+from tester.inputs.rig.rig_files import risks_of
 from tester.machine.devices import DeviceList
 from tester.run.kept import object_key
-from tester.run.kinds import recipe_part, run_parts, served_kind
+from tester.run.kind_lookup import recipe_part, run_parts, served_kind
 from tester.run.set_up import GoodRun
 from tester.store.recorder import Recorder
 from tester.store.records import (

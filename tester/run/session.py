@@ -20,9 +20,9 @@ from tester.base.words import plain_text
 from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.rig import Rig
 from tester.inputs.rig.ceilings import counts_as_simulated
-from tester.inputs.rig.load import risks_of
+from tester.inputs.rig.rig_files import risks_of
 from tester.machine.prompts import Prompts
-from tester.machine.results import condition_records
+from tester.machine.result_keeping import condition_records
 from tester.machine.run import Outcome, Run
 from tester.machine.run_parts import Part
 from tester.machine.tickers import TickStatistics
@@ -41,21 +41,21 @@ from tester.run.folder import (
     specimens_of,
     write_sources,
 )
-from tester.run.kinds import run_parts
+from tester.run.kind_lookup import run_parts
 from tester.run.latch import acknowledge, open_trips
-from tester.run.materials import KeptFile, kept_files, write_materials
 from tester.run.merge_parts import put_together, recover
 from tester.run.part_run import run_part
 from tester.run.pool import WorkerPool
 from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, prepared, told_before
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.run.reporter import LastingScreen, ReportScreen
-from tester.run.resume import prepare
+from tester.run.resumed_run import prepare
+from tester.run.run_materials import KeptFile, kept_files, write_materials
 from tester.run.set_up import last_good_run
 from tester.run.workers import Sight, side_by_side
-from tester.store.catalogue import MANIFEST, WENT_THROUGH, cut_off
-from tester.store.reader import DATABASE, RunReader
-from tester.store.schema import StoreError
+from tester.store.record_schema import StoreError
+from tester.store.run_folders import MANIFEST, WENT_THROUGH, cut_off
+from tester.store.run_reader import DATABASE, RunReader
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")

@@ -25,7 +25,7 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.config import OneRig
 from tester.machine.tickers import collector_at_rest
 from tester.run.bus_log import BusLog
-from tester.run.kinds import load_rig, run_parts
+from tester.run.kind_lookup import load_rig, run_parts
 from tester.run.sim_console import RigClock, SimConsole, SpoiledLife
 from tester.run.simulated import simulated_ports
 

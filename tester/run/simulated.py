@@ -15,9 +15,9 @@ from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import DeviceConfig, Rig
 from tester.inputs.rig.profiles import profile_of
-from tester.machine.ports import Ports
+from tester.machine.rig_ports import Ports
 from tester.run.bus_log import BusLog
-from tester.run.kinds import run_parts
+from tester.run.kind_lookup import run_parts
 from tester.store.recorder import Recorder
 
 

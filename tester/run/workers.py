@@ -16,7 +16,7 @@ from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import RunPosition, TimeLeft
 from tester.run.endings import PartEnd, StopLevel
 from tester.run.folder import Job, Work, beginning_of, part_time, read_work
-from tester.run.kinds import recipe_part
+from tester.run.kind_lookup import recipe_part
 from tester.run.part_run import run_part
 from tester.run.pool import WorkerPool, say, stop_level
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from tester.service.state import Alarm
+from tester.service.state_view import Alarm
 
 Priority = Literal[1, 2, 3]
 

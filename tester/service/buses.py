@@ -10,7 +10,7 @@ from drivers.servo import ServoDrive
 from tester.inputs.rig import Rig
 from tester.machine.devices import DeviceList
 from tester.machine.field_device import FieldDevice
-from tester.service.state import BusView, DeviceView
+from tester.service.state_view import BusView, DeviceView
 
 
 @runtime_checkable

@@ -45,7 +45,7 @@ from tester.service.protocol import (
     encode,
     from_server,
 )
-from tester.service.state import PlanView, StateView
+from tester.service.state_view import PlanView, StateView
 from tester.service.stop_call import takes_stop
 
 MAX_INCOMING = 64 * 1024 * 1024

@@ -16,7 +16,7 @@ from tester.service.commands import (
     Stop,
     Tare,
 )
-from tester.service.link import Order
+from tester.service.service_link import Order
 from tester.service.state_publisher import Desk
 
 

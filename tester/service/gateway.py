@@ -38,7 +38,6 @@ from tester.service.commands import (
     WatchFrames,
 )
 from tester.service.hook import Hook
-from tester.service.link import GatewayEnd, Order, Presence
 from tester.service.manners import MOST_CLIENTS, Bucket, Strangers
 from tester.service.outbox import Outbox
 from tester.service.protocol import (
@@ -54,6 +53,7 @@ from tester.service.protocol import (
     to_server,
 )
 from tester.service.queries import Queries, QueryError
+from tester.service.service_link import GatewayEnd, Order, Presence
 
 EVENTS_AT_FIRST = 200
 """Events in the ``hello`` to a client that has seen none."""

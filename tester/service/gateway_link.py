@@ -21,9 +21,9 @@ from tester.base.screen import MachineView
 from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
 from tester.service.child_socket import spawn
 from tester.service.gateway_process import SETTINGS, GatewaySettings
-from tester.service.link import LinkLost, Order, OwnerEnd, Presence
 from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Accepted, Event, Frames, Refused, encode
-from tester.service.state import ClientsView, PlanView, StateView
+from tester.service.service_link import LinkLost, Order, OwnerEnd, Presence
+from tester.service.state_view import ClientsView, PlanView, StateView
 from tester.service.stop_lane import StopLane
 
 AGAIN_S = 1.0

@@ -17,10 +17,10 @@ from tester.service.address import TcpAddress, UnixAddress, write_card
 from tester.service.child_socket import link_of
 from tester.service.gateway import Gateway
 from tester.service.hook import Hook
-from tester.service.link import MOST_QUEUED
 from tester.service.listening import CLOSE_S, listening
 from tester.service.manners import sparse_logger
 from tester.service.queries import Queries
+from tester.service.service_link import MOST_QUEUED
 
 NICE = 5
 """Lower priority than the ticking process and STOP's door: busy clients may keep the gateway busy."""

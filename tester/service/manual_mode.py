@@ -8,18 +8,18 @@ from pathlib import Path
 
 from tester.base import clock
 from tester.inputs.rig import Rig
-from tester.inputs.rig.sensors import quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.manual import NAME
 from tester.machine.served import Left, ServedKind
 from tester.run.folder import make_folder
-from tester.run.kinds import recipe_part
+from tester.run.kind_lookup import recipe_part
 from tester.run.latch import MANUAL_RUNS, made_on
 from tester.run.part_run import Unsampled
 from tester.run.provenance import accepted_risks
-from tester.store.catalogue import run_folders
-from tester.store.reader import DATABASE, RunReader
+from tester.store.record_schema import StoreError
 from tester.store.records import RunInfo
-from tester.store.schema import StoreError
+from tester.store.run_folders import run_folders
+from tester.store.run_reader import DATABASE, RunReader
 from tester.store.writer import RunWriter
 
 

@@ -17,10 +17,10 @@ from tester.base.screen import Check
 from tester.inputs.rig import CalibrationConfig, Rig
 from tester.machine.served import History, Left, ServedKind
 from tester.results.run_results import results_of
-from tester.service.state import Alarm, DiskView
-from tester.store.catalogue import RunStatus, run_folders
-from tester.store.reader import RunReader
-from tester.store.schema import StoreError
+from tester.service.state_view import Alarm, DiskView
+from tester.store.record_schema import StoreError
+from tester.store.run_folders import RunStatus, run_folders
+from tester.store.run_reader import RunReader
 
 SOON = timedelta(days=30)
 """A certificate that ends within this time is shown with its date [A]: a laboratory wants weeks for a calibration."""

@@ -16,7 +16,7 @@ from pydantic_core import from_json
 
 from tester.base.screen import MachineView
 from tester.service.commands import VERSION, ClientMessage, Command, Join, Stop
-from tester.service.state import PlanView, StateView
+from tester.service.state_view import PlanView, StateView
 
 SNAPSHOT_S = 0.25
 """Period of snapshots, s of wall time."""

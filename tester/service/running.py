@@ -9,7 +9,7 @@ from types import FrameType
 from typing import Final, TypeVar, cast
 
 from tester.base import clock
-from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.time_estimate import Estimate
 from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
@@ -17,12 +17,12 @@ from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import RunPosition
 from tester.run.endings import CannotStartError, StopLevel
 from tester.run.folder import Begin, Job, Work, earlier_of, parts_time
-from tester.run.kinds import recipe_part, served_kind
+from tester.run.kind_lookup import recipe_part, served_kind
 from tester.run.preconditions import Prepared
 from tester.run.session import Session, SessionOptions
 from tester.service.planning import Task, planned
-from tester.service.state import RunView, TickView
 from tester.service.state_publisher import Desk
+from tester.service.state_view import RunView, TickView
 from tester.service.values import PlanTrack
 from tester.store.disk import expected_bytes
 

@@ -25,7 +25,7 @@ from tester.machine.run import Outcome, Run
 from tester.machine.tickers import TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
 from tester.run.endings import CannotStartError
 from tester.run.folder import part_time
-from tester.run.kinds import load_rig, run_parts
+from tester.run.kind_lookup import load_rig, run_parts
 from tester.run.part_run import closed_early, connect_ports, left_safe
 from tester.run.preconditions import hold_rig
 from tester.run.session import SessionOptions
@@ -36,16 +36,16 @@ from tester.service.commands import (
     RunRecipe,
 )
 from tester.service.gateway_link import GatewayLink
-from tester.service.link import Order
 from tester.service.manual_mode import left_on_rig, open_record
 from tester.service.preflight import past_of
 from tester.service.running import RunScreen, ServiceSession, aside
-from tester.service.state import RunView
+from tester.service.service_link import Order
 from tester.service.state_publisher import Desk
+from tester.service.state_view import RunView
 from tester.service.values import PlanTrack
-from tester.store.catalogue import RunStatus, find_run, run_status, under_way
-from tester.store.reader import DATABASE, RunReader
-from tester.store.schema import StoreError
+from tester.store.record_schema import StoreError
+from tester.store.run_folders import RunStatus, find_run, run_status, under_way
+from tester.store.run_reader import DATABASE, RunReader
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")

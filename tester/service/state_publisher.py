@@ -13,19 +13,19 @@ from tester.inputs.rig import Rig
 from tester.machine.manual import ManualExecutor
 from tester.machine.run import Outcome, Run
 from tester.machine.served import History, ServedKind
-from tester.run.kinds import served_kind
+from tester.run.kind_lookup import served_kind
 from tester.run.latch import acknowledge, open_trips
 from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
 from tester.service.gateway_link import GatewayLink
-from tester.service.link import Order
 from tester.service.preflight import Past, known_checks
 from tester.service.protocol import SNAPSHOT_S
-from tester.service.state import DiskView, ManualView, ProgressView, RunView, StateView, TickView
+from tester.service.service_link import Order
+from tester.service.state_view import DiskView, ManualView, ProgressView, RunView, StateView, TickView
 from tester.service.values import PlanTrack, trend_row, unknown_values
 from tester.service.watch import RunWatch, risk_of
 from tester.store.disk import MARGIN, FreeRoom
-from tester.store.schema import StoreError
+from tester.store.record_schema import StoreError
 
 UNWATCHED_S = 1.0
 """Period of states without any client, s: the gateway's trend continues at a rate that costs nothing."""

@@ -11,12 +11,12 @@ from tester.base.quantities import LAST, Channel, Quantities, Screen
 from tester.base.screen import Quality, Value
 from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.inputs.rig import Rig
-from tester.inputs.rig.sensors import further_sensors, quantities_on
+from tester.inputs.rig.further_sensors import further_sensors, quantities_on
 from tester.machine.engine import Engine
 from tester.machine.sampler import values_at
 from tester.machine.served import MachinePanel, News, ServedKind, Wanted
 from tester.machine.time_left import STANDSTILL, Earlier, PartTime, TimeLeft
-from tester.service.state import PlanStep, PlanView, StepState
+from tester.service.state_view import PlanStep, PlanView, StepState
 
 CONTACT_N = 20.0
 """Below this normal force a friction coefficient is noise [A]."""

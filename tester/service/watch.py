@@ -12,7 +12,7 @@ from drivers.ports import CanPort, LinePort, Unwatch
 from tester.base import clock
 from tester.base.screen import Check, Gate, SoakView, Value
 from tester.inputs.rig import Rig
-from tester.inputs.rig.load import risks_of
+from tester.inputs.rig.rig_files import risks_of
 from tester.machine.connect import Stage
 from tester.machine.run import Run
 from tester.machine.served import ServedKind
@@ -20,7 +20,7 @@ from tester.machine.state import ControlState, Mode
 from tester.service.alarms import AlarmList, Cause
 from tester.service.buses import BusWatch
 from tester.service.protocol import Frame, Frames
-from tester.service.state import ProgressView, PromptView
+from tester.service.state_view import ProgressView, PromptView
 from tester.service.values import PlanTrack, ValueView
 
 MOST = 200

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from tester.base.trouble import in_words
 from tester.store.chain import Chain
-from tester.store.reader import DATABASE
+from tester.store.record_schema import StoreError, migrate
 from tester.store.records import StoredExclusion, StoredRepeat
-from tester.store.schema import StoreError, migrate
+from tester.store.run_reader import DATABASE
 
 
 @contextmanager

@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from tester.base.plugins import MissingExtraError, needs
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 
 class ArrowTable(Protocol):

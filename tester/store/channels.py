@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import Any
 
 from tester.base.quantities import Channel, Figure, Quantities, Roles, Screen
-from tester.store.statements import Value, insert
+from tester.store.sql import Value, insert
 
 COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "whole", "shown_name", "shown_unit",
            "scale", "role", "block", "screen")  # fmt: skip

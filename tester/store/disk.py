@@ -9,8 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
-from tester.inputs.recipe.estimate import Estimate
 from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.time_estimate import Estimate
 
 ROW_BYTES = 60.0
 """Size of a recorded sample in its block, with its share of the log and of the tables (measured: 38 to 55)."""

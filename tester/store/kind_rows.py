@@ -10,7 +10,7 @@ from typing import Any, cast
 from tester.analysis.kelvin import KnownSlope
 from tester.analysis.terms import Acts, Term
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
-from tester.store.statements import Statement, Value, insert
+from tester.store.sql import Statement, Value, insert
 
 _COLUMNS = {"column": "column_name", "default": "default_value"}
 """Fields of an axis whose names are reserved words of SQL."""

@@ -21,9 +21,9 @@ from tester.analysis.results import Judgement
 from tester.base.quantities import KEY, TIME, Quantities
 from tester.store.chain import Chain
 from tester.store.channels import recorded_channels
-from tester.store.reader import DATABASE, RunReader
+from tester.store.record_schema import NotBegunError, StoreError, migrate
+from tester.store.run_reader import DATABASE, RunReader
 from tester.store.sample_blocks import unpack_array
-from tester.store.schema import NotBegunError, StoreError, migrate
 
 Cell = str | int | float | bytes | None
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus, SoakCheck
-from tester.analysis.wear import WearCheck
+from tester.analysis.wear_rate import WearCheck
 from tester.store.kind_rows import axis_rows, budget_rows, setpoint_columns
 from tester.store.records import (
     NAN,
@@ -24,7 +24,7 @@ from tester.store.records import (
     StoredMaterial,
     Travel,
 )
-from tester.store.statements import (
+from tester.store.sql import (
     Batch,
     Judged,
     Statement,

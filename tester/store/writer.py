@@ -31,10 +31,10 @@ from tester.base.trouble import in_words
 from tester.store.chain import Chain
 from tester.store.channels import add_channels, recorded_channels
 from tester.store.disk import sync_folder
+from tester.store.record_schema import StoreError, migrate, version_of
 from tester.store.recorder import NullRecorder, Recorder, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
-from tester.store.schema import StoreError, migrate, version_of
-from tester.store.statements import Batch, Judged, Ticket
+from tester.store.sql import Batch, Judged, Ticket
 
 COMMIT_EVERY_S = 0.7
 """Longest wait of a sample for the start of its commit, by the wall clock: a second less the time of a slow disk and a

@@ -16,21 +16,21 @@ from textual.widgets import ContentSwitcher
 from tester.base import clock
 from tester.base.processes import tester_command
 from tester.base.source import InvalidSource
-from tester.run.kinds import load_rig
+from tester.run.kind_lookup import load_rig
 from tester.service.commands import Acknowledge, Hold, ListRuns, Release, TakeControl
-from tester.service.state import RunView, StateView
+from tester.service.state_view import RunView, StateView
 from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
 from tester.tui.dialogs.dialog import Dialog, TextDialog
-from tester.tui.dialogs.resume import ResumeDialog, resumable
+from tester.tui.dialogs.resume_dialog import ResumeDialog, resumable
 from tester.tui.gone import SMALLEST, TITLE, SmallPanel, death_text
 from tester.tui.host import HostApp, Keys, TuiOptions, View
 from tester.tui.pages.bus import BusPage
-from tester.tui.pages.manual import ManualPage
+from tester.tui.pages.manual_page import ManualPage
 from tester.tui.pages.recipes import RecipesView
-from tester.tui.pages.results import ResultsView
-from tester.tui.pages.ring import RingPage
-from tester.tui.pages.run import RunPage as RunScreen
-from tester.tui.scene import UNDER_WAY
+from tester.tui.pages.results_page import ResultsView
+from tester.tui.pages.ring_page import RingPage
+from tester.tui.pages.run_page import RunPage as RunScreen
+from tester.tui.screen_scene import UNDER_WAY
 from tester.tui.theme import CSS, THEMES
 from tester.tui.widgets.head import RING, TABS, KeyLine, StateLine, TabLine, Tabs
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tester.tui.formatting import clean, fit
-from tester.tui.scene import ScreenScene
-from tester.tui.widgets.panel import Panel, Parts, rows
+from tester.tui.screen_scene import ScreenScene
+from tester.tui.widgets.panel_base import Panel, Parts, rows
 
 TITLE = "The service has died"
 SHORT = "the service has died: nothing controls the rig. Use the machine's own stop"

@@ -21,15 +21,15 @@ from tester.service.address import Address
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
-from tester.service.state import RunView
+from tester.service.state_view import RunView
 from tester.service.stop_call import NotTakenError
 from tester.tui.formatting import clean
 from tester.tui.gone import farewell, stop_failed
-from tester.tui.scene import ScreenScene
+from tester.tui.screen_scene import ScreenScene
 from tester.tui.starting import start_service
 from tester.tui.stop_line import StopLine, stopping
 from tester.tui.theme import LookApp
-from tester.tui.widgets.panel import Panel
+from tester.tui.widgets.panel_base import Panel
 
 TICK_S = 0.5
 """Period for updating the age of the data shown, s."""

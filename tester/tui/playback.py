@@ -14,9 +14,9 @@ from tester.base.quantities import Channel, Quantities
 from tester.base.screen import MachineView, PlotView, Value, trend_columns
 from tester.machine.served import Wanted
 from tester.results.run_results import results_of
-from tester.run.kinds import load_rig_text, served_kind
+from tester.run.kind_lookup import load_rig_text, served_kind
 from tester.service.protocol import Event
-from tester.service.state import (
+from tester.service.state_view import (
     ClientsView,
     DiskView,
     ManualView,
@@ -26,11 +26,11 @@ from tester.service.state import (
     TickView,
 )
 from tester.service.values import NOTHING_WANTED, Spec, friction, screen_of, specs, trend_row
-from tester.store.reader import RunReader
 from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
+from tester.store.run_reader import RunReader
 from tester.tui.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
-from tester.tui.scene import ScreenScene
-from tester.tui.widgets.trends import WINDOW_S
+from tester.tui.screen_scene import ScreenScene
+from tester.tui.widgets.trends_panel import WINDOW_S
 
 SPACING_S = 0.25
 """Spacing of the samples kept, rig seconds; wider if there would be more than MOST."""

@@ -9,7 +9,7 @@ from math import ceil
 
 from tester.machine.time_left import STANDSTILL
 from tester.service.protocol import Event
-from tester.service.state import PlanStep, PlanView, StepState
+from tester.service.state_view import PlanStep, PlanView, StepState
 
 _STOPS = re.compile(r"(run|hold) -> (?!run\b|hold\b)")
 """Start of the event text for a change of mode that ends a run, or a part of it."""

@@ -13,14 +13,14 @@ from textual.widget import Widget
 from tester.base.words import duration
 from tester.tui.app import TesterApp
 from tester.tui.host import Keys, TuiOptions, View
-from tester.tui.pages.results import ResultsView
-from tester.tui.pages.ring import RingPage
-from tester.tui.pages.run import RunPage
+from tester.tui.pages.results_page import ResultsView
+from tester.tui.pages.ring_page import RingPage
+from tester.tui.pages.run_page import RunPage
 from tester.tui.playback import Playback
-from tester.tui.scene import ScreenScene
+from tester.tui.screen_scene import ScreenScene
 from tester.tui.stored import Stored
 from tester.tui.widgets.head import RING, TABS, Tabs
-from tester.tui.widgets.panel import FAINT, Panel, Parts
+from tester.tui.widgets.panel_base import FAINT, Panel, Parts
 
 FRAME_S = 0.25
 SPEEDS = (1.0, 10.0, 60.0, 600.0)

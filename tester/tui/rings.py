@@ -9,9 +9,9 @@ from typing import Final
 
 from tester.analysis.ring_errors import RingSector
 from tester.analysis.ring_runs import RingRun, ages_of
-from tester.run.kinds import RingFound, of_one_rig, ring_in
-from tester.store.catalogue import run_folders, under_way
-from tester.store.schema import StoreError
+from tester.run.kind_lookup import RingFound, of_one_rig, ring_in
+from tester.store.record_schema import StoreError
+from tester.store.run_folders import run_folders, under_way
 
 MOST: Final = 200
 """Most runs read, the newest."""

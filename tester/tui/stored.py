@@ -14,9 +14,9 @@ from tester.results.conditions_table import ConditionRow, axis_keys, conditions_
 from tester.results.repeats_table import repeats_table
 from tester.results.run_results import RunResults, results_of
 from tester.results.tally import flag_words, tally_of
-from tester.store.catalogue import find_run
-from tester.store.reader import RunReader
 from tester.store.records import StoredExclusion
+from tester.store.run_folders import find_run
+from tester.store.run_reader import RunReader
 from tester.tui.plot import OTHER, SERIES, Bin, Point
 
 

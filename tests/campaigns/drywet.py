@@ -25,9 +25,9 @@ import recipes
 from sim.physics.greta import greta
 from tester.cli.main import invoke
 from tester.inputs.materials.library import Library
-from tester.results.components import FilmPair, SharesMean, film_pairs, means_of
+from tester.results.components_table import FilmPair, SharesMean, film_pairs, means_of
 from tester.results.run_results import results_of
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 SEEDS, SAMPLE_SEEDS = 20, 3
 SHARES = (0.6, 0.35, 0.6, 0.8)

@@ -27,7 +27,7 @@ import recipes
 from tester.base.axes import condition_words
 from tester.results.run_results import TableRow, results_of
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal
 from tests.campaigns.compiled.worker import Silent
 

@@ -18,9 +18,9 @@ from statistics import median
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from tester.analysis.wear import condition_wear, wear_rate
+from tester.analysis.wear_rate import condition_wear, wear_rate
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
 
 RATES = {0.02: 0.08, 0.08: 0.24, 0.24: 0.08}

@@ -15,7 +15,7 @@ from tester.cli.main import invoke
 from tester.inputs.recipe.loader import load_recipe
 from tester.kinds import find, load_rig, packaged_text
 from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.extension.counts import ROOT
 from tests.extension.installing import installed
 

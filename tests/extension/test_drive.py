@@ -16,7 +16,7 @@ from tester.base.plugins import ALLOW_VARIABLE, plugins
 from tester.base.source import InvalidSource
 from tester.cli.main import invoke
 from tester.kinds import load_rig, packaged_text
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.extension.installing import EXAMPLES, installed
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 

@@ -13,7 +13,7 @@ from tester.base.source import InvalidSource
 from tester.cli.main import invoke
 from tester.kinds import find, load_rig, load_rig_text, packaged_keys, packaged_text
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.extension.installing import installed
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 

@@ -18,8 +18,8 @@ from sim.faults.kinds import Expected
 from tester.base.plugins import plugins
 from tester.cli.main import invoke
 from tester.kinds import PACKAGED, find, load_rig
-from tester.run.kinds import run_parts, served_kind
-from tester.store.reader import RunReader
+from tester.run.kind_lookup import run_parts, served_kind
+from tester.store.run_reader import RunReader
 from tester.tui.playback import load
 from tests.extension.installing import EXAMPLES, installed
 

@@ -14,12 +14,12 @@ import pytest
 from sim.nodes.sensor_slave import SensorSlave
 from tester.base.screen import Value
 from tester.cli.main import invoke
-from tester.inputs.rig.sensors import quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds import load_rig, packaged_text
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.run.kinds import served_kind
+from tester.run.kind_lookup import served_kind
 from tester.service.values import ValueView, unknown_values
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.tui.playback import load
 from tests.extension.installing import installed
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation

@@ -17,7 +17,7 @@ from sim.physics.persson import PerssonLaw
 from sim.physics.track import RUBBERS
 from tester.base.section import editor_text
 from tester.inputs.materials.library import Library
-from tester.inputs.materials.schema import CompoundModel, SurfaceModel
+from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 
 LIBRARY = Library([recipes.FOLDER])
 COMPOUNDS = [one.name for one in LIBRARY.entries("compound")]

@@ -9,11 +9,11 @@ import pytest
 
 import recipes
 from tester.inputs.recipe.loader import check, load_recipe
-from tester.inputs.recipe.schema import schema_text
+from tester.inputs.recipe.recipe_schema import schema_text
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.run.kinds import recipe_part
+from tester.run.kind_lookup import recipe_part
 
 MASTERS = ["grosch", "grosch-glass", "grosch-talc"]
 RIGS = {**dict.fromkeys(MASTERS, "grosch"), "pin-on-disc": "pin-on-disc"}

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 
 from tester.analysis.fit.check import Errors
+from tester.analysis.fit.fit_part import PublishedTable, TableLine
 from tester.analysis.fit.joint import GroupFit
-from tester.analysis.fit.part import PublishedTable, TableLine
 from tester.analysis.fit.trends import Interval
 from tester.base.words import Json, finite
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import fmean, median
 from typing import Final
 
-from tester.analysis.fit.law import NAN, FitError, FitPoint, Law, LawParameter, Variable
+from tester.analysis.fit.fit_law import NAN, FitError, FitPoint, Law, LawParameter, Variable
 
 SPARE: Final = 3
 """Conditions beyond the number of parameters without which residuals carry no information [A]."""

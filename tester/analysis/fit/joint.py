@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tester.analysis.fit.check import Errors, errors_of, levels, refuse
+from tester.analysis.fit.fit_law import FitError, FitPoint, Law
 from tester.analysis.fit.lack import Lack, lack_of
-from tester.analysis.fit.law import FitError, FitPoint, Law
 from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.resample import RESAMPLES, SEED, Resamples, resample, without_cells
 from tester.analysis.fit.solve import solve

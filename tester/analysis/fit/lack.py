@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tester.analysis.fit.law import NAN, FitPoint, Source
+from tester.analysis.fit.fit_law import NAN, FitPoint, Source
 from tester.analysis.fit.problem import FitProblem
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tester.analysis.fit.law import FitError, FitPoint, Law, Source
+from tester.analysis.fit.fit_law import FitError, FitPoint, Law, Source
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from tester.analysis.fit.law import FitError
+from tester.analysis.fit.fit_law import FitError
 from tester.analysis.fit.problem import ROBUST, FitProblem
 from tester.base.plugins import MissingExtraError, needs
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from tester.analysis.drift import PER_KELVIN_PERCENT
 from tester.analysis.fit.check import levels
-from tester.analysis.fit.law import NAN, FitPoint, Law, Variable
+from tester.analysis.fit.fit_law import NAN, FitPoint, Law, Variable
 from tester.analysis.fit.resample import Resamples
 
 if TYPE_CHECKING:

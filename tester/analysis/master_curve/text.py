@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import isfinite
 
 from sim.physics.wlf import GLASS_TO_REFERENCE_K
-from tester.analysis.master_curve.made import Master
+from tester.analysis.master_curve.fitted_curve import Master
 from tester.analysis.master_curve.overlap import TemperaturePair
 from tester.analysis.master_curve.verdict import TEST_WORDS
 

@@ -21,8 +21,8 @@ from tester.inputs.materials.headings import (
     heading_problems,
     quantity_named,
 )
-from tester.inputs.materials.moduli import ModuliRow, ModuliTable, judge, shift_doubts
-from tester.inputs.materials.schema import CompoundModel, TableFileModel, TableModel
+from tester.inputs.materials.material_schema import CompoundModel, TableFileModel, TableModel
+from tester.inputs.materials.measured_moduli import ModuliRow, ModuliTable, judge, shift_doubts
 
 FORMULATED_PHR = (90.0, 500.0)
 """Limits of the sum of a formulation [A]: the rubber alone is 100."""

@@ -27,8 +27,8 @@ from tester.inputs.materials.headings import (
     quantity_of,
     unit_of,
 )
-from tester.inputs.materials.layout import DmaLayout, layout_of, without_brackets
-from tester.inputs.materials.moduli import ALIKE, ModuliRow, ModuliTable, judge
+from tester.inputs.materials.measured_moduli import ALIKE, ModuliRow, ModuliTable, judge
+from tester.inputs.materials.table_layout import DmaLayout, layout_of, without_brackets
 
 _STRAIN: Final = re.compile(r"(dyn(amic)?|shear|tensile|oscillation)?\W*(strain|deformation)\b(?!\W*rate)", re.I)
 _PERCENT: Final = re.compile(r"%|per\s?cent", re.I)

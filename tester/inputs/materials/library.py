@@ -20,11 +20,11 @@ from tester.base.source import InvalidSource, Problem, load_tree
 from tester.base.units import shown
 from tester.inputs.materials.compound import LoadedCompound, load_compound
 from tester.inputs.materials.files import FOLDERS, Role
-from tester.inputs.materials.moduli import ModuliTable
-from tester.inputs.materials.schema import CompoundModel, ModuliModel, WaveModel
+from tester.inputs.materials.material_schema import CompoundModel, ModuliModel, WaveModel
+from tester.inputs.materials.measured_moduli import ModuliTable
 
 if TYPE_CHECKING:
-    from tester.inputs.materials.surface import LoadedSurface
+    from tester.inputs.materials.surface_file import LoadedSurface
 
 VARIABLE = "TESTER_MATERIALS"
 """Environment variable: the laboratory's folder, with ``compounds`` and ``surfaces`` in it."""
@@ -98,7 +98,9 @@ class Library:
 
     def surface_file(self, name: str) -> LoadedSurface:
         """Return a surface's file. Raises UnknownMaterialError, InvalidSource."""
-        from tester.inputs.materials.surface import load_surface  # needs numpy, and a plan asks for compounds alone
+        from tester.inputs.materials.surface_file import (
+            load_surface,  # needs numpy, and a plan asks for compounds alone
+        )
 
         return load_surface(self._found("surface", name))
 

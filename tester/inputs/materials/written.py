@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from tester.base.words import harmless
 from tester.inputs.materials.files import DataFile, Findings
-from tester.inputs.materials.moduli import ModuliTable
+from tester.inputs.materials.measured_moduli import ModuliTable
 from tester.inputs.materials.radial import RadialSpectrum
 
 

@@ -13,9 +13,9 @@ from typing import Final, Generic, NamedTuple, TypeAlias, TypeVar
 
 from tester.analysis import closest, terms
 from tester.base.axes import AxisValue, Setpoint, condition_words
-from tester.inputs.recipe.schema import GridModel, MeasureModel, OrderModel, Recipe
+from tester.inputs.recipe.grid_settings import Settings
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, OrderModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
-from tester.inputs.recipe.settings import Settings
 
 MERGED_SHOWN: Final = 3
 """Most conditions that a sentence about two grids lists; it counts the rest."""

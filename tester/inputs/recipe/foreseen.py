@@ -17,9 +17,9 @@ from tester.analysis.measurand import REPEATABILITY
 from tester.analysis.terms import Term
 from tester.analysis.uncertainty import Budget, Contribution, budget, contribution
 from tester.base.axes import Axes, AxisValue, condition_words
-from tester.inputs.materials.schema import CompoundModel
-from tester.inputs.recipe.estimate import Estimator, Outlook, StepEstimate
+from tester.inputs.materials.material_schema import CompoundModel
 from tester.inputs.recipe.plan import ConditionStep, Plan
+from tester.inputs.recipe.time_estimate import Estimator, Outlook, StepEstimate
 
 MOST: Final = 400
 """Most conditions of a plan that are evaluated, evenly chosen of a longer one [A]: each takes a tenth of a

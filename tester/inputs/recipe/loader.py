@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from tester.analysis.terms import PREFIX, Term
 from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
 from tester.base.units import shown
-from tester.inputs.recipe.part import RecipePart
-from tester.inputs.recipe.schema import Recipe, recipe_model
+from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.recipe_schema import Recipe, recipe_model
 from tester.inputs.recipe.semantics import semantic_problems
 from tester.inputs.rig import Rig
 

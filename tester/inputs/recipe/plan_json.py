@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from tester.base.axes import Axes, AxisValue
 from tester.inputs.recipe.conditions import MergedConditions
-from tester.inputs.recipe.describe import window_words
-from tester.inputs.recipe.estimate import Estimate, StepEstimate
 from tester.inputs.recipe.plan import ConditionStep, Plan, Window
+from tester.inputs.recipe.plan_text import window_words
+from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
 
 if TYPE_CHECKING:
-    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.recipe.recipe_part import RecipePart
 
 encode = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
 """Returns plain data as JSON on one line; numbers that are not finite are refused."""

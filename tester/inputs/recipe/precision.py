@@ -12,11 +12,11 @@ from typing import TypeVar
 
 from tester.analysis.uncertainty import Pool
 from tester.base.axes import condition_words
-from tester.inputs.recipe.estimate import Estimate, Estimator
 from tester.inputs.recipe.foreseen import Foreseen
 from tester.inputs.recipe.plan import ConditionStep, Plan
-from tester.inputs.recipe.repeats import HISTORIC_PERCENT, needed, reached_percent, s_of_values
-from tester.inputs.recipe.schema import MAX_REPEATS, Recipe, RepeatsModel
+from tester.inputs.recipe.recipe_schema import MAX_REPEATS, Recipe, RepeatsModel
+from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, needed, reached_percent, s_of_values
+from tester.inputs.recipe.time_estimate import Estimate, Estimator
 
 AnyRecipe = TypeVar("AnyRecipe", bound=Recipe)
 

@@ -13,15 +13,15 @@ from tester.analysis import closest, terms
 from tester.base.axes import Axis, AxisValue, plain
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import show, shown
-from tester.inputs.recipe.part import RecipePart
-from tester.inputs.recipe.schema import MAX_CONDITIONS, GridModel, MeasureModel, Recipe, grid_model
-from tester.inputs.recipe.settings import (
+from tester.inputs.recipe.grid_settings import (
     DEFAULT_MIN_VALID,
     LEAST_REPEATS,
     at_most_of,
     extents_of,
     values_of,
 )
+from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.recipe_schema import MAX_CONDITIONS, GridModel, MeasureModel, Recipe, grid_model
 
 Part = TypeVar("Part", bound=BaseModel)
 

@@ -1,7 +1,7 @@
 """The loosest accepted value of each safety key of a rig file: its direction, its hardest value, and the reason.
 
 An interlock's parameter has its own ceiling (tester.inputs.rig.parameter); a kind lists its other keys
-(``Rig.ceilings``). A looser value is a risk that a person must accept in words (tester.inputs.rig.load).
+(``Rig.ceilings``). A looser value is a risk that a person must accept in words (tester.inputs.rig.rig_files).
 """
 
 from __future__ import annotations

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from drivers.profiles import ProfileError
 from tester.base.source import Location
 from tester.inputs.rig.config import DeviceConfig, OwnDevice, Rig
+from tester.inputs.rig.further_sensors import parts_of, title_of
 from tester.inputs.rig.profiles import profile_of
-from tester.inputs.rig.sensors import parts_of, title_of
 
 _Found = Iterator[tuple[Location, str]]
 

@@ -12,8 +12,8 @@ from drivers.profiles.model import DeviceProfile
 from tester.base.source import Location, Problem, Tree
 from tester.inputs.rig.cells import problems_of_cells
 from tester.inputs.rig.config import DeviceConfig, Rig
+from tester.inputs.rig.further_sensors import channels_of, further_channels, further_sensors, parts_of
 from tester.inputs.rig.profiles import profile_of
-from tester.inputs.rig.sensors import channels_of, further_channels, further_sensors, parts_of
 
 MAX_BUS_LOAD = 0.5
 """Above this share of the bus the scan rate is refused: bursts of SDO and EMCY need the rest (fieldbus, wire sums)."""

@@ -176,13 +176,15 @@ class Rig:
     manual: ClassVar[tuple[str, ...]] = ()
     """Axes that a person may set instead of a drive: ``manual: true``."""
     own: ClassVar[Mapping[str, OwnDevice]] = {}
-    """Devices of the kind by their keys in ``devices``; any other is a further sensor (tester.inputs.rig.sensors)."""
+    """Devices of the kind by their keys in ``devices``; any other is a further sensor
+    (tester.inputs.rig.further_sensors)."""
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     """Parameters of the section ``interlocks``. One missing in the packaged file has its default there."""
     watched: ClassVar[tuple[str, ...]] = ()
     """Channels of further sensors that the kind's interlocks watch: a rig file must have them."""
     quantities: ClassVar[Quantities]
-    """The kind's table of channels, without those of further sensors (tester.inputs.rig.sensors.quantities_on)."""
+    """The kind's table of channels, without those of further sensors
+    (tester.inputs.rig.further_sensors.quantities_on)."""
     ceilings: ClassVar[tuple[Ceiling, ...]] = ()
     """Every safety key, in the order of the kind's safety page."""
     real: ClassVar[tuple[tuple[str, str], ...]] = ()

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
-    from tester.analysis.fit.part import FitPart
+    from tester.analysis.fit.fit_part import FitPart
     from tester.analysis.master_curve.points import MasterPart
     from tester.analysis.papers.item import Paper
-    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
@@ -50,7 +50,7 @@ def _papers() -> tuple[Paper, ...]:
 
 
 def _masters() -> MasterPart:
-    from tester.kinds.specimen_on_track.fit.master import MASTERS
+    from tester.kinds.specimen_on_track.fit.master_conditions import MASTERS
 
     return MASTERS
 
@@ -62,7 +62,7 @@ def _served() -> ServedKind:
 
 
 def _fits() -> FitPart:
-    from tester.kinds.specimen_on_track.fit.part import FITS
+    from tester.kinds.specimen_on_track.fit.fits import FITS
 
     return FITS
 

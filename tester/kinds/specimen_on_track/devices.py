@@ -15,8 +15,8 @@ from drivers.temperature_controller import TemperatureController
 from tester.kinds.specimen_on_track.process import NEVER, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.devices import DeviceList
-from tester.machine.ports import Ports
 from tester.machine.rig_drivers import RigDrivers
+from tester.machine.rig_ports import Ports
 
 CELL_CHANNELS: Final = ("fx",)
 """Tangential force (N)."""

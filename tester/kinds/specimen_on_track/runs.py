@@ -10,7 +10,7 @@ from typing import Final
 from tester.base.screen import Check
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
-from tester.inputs.rig.sensors import quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds.specimen_on_track.axes import NAME, held_by
 from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
 from tester.kinds.specimen_on_track.control import TrackControl
@@ -23,15 +23,15 @@ from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.connect import Connector
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
 from tester.machine.run_parts import KindRun, NoHistory, Part
 from tester.machine.sampler import Sampler
 from tester.machine.served import History
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
-from tester.store.resume import ResumePoint
+from tester.store.resumable import ResumePoint
 
 
 class TrackRuns:

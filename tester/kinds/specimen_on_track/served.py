@@ -20,11 +20,11 @@ from tester.machine.engine import Engine
 from tester.machine.manual import NAME as MANUAL
 from tester.machine.manual import ManualExecutor
 from tester.machine.panel import NotReused, drives_alone
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.served import ByHand, History, Left, ServedKind
-from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
+from tester.store.run_reader import RunReader
 
 
 class SpecimenOnTrack:

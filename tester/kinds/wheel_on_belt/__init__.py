@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final
 from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
-    from tester.analysis.fit.part import FitPart
+    from tester.analysis.fit.fit_part import FitPart
     from tester.analysis.master_curve.points import MasterPart
     from tester.analysis.papers.item import Paper
-    from tester.inputs.recipe.part import RecipePart
+    from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig
-    from tester.machine.commission.part import CommissionPart
+    from tester.machine.commission.commission_step import CommissionPart
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def _rig() -> type[Rig]:
-    from tester.kinds.wheel_on_belt.rig.config import RigConfig
+    from tester.kinds.wheel_on_belt.rig.wheel_rig import RigConfig
 
     return RigConfig
 
@@ -52,7 +52,7 @@ def _served() -> ServedKind:
 
 
 def _fits() -> FitPart:
-    from tester.kinds.wheel_on_belt.fit.part import FITS
+    from tester.kinds.wheel_on_belt.fit.fits import FITS
 
     return FITS
 
@@ -64,13 +64,13 @@ def _papers() -> tuple[Paper, ...]:
 
 
 def _masters() -> MasterPart:
-    from tester.kinds.wheel_on_belt.fit.master import MASTERS
+    from tester.kinds.wheel_on_belt.fit.master_conditions import MASTERS
 
     return MASTERS
 
 
 def _commissions() -> CommissionPart:
-    from tester.kinds.wheel_on_belt.commission.steps import COMMISSIONS
+    from tester.kinds.wheel_on_belt.commission.commission_steps import COMMISSIONS
 
     return COMMISSIONS
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Final
 
 from tester.analysis.kelvin import Slope
@@ -9,6 +10,8 @@ from tester.analysis.measurand import expected_budget
 from tester.analysis.terms import Acts, BudgetPoint, Size, Term
 from tester.analysis.uncertainty import Budget
 from tester.kinds.wheel_on_belt.image.axes import Held
+from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
+from tester.kinds.wheel_on_belt.rig import RigConfig
 
 _WEAR = "believed wear rate 0.08 mm3/(N m) of a range of 0.02 to 0.3 [A]"
 
@@ -46,7 +49,6 @@ and speed are those of the model of doi 10.3390/polym16050596 near 200 N and 300
 compounds."""
 
 
-
 def terms_of(cell_sensitivity: float, record: str) -> tuple[Term, ...]:
     """Return the terms of a rig; one whose cell was calibrated with weights has what was found in them.
 
@@ -75,3 +77,24 @@ def instruments_budget(
     turning = {"wheel_speed_m_s": 0.0, "belt_speed_m_s": -held.slip_velocity_m_s} if both_directions else None
     at = BudgetPoint(mu, held.load_n, sliding_m_s, means, slope.per_kelvin, size=size, turning=turning)
     return expected_budget(TERMS, at, slope)
+
+
+ROLL_CHECK_N: Final = 50.0
+"""Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
+ROLL_CHECK_TURNS: Final = 6.0
+"""Whole turns averaged by the check: runout drops out, and the load loop's ripple."""
+
+
+def roll_check_u_mm(rig: RigConfig, off_mm: float = 0.0) -> float:
+    """Return the standard uncertainty of a diameter by a roll check, mm, by itself.
+
+    ``off_mm``: by how much the press stood deeper for a load beside the nominal one.
+    """
+    wear, stiffness = rig.wear, rig.loops.load.stiffness_n_per_mm
+    per_n = 2.0 * (depth_mm(ROLL_CHECK_N + 0.5, stiffness) - depth_mm(ROLL_CHECK_N - 0.5, stiffness))
+    return hypot(
+        2.0 * wear.check_press_mm,
+        per_n * wear.check_load_n,
+        0.01 * wear.check_stiffness_percent * 2.0 * off_mm,
+        wear.growth_mm_per_k * wear.check_rubber_k,
+    )

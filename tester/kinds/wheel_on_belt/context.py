@@ -7,7 +7,7 @@ from math import inf
 from typing import Final, Protocol
 
 from tester.base.quantities import Quantities
-from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
+from tester.kinds.wheel_on_belt.control.loops import LoadLoop
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
 from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES

@@ -12,10 +12,13 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Protocol
+
+from tester.inputs.rig import Rig
+from tester.machine.commission.commission_step import CommissionStep, Walk, sections_sha256
 
 BEGUN, READING, DONE, REFUSED = "begun", "reading", "done", "refused"
 """Kinds of entry about a step: its begin, a reading in it, its success, its refusal."""
@@ -156,3 +159,43 @@ def _sync_folder(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+class Onlooker(Protocol):
+    """Called in the engine's thread, between ticks: must not block, and changes nothing."""
+
+    def entered(self, entry: RecordEntry) -> None:
+        """Take an entry that was just recorded."""
+        ...
+
+    def look(self, step: CommissionStep, walk: Walk) -> None:
+        """Look at the rig in a step; called about every tester.machine.tickers.POLL_S of wall time."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class StepStanding:
+    """One step: its valid entry, None if it is not done; its newest entry, None without any."""
+
+    step: CommissionStep
+    stands: RecordEntry | None
+    last: RecordEntry | None
+
+    @property
+    def words(self) -> str:
+        """Return the state for people."""
+        if self.stands is not None:
+            return f"done on {self.stands.at[:10]}, {self.stands.by}: {self.stands.text}"
+        if self.last is None:
+            return "to be done"
+        why = {BEGUN: "was cut off", DONE: "the rig file has changed under it"}.get(self.last.what, self.last.what)
+        text = f": {self.last.text}" if self.last.text else ""
+        return f"to be done again ({why}, {self.last.at[:10]}){text}"
+
+
+def standing_of(record: CommissionRecord, steps: Sequence[CommissionStep], rig: Rig) -> tuple[StepStanding, ...]:
+    """Return the state of each step under a rig file."""
+    return tuple(
+        StepStanding(step, record.standing(step.name, sections_sha256(rig, step.sections)), record.last(step.name))
+        for step in steps
+    )

@@ -9,7 +9,7 @@ Defaults for such machines, on what ``tester.machine`` has for all; a kind overr
 - ``context``, ``procedures``: a specimen is put on, a condition is measured in repeats; a kind says what it demands;
 - ``runs``, ``served``: what a run and a service ask of the kind.
 
-Its rig file is a ``tester.inputs.rig.plain.PlainRig``, its recipe a ``tester.inputs.recipe.plain.PlainPart``, its twin
-on the same wires a ``sim.plain_twin.PlainTwin``. A machine that heats, presses or goes to places is more than plain:
-see ``tester.kinds.specimen_on_track``.
+Its rig file is a ``tester.inputs.rig.plain_rig.PlainRig``, its recipe a
+``tester.inputs.recipe.plain_recipe.PlainPart``, its twin on the same wires a ``sim.plain_twin.PlainTwin``. A machine
+that heats, presses or goes to places is more than plain: see ``tester.kinds.specimen_on_track``.
 """

@@ -6,7 +6,7 @@ needed. The drives are enabled for that and stand: nothing has to be lifted, and
 
 from __future__ import annotations
 
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.connect import Arming
 from tester.machine.plain.devices import STANDING_SHARE, PlainDevices
 from tester.machine.proof import WatchdogProof

@@ -7,8 +7,8 @@ from typing import Final, Protocol
 
 from drivers.sensor import Sensor
 from tester.base.quantities import Quantities
-from tester.inputs.recipe.plain import Mount
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.recipe.plain_recipe import Mount
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.context import BaseContext
 from tester.machine.plain.image import PlainDemand, PlainReadings
 from tester.machine.prompts import Prompts

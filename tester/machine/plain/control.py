@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.control import bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.interlock_table import InterlockTable

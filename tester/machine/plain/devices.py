@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from math import inf, nan
 from typing import Final
 
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.devices import DeviceList
 from tester.machine.image import NEVER
 from tester.machine.plain.image import PlainReadings, PlainSetpoints
-from tester.machine.ports import Ports
 from tester.machine.rig_drivers import RigDrivers
+from tester.machine.rig_ports import Ports
 
 STANDING_SHARE: Final = 0.01
 """A drive slower than this share of its greatest speed stands [A]."""

@@ -11,7 +11,7 @@ from tester.analysis.judge import ALONE
 from tester.analysis.reduce import collected
 from tester.base.axes import Setpoint
 from tester.base.quantities import Quantities
-from tester.inputs.recipe.plain import Mount, PlainPart
+from tester.inputs.recipe.plain_recipe import Mount, PlainPart
 from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.condition import MeasureCondition
@@ -20,7 +20,7 @@ from tester.machine.measured import Ending
 from tester.machine.motions import Ask
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.image import PlainReadings
-from tester.machine.results import StoredResults
+from tester.machine.result_keeping import StoredResults
 from tester.store.records import PieceInfo
 
 MOVE_AT_MOST_S: Final = 15.0
@@ -111,7 +111,7 @@ class PutOn:
 
 
 class SteadyRepeat:
-    """One repeat: at speed, settled, counted (``tester.machine.results.MeasuredRepeat``)."""
+    """One repeat: at speed, settled, counted (``tester.machine.result_keeping.MeasuredRepeat``)."""
 
     rolling_only = False
     warming_k_s = nan

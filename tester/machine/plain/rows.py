@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Generic, TypeAlias, TypeVar
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.drive_rows import (
     ACK_WAIT_S,
     drive_data_stale,

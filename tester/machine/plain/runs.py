@@ -8,11 +8,11 @@ from math import nan
 from pathlib import Path
 
 from tester.base.axes import Setpoint
-from tester.inputs.recipe.plain import Mount, PlainPart
+from tester.inputs.recipe.plain_recipe import Mount, PlainPart
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
-from tester.inputs.rig.plain import PlainRig
-from tester.inputs.rig.sensors import quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.connect import Connector
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
@@ -23,15 +23,15 @@ from tester.machine.plain.control import PlainControl
 from tester.machine.plain.devices import PlainDevices
 from tester.machine.plain.image import PlainReadings
 from tester.machine.plain.procedures import PlainProcedures, PlainResults
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
 from tester.machine.run_parts import NoHistory, Part
 from tester.machine.sampler import Sampler
 from tester.machine.served import History
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
-from tester.store.resume import ResumePoint
+from tester.store.resumable import ResumePoint
 
 
 class PlainRuns:

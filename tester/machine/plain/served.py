@@ -11,18 +11,18 @@ from tester.base.screen import HandAxis, MachineView, PlotView, axis_views, tren
 from tester.base.words import listed
 from tester.inputs.recipe.plan import Plan, Step
 from tester.inputs.rig import Rig
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.panel import NotReused, RunPanel, drives_alone
 from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
 from tester.machine.plain.runs import PlainRuns
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.served import ByHand, History, Left, News
 from tester.machine.wires import STALE_INPUTS_S
-from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
+from tester.store.run_reader import RunReader
 
 STEPS_TO_TOP: Final = 20
 """By hand a drive gets to its greatest speed in this many steps [A]."""

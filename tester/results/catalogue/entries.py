@@ -12,9 +12,9 @@ from typing import Protocol
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
 from tester.base.words import finite
 from tester.results.run_results import Measured, results_of
-from tester.store.catalogue import RunStatus, run_folders, under_way
-from tester.store.reader import DATABASE, RunReader
-from tester.store.schema import StoreError
+from tester.store.record_schema import StoreError
+from tester.store.run_folders import RunStatus, run_folders, under_way
+from tester.store.run_reader import DATABASE, RunReader
 
 _MADE_BY = "1"
 """Increase it when the same record yields other entries than before: then all are made anew."""

@@ -13,13 +13,13 @@ from tester.base.trouble import in_words
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition
-from tester.results.cells import Cell
 from tester.results.conditions_table import ConditionRow, conditions_table, recipe_rows, sweep_columns
 from tester.results.run_results import results_of
-from tester.run.materials import KeptFile, write_materials
+from tester.results.table_cells import Cell
 from tester.run.pool import stop_level
+from tester.run.run_materials import KeptFile, write_materials
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 NAN = float("nan")
 NOT_RUN = "not run"

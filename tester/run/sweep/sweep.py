@@ -12,12 +12,12 @@ from recipes import find
 from tester.base.axes import Axes
 from tester.base.processes import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
 from tester.run.folder import make_folder
-from tester.run.kinds import checked_recipe, load_rig, served_kind
-from tester.run.materials import kept_files, used_materials
+from tester.run.kind_lookup import checked_recipe, load_rig, served_kind
+from tester.run.run_materials import kept_files, used_materials
 from tester.run.sweep.case import CaseResult, SweepTask, not_run, run_case
 from tester.run.sweep.executors import Submit
-from tester.run.sweep.files import SweepFiles, write_sources
 from tester.run.sweep.grid import SweepAxis, overrides_of, points_of
+from tester.run.sweep.sweep_files import SweepFiles, write_sources
 
 
 class Audience(Protocol):

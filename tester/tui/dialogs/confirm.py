@@ -10,10 +10,10 @@ from textual.widget import Widget
 from textual.widgets import Button, Input
 
 from tester.service.commands import Action, Stop
-from tester.service.state import Check, StateView
+from tester.service.state_view import Check, StateView
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.formatting import clean
-from tester.tui.widgets.panel import FAINT, WARNING, Parts, rows
+from tester.tui.widgets.panel_base import FAINT, WARNING, Parts, rows
 
 WORD = "abort"
 SIGNS = {True: "✔", False: "✘", None: "?"}

@@ -16,7 +16,7 @@ from textual.widgets import Input, Static
 from tester.tui.formatting import reflow
 from tester.tui.host import HostApp, host_of
 from tester.tui.widgets.head import event_row
-from tester.tui.widgets.panel import Parts, rows
+from tester.tui.widgets.panel_base import Parts, rows
 
 
 class Dialog(ModalScreen[None]):

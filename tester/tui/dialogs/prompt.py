@@ -12,7 +12,7 @@ from textual.widgets import Button
 
 from tester.base import keys
 from tester.service.commands import Answer, Hold
-from tester.service.state import PromptView
+from tester.service.state_view import PromptView
 from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.formatting import clean
 

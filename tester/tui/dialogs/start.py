@@ -11,7 +11,7 @@ from textual.widgets import Button, Checkbox, Input, Static
 
 from tester.base.words import counted, duration
 from tester.service.commands import RunRecipe, ShowPlan
-from tester.service.state import Check
+from tester.service.state_view import Check
 from tester.tui.dialogs.confirm import preflight_rows
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.formatting import clean

@@ -11,16 +11,14 @@ from tester.base import clock
 from tester.base.source import InvalidSource
 from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
-from tester.machine.commission.engine import CommissionOutcome, Ended
-from tester.machine.commission.part import AtTheTwin
+from tester.machine.commission.commission_step import AtTheTwin, CommissionStep
 from tester.machine.commission.person import Question
-from tester.machine.commission.record import CommissionRecord, RecordError, record_path
-from tester.machine.commission.standing import StepStanding, standing_of
-from tester.machine.commission.step import CommissionStep
+from tester.machine.commission.record import CommissionRecord, RecordError, StepStanding, record_path, standing_of
+from tester.machine.commission.step_engine import CommissionOutcome, Ended
 from tester.run.commissioning import CommissionOptions, commission, part_of
 from tester.run.endings import CannotStartError
-from tester.store.schema import StoreError
-from tester.tui.guide.person import Live, ScreenPerson
+from tester.store.record_schema import StoreError
+from tester.tui.guide.guide_person import Live, ScreenPerson
 
 REFUSALS = (CannotStartError, InvalidSource, RecordError, StoreError, OSError, sqlite3.Error)
 """Errors that stop a commissioning and that a person can fix."""

@@ -7,13 +7,13 @@ from textwrap import wrap
 from typing import Final
 
 from tester.base.words import NONE, decimal, duration
-from tester.machine.commission.engine import Ended
-from tester.machine.commission.standing import StepStanding
-from tester.machine.commission.step import StepReading
+from tester.machine.commission.commission_step import StepReading
+from tester.machine.commission.record import StepStanding
+from tester.machine.commission.step_engine import Ended
 from tester.tui.formatting import clean, fit
 from tester.tui.guide.guide import ENDINGS, GuideView
-from tester.tui.scene import ScreenScene
-from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
+from tester.tui.screen_scene import ScreenScene
+from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
 
 TIME: Final = 8
 """Columns of a step's time."""

@@ -19,13 +19,13 @@ from tester.base.words import decimal
 from tester.service.address import AddressError, folder
 from tester.service.commands import WatchFrames
 from tester.service.protocol import Frame
-from tester.service.state import BusView as BusState
-from tester.service.state import DeviceView
+from tester.service.state_view import BusView as BusState
+from tester.service.state_view import DeviceView
 from tester.tui.formatting import clean, fit
 from tester.tui.host import Keys, View
-from tester.tui.scene import STALE_S, ScreenScene
+from tester.tui.screen_scene import STALE_S, ScreenScene
 from tester.tui.starting import LOG
-from tester.tui.widgets.panel import FAINT, NOTICE, WARNING, Panel, Parts, rows
+from tester.tui.widgets.panel_base import FAINT, NOTICE, WARNING, Panel, Parts, rows
 
 LOG_BYTES = 1_000_000
 """Bytes from the end of the service's log."""

@@ -18,12 +18,12 @@ from textual.widgets.option_list import Option
 
 from tester.base.trouble import in_words
 from tester.service.commands import CheckRecipe
-from tester.tui.dialogs.plan import PlanDialog
+from tester.tui.dialogs.plan_dialog import PlanDialog
 from tester.tui.dialogs.start import StartDialog
 from tester.tui.formatting import clean, clean_lines
 from tester.tui.host import Keys, View
 from tester.tui.recipe_library import Checked, ListedRecipe, RecipeProblem, own_copy, read_again, shelf
-from tester.tui.scene import ScreenScene
+from tester.tui.screen_scene import ScreenScene
 
 FIRST = "quickstart"
 EDITORS = ("VISUAL", "EDITOR")

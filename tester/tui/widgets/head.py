@@ -6,11 +6,11 @@ from typing import Final
 
 from tester.base.words import conditions_done, counted, decimal, duration
 from tester.service.protocol import Event
-from tester.service.state import Alarm, StateView
+from tester.service.state_view import Alarm, StateView
 from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.gone import gone_line
-from tester.tui.scene import STALE_S, UNDER_WAY, ScreenScene
-from tester.tui.widgets.panel import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
+from tester.tui.screen_scene import STALE_S, UNDER_WAY, ScreenScene
+from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
 
 Tabs = tuple[tuple[str, str, str], ...]
 TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from tester.base.words import decimal, duration
-from tester.service.state import Gate, ProgressView, SoakView
+from tester.service.state_view import Gate, ProgressView, SoakView
 from tester.tui.formatting import clean, fit
-from tester.tui.scene import UNDER_WAY, ScreenScene
-from tester.tui.widgets.panel import FAINT, NOTICE, Panel, Parts, rows
+from tester.tui.screen_scene import UNDER_WAY, ScreenScene
+from tester.tui.widgets.panel_base import FAINT, NOTICE, Panel, Parts, rows
 
 DONE, LEFT = "━", "─"
 NAME = 10

@@ -21,7 +21,7 @@ from typing import Final, NamedTuple
 from tester.results.run_results import Measured, results_of
 from tester.run.session import Session, SessionOptions
 from tester.run.sweep.case import Unseen
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.campaigns.budget.twin import WRONG_BELIEFS
 
 COMPOUNDS, TEMPERATURES_C, LOADS_N = ("1#", "2#", "3#"), (25, 55, 85), (100, 200, 300)

@@ -12,7 +12,7 @@ _REFERENCE, _WORN = "tester/analysis/reference.py", "tester/analysis/worn.py"
 _UNCERTAINTY, _DIFFERENCE = "tester/analysis/uncertainty.py", "tester/analysis/difference.py"
 _SURROUNDINGS = "tester/results/surroundings.py"
 _TESTS = tests_of(*(f"analysis/{name}" for name in ("kelvin", "measurand", "reference", "uncertainty", "difference")))
-_OF_WORN, _OF_RUNS = tests_of("analysis/worn"), tests_of("results/budget")
+_OF_WORN, _OF_RUNS = tests_of("analysis/worn"), tests_of("results/budget_table")
 
 _OF_MEASURAND: Final = (
     ("repeatability", "contribution(REPEATABILITY, s, mu * share, df=float(pool.df)",

@@ -7,8 +7,8 @@ from typing import Final
 
 from tests.campaigns.budget.mutant import Mutant, scaled, tests_of
 
-_COMPONENTS, _PAIRS = "tester/analysis/components.py", "tester/results/components.py"
-_OF_COMPONENTS, _OF_PAIRS = tests_of("analysis/components"), tests_of("results/components")
+_COMPONENTS, _PAIRS = "tester/analysis/components.py", "tester/results/components_table.py"
+_OF_COMPONENTS, _OF_PAIRS = tests_of("analysis/components"), tests_of("results/components_table")
 _SCALED: Final = (
     ("what is not known of the film's sensitivity", "unknown = mu_f * hypot", "unknown = {} * mu_f * hypot"),
     ("own uncertainty of a component", "(abs(scale) * one.standard, one.df)",
@@ -79,7 +79,7 @@ def of_components() -> Iterator[Mutant]:
 _PROBLEM, _LACK, _RESAMPLE = (f"tester/analysis/fit/{name}.py" for name in ("problem", "lack", "resample"))
 _POINTS = "tester/results/fit_points.py"
 _OF_FIT = tests_of("analysis/fit/lack", "analysis/fit/joint")
-_OF_POINTS = tests_of("kinds/wheel_on_belt/fit/runs", "kinds/specimen_on_track/fit/runs")
+_OF_POINTS = tests_of("kinds/wheel_on_belt/fit/run_data", "kinds/specimen_on_track/fit/run_data")
 _FIT_SCALED: Final = (
     (_PROBLEM, "weight of repeats", "squares = [(one.type_a**2 if", "squares = [({} * one.type_a**2 if"),
     (_PROBLEM, "weight of what is a condition's own", "+ one.own**2 + one.between**2 for",

@@ -24,7 +24,7 @@ from tester.analysis.difference import difference
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.run.sweep.case import Unseen
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 WRONG_BELIEFS = (
     "sim.wear=3",

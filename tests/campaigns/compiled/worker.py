@@ -21,7 +21,7 @@ from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition
 from tester.run.endings import CannotStartError
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 TABLES = ("appendix", "conditions", "repeats")
 

@@ -25,10 +25,10 @@ from tester.machine.tickers import collector_at_rest
 from tester.results.verify import verify
 from tester.run.merge_parts import recover
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
-from tester.store.resume import resume_point
-from tester.store.schema import StoreError
-from tester.store.statements import Judged, Ticket
+from tester.store.record_schema import StoreError
+from tester.store.resumable import resume_point
+from tester.store.run_reader import RunReader
+from tester.store.sql import Judged, Ticket
 from tester.store.writer import RunWriter
 from tests.campaigns.acceptance.figure import Figure, at_most, equal
 

@@ -11,10 +11,10 @@ from random import Random
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.store.reader import RunReader
+from tester.store.record_schema import StoreError
 from tester.store.records import PieceInfo, SessionInfo
-from tester.store.resume import resume_point
-from tester.store.schema import StoreError
+from tester.store.resumable import resume_point
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.campaigns.acceptance.figure import Figure, at_most, equal
 from tests.campaigns.crash.images import Disk, put

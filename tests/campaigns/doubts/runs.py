@@ -12,7 +12,7 @@ from typing import Final
 from tester.analysis.flags import CHANGED, STICK_SLIP, THERMOMETER
 from tester.results import results_of
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
 from tests.campaigns.doubts.cases import STEP_PERCENT, Case
 

@@ -16,7 +16,7 @@ from sim.machines.wheel_on_belt.faults.exposure import Exposure
 from sim.machines.wheel_on_belt.harm import Truth
 from sim.nodes.safety_io import SafetyIo
 from sim.physics.contact import ContactModel
-from tester.kinds.wheel_on_belt.recipe.steps import Heat, Install, PreGrind, WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, Install, PreGrind, WheelCondition
 from tests.campaigns.faults.stage import Stage
 
 TURNS_M_S = 0.04

@@ -49,8 +49,8 @@ class Mutant:
     row: str = ""
 
 
-_CONTROL, _STOPS = "tester/machine/control.py", "tester/kinds/wheel_on_belt/control/stops.py"
-_SAFE, _MAY = "tester/kinds/wheel_on_belt/control/safe_outputs.py", "tester/kinds/wheel_on_belt/control/permissives.py"
+_CONTROL, _STOPS = "tester/machine/control.py", "tester/kinds/wheel_on_belt/control/stop_modes.py"
+_SAFE, _MAY = "tester/kinds/wheel_on_belt/control/stop_modes.py", "tester/kinds/wheel_on_belt/control/permissives.py"
 _ROWS = "tester/kinds/wheel_on_belt/interlocks"
 _TABLE, _WIRES, _MOTION = "tester/machine/interlock_table.py", "tester/machine/wires.py", f"{_ROWS}/motion.py"
 _LOAD, _HUB = "tester/kinds/wheel_on_belt/interlocks/load.py", "tester/kinds/wheel_on_belt/interlocks/hub.py"

@@ -30,7 +30,7 @@ from tester.machine.tickers import next_tick
 from tester.run.fault_injection import RIG_STEP_S, FaultyRun
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
-from tester.store.statements import Judged, Ticket
+from tester.store.sql import Judged, Ticket
 from tests.campaigns.faults.invariants import Invariants
 
 RUNNING = frozenset({"armed", "run", "hold"})

@@ -16,7 +16,7 @@ from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.kinds.specimen_on_track.recipe.part import PART
-from tester.kinds.specimen_on_track.recipe.steps import Temper
+from tester.kinds.specimen_on_track.recipe.plan_steps import Temper
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.kinds.specimen_on_track.runs import RUNS
 from tester.machine.prompts import Prompts

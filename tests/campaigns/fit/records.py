@@ -16,16 +16,16 @@ import numpy as np
 
 from sim.physics import laws
 from sim.physics.wlf import WlfBellParameters
-from tester.analysis.fit.law import Common, FitPoint, Law, Source
+from tester.analysis.fit.fit_law import Common, FitPoint, Law, Source
 from tester.analysis.repeats import REPEATABILITY
 from tester.analysis.terms import Acts
 from tester.kinds.specimen_on_track.budget import TERMS as TRACK_TERMS
+from tester.kinds.specimen_on_track.fit.fits import FITS as TRACK
 from tester.kinds.specimen_on_track.fit.laws import WLF_BELL
-from tester.kinds.specimen_on_track.fit.part import FITS as TRACK
-from tester.kinds.specimen_on_track.fit.runs import TEMPERATURE as TRACK_TEMPERATURE
+from tester.kinds.specimen_on_track.fit.run_data import TEMPERATURE as TRACK_TEMPERATURE
 from tester.kinds.wheel_on_belt.budget import TERMS as WHEEL_TERMS
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE, V2_LAW
-from tester.kinds.wheel_on_belt.fit.runs import BETWEEN_CONDITIONS
+from tester.kinds.wheel_on_belt.fit.run_data import BETWEEN_CONDITIONS
 from tester.results.fit_points import standard_of
 from tests.campaigns.fit.synthetic import DESIGN
 

@@ -13,9 +13,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from sim.physics import laws
+from tester.analysis.fit.fit_law import FitError
 from tester.analysis.fit.joint import fit_group
 from tester.analysis.fit.lack import power_of
-from tester.analysis.fit.law import FitError
 from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.resample import resample
 from tester.analysis.fit.solve import solve

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from sim.physics.friction import COMPOUNDS, evaluate
+from tester.analysis.fit.fit_law import FitPoint, Law, Source
 from tester.analysis.fit.joint import fit_only, predict
-from tester.analysis.fit.law import FitPoint, Law, Source
 from tester.kinds.wheel_on_belt.fit.laws import PAPER, joint_of, table_3_of
 from tester.kinds.wheel_on_belt.fit.published import published_table
 

@@ -17,7 +17,7 @@ from tester.results import write_all
 from tester.results.manifest import MANIFEST, manifest_text
 from tester.results.verify import verify
 from tester.store.chain import add_entries, hashes_of, tables_in
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.store.sample_blocks import unpack_array
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tester.analysis.wear import WearCheck
+from tester.analysis.wear_rate import WearCheck
 from tester.base import clock
 from tester.cli.console import Console
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES

@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from tester.analysis.master_curve.made import Master, master_of
+from tester.analysis.master_curve.fitted_curve import Master, master_of
 from tester.analysis.master_curve.points import MasterPoint
 from tester.analysis.master_curve.verdict import Verdict
 from tests.campaigns.master.synthetic import FAILING, TS_C, synthetic

@@ -13,7 +13,7 @@ from typing import Final
 
 import recipes
 from sim.physics.track import RUBBERS
-from tester.analysis.master_curve.made import master_of
+from tester.analysis.master_curve.fitted_curve import master_of
 from tester.analysis.master_curve.points import MasterPoint, MasterSource
 from tester.analysis.terms import Acts
 from tester.kinds.specimen_on_track.axes import held_by

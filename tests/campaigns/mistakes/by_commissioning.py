@@ -15,12 +15,12 @@ from tempfile import TemporaryDirectory
 
 from sim.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.machines.wheel_on_belt.rig import WheelRig
+from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
 from tester.kinds.wheel_on_belt.commission.jog import AXES
-from tester.kinds.wheel_on_belt.commission.steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.commission.engine import Ended
 from tester.machine.commission.person import Question
+from tester.machine.commission.step_engine import Ended
 from tests.campaigns.mistakes.mistake import Mistake
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed
 

@@ -17,8 +17,8 @@ from sim.wires.can_traffic import Beat
 from sim.wires.modbus_wire import Impairment, Kind
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, Severity
+from tester.doctor.open_wires import SimulatedWires
 from tester.doctor.probe_table import examined
-from tester.doctor.wires import SimulatedWires
 from tester.inputs.rig import Rig
 from tester.kinds import load_rig
 from tests.campaigns.mistakes.mistake import Mistake

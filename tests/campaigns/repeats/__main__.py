@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 
 from tester.analysis.flags import CARRY_OVER, NOT_SHOWN
 from tester.results.run_results import results_of
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, holds
 from tests.campaigns.repeats.rig import run
 from tests.campaigns.repeats.series import Case, Drift, Pattern, condition, pattern, settling, steady

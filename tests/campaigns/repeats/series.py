@@ -23,7 +23,7 @@ from tester.analysis.repeats import counting
 from tester.analysis.results import NOT_JUDGED, Judgement, RepeatResult
 from tester.base.quantities import Means
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.tester.analysis.series import correlated
 
 WINDOW = 30

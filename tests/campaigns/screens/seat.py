@@ -16,7 +16,7 @@ from tester.service.address import UnixAddress
 from tester.service.client import Client, LostError, NoServiceError
 from tester.service.commands import Stop
 from tester.service.protocol import Event
-from tester.service.state import StateView
+from tester.service.state_view import StateView
 from tests.campaigns.acceptance.bench import COMMAND, ROOT
 
 LOOK_S = 0.005

@@ -18,7 +18,7 @@ from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Install, WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Install, WheelCondition
 
 
 @dataclass(frozen=True, slots=True)

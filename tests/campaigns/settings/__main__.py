@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator
 from math import ceil, comb, sqrt
 
-from tester.analysis.settings import LEVEL
+from tester.analysis.repeated_settings import LEVEL
 from tests.campaigns.acceptance.figure import Figure, at_least, holds
 from tests.campaigns.settings.twin import SettingCase, SettingFound, found_of
 

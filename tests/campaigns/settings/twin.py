@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
 
 MEASUREMENTS = 4

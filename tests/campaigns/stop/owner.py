@@ -17,8 +17,8 @@ from tester.machine.tickers import Ticked, TickedWorld, run_simulated
 from tester.run import part_run
 from tester.service import service
 from tester.service.command_handler import Orders
-from tester.service.host import host
 from tester.service.service import ServiceOptions
+from tester.service.service_process import host
 from tester.service.stop_lane import StopLane
 
 OPERATOR, PROBE = "operator", "probe-"

@@ -18,7 +18,7 @@ from tester.service.address import UnixAddress
 from tester.service.client import Client, NoServiceError
 from tester.service.commands import TakeControl
 from tester.service.gateway_process import NICE as GATEWAY_NICE
-from tester.service.state import StateView
+from tester.service.state_view import StateView
 from tester.service.stop_call import NotTakenError, StopCall
 from tests.campaigns.stop.hostile import KINDS
 from tests.campaigns.stop.loop import PERIOD_S

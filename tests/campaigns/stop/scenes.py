@@ -12,8 +12,8 @@ from tester.base import clock
 from tester.service.client import Client, LostError, RefusedError
 from tester.service.commands import Action, Arm, Jog, RunRecipe
 from tester.service.service import SILENT_S
-from tester.service.state import RunView, StateView
-from tester.store.reader import RunReader
+from tester.service.state_view import RunView, StateView
+from tester.store.run_reader import RunReader
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal, holds
 from tests.campaigns.stop.hostile import BY_FORCE, KINDS
 from tests.campaigns.stop.owner import PROBE

@@ -14,16 +14,16 @@ from tester.machine.context import Progress
 from tester.machine.time_left import RunPosition
 from tester.run.endings import StopLevel
 from tester.run.folder import Work, earlier_of, parts_time
-from tester.run.kinds import served_kind
+from tester.run.kind_lookup import served_kind
 from tester.run.session import Session, SessionOptions
-from tester.service.state import ProgressView
+from tester.service.state_view import ProgressView
 from tester.service.values import PlanTrack
-from tester.store.reader import RunReader
-from tester.tui.pages.run import StepsPanel
+from tester.store.run_reader import RunReader
+from tester.tui.pages.run_page import StepsPanel
 from tester.tui.playback import load
-from tester.tui.scene import ScreenScene
+from tester.tui.screen_scene import ScreenScene
 from tester.tui.widgets.head import StateLine
-from tester.tui.widgets.panel import Parts
+from tester.tui.widgets.panel_base import Parts
 from tests.campaigns.compiled.worker import Silent
 from tests.tester.service.views import state
 

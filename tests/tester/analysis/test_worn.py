@@ -8,7 +8,7 @@ from math import hypot, isnan, nan
 import pytest
 
 from tester.analysis.worn import Worn
-from tests.tester.analysis.test_wear import FIRST
+from tests.tester.analysis.test_wear_rate import FIRST
 
 U = FIRST.u_mm
 NEW = replace(FIRST, t_s=10.0, reference_s=10.0, diameter_mm=90.0, sliding_m=0.0, exposure_n_m=0.0, before=0)

@@ -10,14 +10,14 @@ import pytest
 
 from tester.cli.commission_person import TerminalPerson
 from tester.cli.main import invoke
-from tester.kinds.wheel_on_belt.commission.steps import STEPS
+from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
-from tester.machine.commission.engine import Ended
 from tester.machine.commission.person import Question
 from tester.machine.commission.record import CommissionRecord, record_path
+from tester.machine.commission.step_engine import Ended
 from tester.run.commissioning import CommissionOptions, commission
-from tester.run.kinds import load_rig
-from tester.store.reader import RunReader
+from tester.run.kind_lookup import load_rig
+from tester.store.run_reader import RunReader
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, named
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are POSIX")
@@ -27,7 +27,7 @@ class AtKeys(TerminalPerson):
     """A terminal at whose keyboard the simulated person types: keys go through a real pseudo-terminal."""
 
     def __init__(self, twin: TwinPerson, master: int, slave: int) -> None:
-        from tester.cli.keys import keys_of
+        from tester.cli.command_keys import keys_of
 
         self.stream = os.fdopen(slave, "r")
         super().__init__(time_stands=True, keys=keys_of(self.stream))

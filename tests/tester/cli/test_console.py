@@ -9,8 +9,8 @@ import sys
 import pytest
 
 from tester.cli import console as module
+from tester.cli.command_keys import NoKeys
 from tester.cli.console import Console, standing_words
-from tester.cli.keys import NoKeys
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition

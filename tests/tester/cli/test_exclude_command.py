@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.tester.store.build import small_run
 
 

@@ -11,7 +11,7 @@ import pytest
 import recipes
 from tester.cli.main import invoke
 from tester.inputs.materials.compound import load_compound
-from tester.inputs.materials.surface import load_surface
+from tester.inputs.materials.surface_file import load_surface
 
 ROWS = "".join(f"{-60 + 5 * i};1;{2000 // (i + 1)},5;{200 // (i + 1)},25\n" for i in range(20))
 DMA = f"Instrument;X\nOperator;Li\n\nTemp./°C;Freq.;Storage Modulus;Loss Modulus\n;[Hz];[MPa];[MPa]\n{ROWS}"

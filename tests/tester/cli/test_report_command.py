@@ -10,9 +10,9 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.results.run_results import results_of
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
-from tests.tester.results.test_settings import CHANGED, repeated_run
+from tests.tester.results.test_settings_compared import CHANGED, repeated_run
 
 
 @pytest.fixture

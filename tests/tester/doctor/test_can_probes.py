@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from drivers.ports import CanFrame
+from tester.doctor.bus_watch import RigWatch, watched
 from tester.doctor.can_probes import errors
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, Severity
-from tester.doctor.watch import RigWatch, watched
-from tester.doctor.wires import SimulatedWires
+from tester.doctor.open_wires import SimulatedWires
 from tester.kinds import load_rig
 from tests.tester.doctor.fake_computer import FakeComputer
 

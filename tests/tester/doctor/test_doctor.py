@@ -12,8 +12,8 @@ from drivers.canopen import objects as o
 from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Severity
+from tester.doctor.open_wires import SimulatedWires
 from tester.doctor.probe_table import PROBES, examined
-from tester.doctor.wires import SimulatedWires
 from tester.kinds import load_rig
 from tests.campaigns.mistakes.by_doctor import MISTAKES, Mistake, clean, looked_at
 from tests.tester.doctor.fake_computer import FakeComputer

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from tester.doctor import host_probes
+from tester.doctor.bus_watch import RigWatch
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, Severity
+from tester.doctor.open_wires import SimulatedWires
 from tester.doctor.probe_table import Probe
-from tester.doctor.watch import RigWatch
-from tester.doctor.wires import SimulatedWires
 from tester.kinds import load_rig
 from tests.tester.doctor.fake_computer import CELL, HEAT, FakeComputer, ip_link, on_adapters
 

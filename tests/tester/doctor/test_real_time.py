@@ -11,8 +11,8 @@ import pytest
 from sim.wires.can_traffic import Beat
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Severity
+from tester.doctor.open_wires import HardwareWires
 from tester.doctor.probe_table import examined
-from tester.doctor.wires import HardwareWires
 from tests.tester.doctor.fake_computer import FakeComputer
 from tests.tester.run.test_hardware import Machine
 

@@ -7,7 +7,7 @@ from math import isnan
 import pytest
 
 from tester.base.source import InvalidSource
-from tester.inputs.rig.sensors import further_channels
+from tester.inputs.rig.further_sensors import further_channels
 from tester.kinds import load_rig, load_rig_text
 from tester.service.buses import BusWatch
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, Simulation

@@ -53,10 +53,10 @@ def report(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     if given:
         path.write_bytes(Path(given).read_bytes())
         return path
-    from tester.report.build import report_of
     from tester.report.charts import Material, values_of
     from tester.report.page import page_of
-    from tester.report.record import MachineWords, read_record
+    from tester.report.record_section import MachineWords, read_record
+    from tester.report.report_build import report_of
 
     design = [(t, load, slip) for t in (25.0, 55.0) for load in (100.0, 200.0, 400.0) for slip in (0.1, 0.3)]
     run = made_run(tmp_path_factory.mktemp("runs") / "one", design, carried=[2], failed=[4])

@@ -14,7 +14,7 @@ from tester.report.chart import Chart, ChartSurface, Figure, Series
 from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
 from tester.report.law_charts import components_chart
 from tester.results.run_results import RunResults, results_of
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 from tests.tester.store.build import CONDITION

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tester.analysis.master_curve.made import master_of
+from tester.analysis.master_curve.fitted_curve import master_of
 from tester.report.law_charts import master_chart
 from tests.campaigns.master.synthetic import SPEEDS_M_S, synthetic
 

@@ -15,11 +15,11 @@ import pytest
 from tester.analysis.reference import ControlChart, ControlPoint
 from tester.base.plugins import MissingExtraError
 from tester.base.words import FORBIDDEN
-from tester.report.build import report_of
 from tester.report.charts import Material, values_of
 from tester.report.layout import Paragraph, Report, ReportSection
 from tester.report.page import LONGEST, POLICY, page_of, readable
-from tester.report.record import MachineWords, RunRecord, read_record
+from tester.report.record_section import MachineWords, RunRecord, read_record
+from tester.report.report_build import report_of
 from tester.results.run_results import ReferenceWatch
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 from tests.tester.results.test_reference import BLUNT, SHARP, watched_run

@@ -5,7 +5,7 @@ from __future__ import annotations
 from io import BytesIO
 
 from tester.results.formats import FORMATS, Record
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 
 def made(kind: str, reader: RunReader, decimals: int = 2) -> bytes:

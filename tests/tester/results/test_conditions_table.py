@@ -17,7 +17,7 @@ from tester.results import conditions_table as module
 from tester.results.columns import Column, Output
 from tester.results.conditions_table import ConditionRow, conditions_table
 from tester.results.run_results import RunResults, results_of
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.tui.stored import read
 from tests.tester.results.made import made
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, result, small_run
@@ -59,9 +59,9 @@ def test_a_column_is_on_the_screen(more: None, tmp_path: Path) -> None:
 
 
 def test_a_column_is_in_the_report(more: None, tmp_path: Path) -> None:
-    from tester.report.conditions import conditions_section, drift_section, short_table
+    from tester.report.condition_tables import conditions_section, drift_section, short_table
     from tester.report.layout import ReportTable
-    from tester.report.record import MachineWords, read_record
+    from tester.report.record_section import MachineWords, read_record
 
     record = read_record(small_run(tmp_path), MachineWords("a rig", "a coefficient"))
     tables = [short_table(record.results)]
@@ -75,7 +75,7 @@ def test_a_column_is_in_the_report(more: None, tmp_path: Path) -> None:
 
 def test_a_column_is_in_the_tables_of_a_sweep(more: None) -> None:
     from tester.kinds.wheel_on_belt.image.axes import AXES
-    from tester.run.sweep.tables import condition_header
+    from tester.run.sweep.sweep_tables import condition_header
 
     assert "grip" in condition_header((), AXES)
 

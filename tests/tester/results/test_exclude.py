@@ -13,7 +13,7 @@ from tester.results import TableRow, exclude, write_all
 from tester.results.exclude import CannotExcludeError, Word, parse_target, record_word
 from tester.results.run_results import RunResults, results_of
 from tester.results.verify import verify
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.tester.store.build import RUN, small_run
 
 REASON = "debris on the belt"

@@ -13,7 +13,7 @@ import pytest
     "module",
     [
         "tester.store.writer",
-        "tester.store.reader",
+        "tester.store.run_reader",
         "tester.analysis.blocks",
         "tester.analysis.reduce",
         "tester.analysis.repeats",

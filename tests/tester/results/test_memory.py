@@ -12,7 +12,7 @@ import pytest
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results import write_format
 from tester.results.formats import FORMATS, Record
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.store.build import RUN, Clock, row
 
@@ -52,7 +52,7 @@ import resource, sys
 from pathlib import Path
 from tester.results import write_format
 from tester.results.formats import FORMATS, Record
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 folder, kind = Path(sys.argv[1]), sys.argv[2]
 with RunReader(folder) as reader:
     write_format(folder / FORMATS[kind].file, FORMATS[kind], Record(reader))

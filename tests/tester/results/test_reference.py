@@ -15,8 +15,8 @@ from tester.cli.ending import ending_table
 from tester.cli.main import invoke
 from tester.results import write_all
 from tester.results.run_results import RunResults, results_of
-from tester.store.reader import RunReader
 from tester.store.records import Travel
+from tester.store.run_reader import RunReader
 from tests.tester.results.made import made
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, record
 

@@ -21,10 +21,10 @@ from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.machine.results import condition_records
-from tester.results.cells import unescaped
-from tester.store.reader import RunReader
+from tester.machine.result_keeping import condition_records
+from tester.results.table_cells import unescaped
 from tester.store.records import SpecimenInfo
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.inputs.recipe.texts import real_rig
 from tests.tester.results.made import made

@@ -11,8 +11,8 @@ from tester.analysis.flags import SHORT, THERMOMETER
 from tester.analysis.results import ConditionStatus, RepeatStatus, SoakCheck
 from tester.results.conditions_table import conditions_table
 from tester.results.run_results import RunResults, results_of
-from tester.store.reader import RunReader
-from tester.store.schema import StoreError
+from tester.store.record_schema import StoreError
+from tester.store.run_reader import RunReader
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, result, small_run
 
 

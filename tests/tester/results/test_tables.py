@@ -21,8 +21,8 @@ from tester.results.pieces_table import checks_table, pieces_table
 from tester.results.repeats_table import repeats_table
 from tester.results.run_results import results_of
 from tester.results.settings_table import settings_table
-from tester.store.reader import RunReader
 from tester.store.records import PieceInfo
+from tester.store.run_reader import RunReader
 from tests.tester.results.made import made
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, Clock, open_writer, record, result, row, small_run
 

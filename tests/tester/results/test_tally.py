@@ -8,7 +8,7 @@ from pathlib import Path
 from tester.analysis.flags import CARRY_OVER
 from tester.results.run_results import results_of
 from tester.results.tally import flag_lines, tally_of
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.tester.results.test_reference import BLUNT, SHARP, watched_run
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, small_run
 

@@ -16,7 +16,7 @@ from tester.analysis.results import RepeatStatus
 from tester.cli.main import invoke
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.run.test_session import Screen

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tester.run.commission_run import PersonScreen
-from tester.tui.guide.person import ScreenPerson
+from tester.tui.guide.guide_person import ScreenPerson
 
 
 @pytest.mark.parametrize(

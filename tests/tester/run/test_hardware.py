@@ -13,7 +13,7 @@ from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.servers.server import RigServer
 from tester.base import clock
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
+from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_devices
 from tester.machine.connect import Connector, Stage

@@ -14,7 +14,7 @@ from tester.results import write_all
 from tester.results.verify import verify
 from tester.run.latch import MANUAL_RUNS, acknowledge, open_trips
 from tester.service.commands import Acknowledge, RunRecipe
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.tester.service.stage import Script, Stage, play
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer
 

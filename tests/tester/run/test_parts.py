@@ -18,16 +18,16 @@ import pytest
 from tester.kinds import hardware_text
 from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.ports import Ports
+from tester.machine.rig_ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.run import part_run
 from tester.run.folder import PARTS
 from tester.run.merge_parts import recover
 from tester.run.session import Session, SessionOptions
 from tester.run.simulated import simulated_ports
-from tester.store import schema
-from tester.store.reader import RunReader
-from tester.store.schema import VERSION
+from tester.store import record_schema
+from tester.store.record_schema import VERSION
+from tester.store.run_reader import RunReader
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.run.test_session import TABLES, Ended, Screen
 
@@ -229,8 +229,8 @@ def test_a_part_that_was_cut_off_as_it_began_is_none(tmp_path: Path, one: Ended,
     for copy in (folder, folder / PARTS / "1"):
         shutil.copy(one.folder / "run.db", copy)
     with closing(sqlite3.connect(folder / PARTS / "2" / "run.db")) as begun, pytest.MonkeyPatch.context() as patch:
-        patch.setattr(schema, "VERSION", steps)
-        schema.migrate(begun)
+        patch.setattr(record_schema, "VERSION", steps)
+        record_schema.migrate(begun)
     recover(folder)
     with RunReader(folder) as reader, RunReader(one.folder) as other:
         assert list(reader.repeats()) == list(other.repeats())

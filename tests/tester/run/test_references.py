@@ -12,12 +12,12 @@ import pytest
 from tester.cli.main import invoke
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
-from tester.store.reader import DATABASE, RunReader
-from tester.store.resume import resume_point
+from tester.store.resumable import resume_point
+from tester.store.run_reader import DATABASE, RunReader
 from tester.store.writer import RunWriter
 from tester.tui.playback import load
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
-from tests.tester.run.test_resume import StoppedError
+from tests.tester.run.test_resumed_run import StoppedError
 from tests.tester.run.test_session import Screen
 
 TEXT = (

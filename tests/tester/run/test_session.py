@@ -23,8 +23,8 @@ from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.heatings import heating_data
 from tester.machine.context import Progress
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.machine.time_left import RunPosition
 from tester.run import folder as folder_module
@@ -33,7 +33,7 @@ from tester.run.bus_log import BusLog
 from tester.run.folder import make_folder
 from tester.run.session import Session, SessionOptions
 from tester.run.simulated import simulated_ports
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.kinds.wheel_on_belt.bench import HOT, QUIET, SHORT
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record

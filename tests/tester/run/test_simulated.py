@@ -17,7 +17,7 @@ from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity
 from tester.run.session import Session, SessionOptions
 from tester.run.sweep.case import Unseen
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tests.test_names import names_in
 
 ROOT = Path(__file__).parents[3]
@@ -99,5 +99,5 @@ def test_what_reduces_and_exports_knows_no_truth(folder: str) -> None:
 
 def test_a_reader_has_no_way_to_it() -> None:
     assert [name for name in dir(RunReader) if "truth" in name] == []
-    tree = ast.parse((ROOT / "tester/store/reader.py").read_text(encoding="utf-8"))
+    tree = ast.parse((ROOT / "tester/store/run_reader.py").read_text(encoding="utf-8"))
     assert [name for _, name in names_in(tree) if "truth" in name] == []

@@ -21,11 +21,11 @@ from tester.base.screen import MachineView
 from tester.service.address import Address, UnixAddress
 from tester.service.gateway import Gateway
 from tester.service.hook import Hook
-from tester.service.link import FROM_GATEWAY, Order, Presence
 from tester.service.listening import listening
 from tester.service.protocol import Accepted, Event, Refused, encode
 from tester.service.queries import Queries
-from tester.service.state import PlanView, StateView
+from tester.service.service_link import FROM_GATEWAY, Order, Presence
+from tester.service.state_view import PlanView, StateView
 from tests.tester.service.views import MACHINE
 from tests.tester.service.views import state as a_state
 

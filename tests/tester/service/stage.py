@@ -23,11 +23,11 @@ from tester.run.preconditions import Prepared, prepared
 from tester.service.address import UnixAddress
 from tester.service.commands import RigAction
 from tester.service.gateway_link import GatewayLink, LinkConfig
-from tester.service.link import Order, Presence
 from tester.service.planning import Task
 from tester.service.protocol import Event, Frames
 from tester.service.service import Service, ServiceOptions
-from tester.service.state import PlanView, StateView
+from tester.service.service_link import Order, Presence
+from tester.service.state_view import PlanView, StateView
 
 Script = Generator[Order | Presence | list[Order | Presence] | None]
 MOST_POLLS = 20_000

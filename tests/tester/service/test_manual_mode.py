@@ -12,12 +12,12 @@ from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
 from tester.kinds.wheel_on_belt.served.manual import WheelHand
 from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.service.commands import Arm, Hold, Jog, Stop, Tare
-from tester.service.link import Presence
 from tester.service.manual_mode import left_on_rig
-from tester.service.state import StateView
-from tester.store.catalogue import run_folders
-from tester.store.reader import RunReader
+from tester.service.service_link import Presence
+from tester.service.state_view import StateView
 from tester.store.records import PieceInfo, RunInfo
+from tester.store.run_folders import run_folders
+from tester.store.run_reader import RunReader
 from tests.tester.service.stage import Script, Stage, play
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer
 

@@ -21,7 +21,7 @@ from tester.service.preflight import (
     last_run_check,
     past_of,
 )
-from tester.service.state import DiskView
+from tester.service.state_view import DiskView
 from tester.store.records import PieceInfo
 from tests.tester.service.views import state, with_alarm
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer

@@ -37,7 +37,7 @@ from tester.service.protocol import (
     schema,
     to_server,
 )
-from tester.service.state import MODES
+from tester.service.state_view import MODES
 from tests.tester.service.views import HOSTILE, MACHINE, hostile, plan, state, with_alarm
 
 SCHEMA = Path(__file__).parents[3] / "docs" / "protocol.schema.json"

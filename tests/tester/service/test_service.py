@@ -25,10 +25,10 @@ from tester.service.commands import (
     Stop,
     Tare,
 )
-from tester.service.link import Presence
 from tester.service.service import interrupted_runs
-from tester.service.state import StateView
-from tester.store.reader import RunReader
+from tester.service.service_link import Presence
+from tester.service.state_view import StateView
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.inputs.rig.test_ceilings import NONSENSE
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT

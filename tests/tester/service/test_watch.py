@@ -6,7 +6,7 @@ import pytest
 
 from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.run.folder import part_time
-from tester.service.state import SoakView
+from tester.service.state_view import SoakView
 from tester.service.values import PlanTrack
 from tester.service.watch import RunWatch
 from tests.campaigns.faults.stage import Stage, rig_of

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from tester.base.screen import Check, Gate, SoakView, Value
 from tester.kinds.wheel_on_belt.served.screen import MACHINE as MACHINE
-from tester.service.state import (
+from tester.service.state_view import (
     Alarm,
     BusView,
     ClientsView,

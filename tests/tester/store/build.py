@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.image.axes import AXES, KIND
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo, PieceInfo, RunInfo, SpecimenInfo
-from tester.store.statements import Judged
+from tester.store.sql import Judged
 from tester.store.writer import RunWriter
 from tests.tester.analysis.series import means_of
 

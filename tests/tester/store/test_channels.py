@@ -19,8 +19,8 @@ from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.recomputed import coefficient_problems
 from tester.store.channels import channel_rows, quantities_of
 from tester.store.merge import Merge
-from tester.store.reader import RunReader
-from tester.store.resume import resume_point
+from tester.store.resumable import resume_point
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tester.tui.stored import condition
 from tests.tester.results.made import made

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RESERVE, RunWriter
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, Clock, result, utc
 

@@ -13,9 +13,9 @@ import pytest
 
 from tester.store.amend import add_exclusion
 from tester.store.merge import HEADER, TABLES, Merge
-from tester.store.reader import RunReader
+from tester.store.record_schema import StoreError, migrate
 from tester.store.records import ConditionInfo, PieceInfo, StoredExclusion
-from tester.store.schema import StoreError, migrate
+from tester.store.run_reader import RunReader
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record, small_run
 
 FIRST_S, SECOND_S = 2700.5, 100.25

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tester.store.reader import RunReader
 from tester.store.records import Travel
-from tester.store.resume import resume_point
+from tester.store.resumable import resume_point
+from tester.store.run_reader import RunReader
 from tests.tester.store.build import CONDITIONS, PIECE, RUN, SPECIMENS, open_writer
 
 

@@ -15,11 +15,11 @@ import pytest
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.store.reader import RunReader
+from tester.store.record_schema import StoreError
 from tester.store.recorder import NullRecorder, Recorder
 from tester.store.records import PieceInfo, SessionInfo
+from tester.store.run_reader import RunReader
 from tester.store.sample_blocks import BLOCK_ROWS
-from tester.store.schema import StoreError
 from tester.store.writer import LOSSLESS_LIMIT, RunWriter
 from tests.tester.store.build import (
     BURSTS,

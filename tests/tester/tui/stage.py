@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 
 from tester.service.commands import Action, CheckRecipe, ListRuns, Query, ShowPlan
 from tester.service.queries import Queries
-from tester.service.state import PlanView, StateView
+from tester.service.state_view import PlanView, StateView
 from tester.tui.app import TesterApp
 from tester.tui.host import TuiOptions
 from tester.tui.pages.bus import BusPage

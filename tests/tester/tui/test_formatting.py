@@ -7,8 +7,8 @@ from dataclasses import replace
 from tester.tui.filters import ascii_text
 from tester.tui.formatting import clean, fit, reflow
 from tester.tui.plot import Canvas, PlotRange, Point, round_step, scatter
-from tester.tui.scene import ScreenScene
-from tester.tui.widgets.values import bar, beyond
+from tester.tui.screen_scene import ScreenScene
+from tester.tui.widgets.values_panel import bar, beyond
 from tests.tester.service.views import HOSTILE, value
 
 

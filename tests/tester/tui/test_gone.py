@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.tui.scene import ScreenScene
+from tester.tui.screen_scene import ScreenScene
 from tests.tester.service.views import state as a_state
 from tests.tester.tui.stage import Stage, play
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.run.kinds import load_rig
+from tester.run.kind_lookup import load_rig
 from tester.service.commands import (
     Acknowledge,
     Answer,
@@ -22,7 +22,7 @@ from tester.service.commands import (
     Tare,
     WatchFrames,
 )
-from tester.service.state import ManualView
+from tester.service.state_view import ManualView
 from tester.tui.pages.recipes import RecipesView
 from tests.tester.service.views import state as a_state
 from tests.tester.service.views import with_alarm, with_prompt

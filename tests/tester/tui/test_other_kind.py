@@ -9,7 +9,7 @@ from textual.widgets import OptionList
 
 from tester.base.screen import HandAxis, MachineView, PlotView, Value
 from tester.service.commands import Arm, Jog
-from tester.service.state import ManualView
+from tester.service.state_view import ManualView
 from tester.tui.gone import death_text
 from tests.tester.service.views import HOSTILE
 from tests.tester.service.views import state as a_state

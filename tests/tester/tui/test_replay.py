@@ -14,7 +14,7 @@ import pytest
 from tester.cli.main import invoke
 from tester.tui.playback import Playback, load
 from tester.tui.replay import ReplayApp
-from tester.tui.scene import ScreenScene
+from tester.tui.screen_scene import ScreenScene
 from tester.tui.stored import condition, read
 from tests.tester.tui.stage import WAIT_S, screen_text
 

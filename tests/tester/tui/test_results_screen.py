@@ -12,11 +12,11 @@ from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.results import write_all
 from tester.results.run_results import results_of
 from tester.service.commands import Stop
-from tester.service.state import ProgressView
-from tester.store.reader import RunReader
-from tester.tui.dialogs.exclude import ExcludeDialog
-from tester.tui.dialogs.repeats import RepeatsDialog
-from tester.tui.pages.results import ResultsView
+from tester.service.state_view import ProgressView
+from tester.store.run_reader import RunReader
+from tester.tui.dialogs.exclude_dialog import ExcludeDialog
+from tester.tui.dialogs.repeats_dialog import RepeatsDialog
+from tester.tui.pages.results_page import ResultsView
 from tester.tui.stored import Row, Stored, points, read, series
 from tests.tester.service.views import state
 from tests.tester.store.build import small_run

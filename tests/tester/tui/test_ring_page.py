@@ -9,9 +9,9 @@ import pytest
 
 from tester.analysis.ring_errors import RingSegment
 from tester.analysis.ring_runs import RingRun
-from tester.tui.pages.ring import RingPage
+from tester.tui.pages.ring_page import RingPage
 from tester.tui.rings import KeptRings
-from tester.tui.widgets.ring import columns
+from tester.tui.widgets.ring_panel import columns
 from tests.tester.kinds.wheel_on_belt.runs.test_slip_ring import ring_run
 from tests.tester.service.views import HOSTILE
 from tests.tester.service.views import state as a_state
@@ -122,7 +122,7 @@ def test_columns_are_as_high_as_their_counts_and_the_greatest_has_its_number() -
 
 
 def test_only_runs_of_the_rig_that_ran_last_are_shown(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tester.run.kinds import RingFound, ring_part
+    from tester.run.kind_lookup import RingFound, ring_part
 
     part = ring_part("wheel_on_belt")
     assert part is not None

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.service.state import StateView
+from tester.service.state_view import StateView
 from tests.tester.service.views import HOSTILE, hostile, plan, stale, with_alarm, with_prompt
 from tests.tester.service.views import state as a_state
 from tests.tester.tui.stage import Stage, colours, play

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final, NoReturn
 
 from sim.physics.wlf import C1, C2_K, FITTED_K, GLASS_TO_REFERENCE_K
-from tester.analysis.fit.law import Band, FitError, Law, LawParameter, Variable
-from tester.kinds.specimen_on_track.fit.runs import LOAD, SPEED, TEMPERATURE, VARIABLES
+from tester.analysis.fit.fit_law import Band, FitError, Law, LawParameter, Variable
+from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED, TEMPERATURE, VARIABLES
 
 if TYPE_CHECKING:
     import numpy as np

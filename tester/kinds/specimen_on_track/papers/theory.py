@@ -12,7 +12,7 @@ from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
 from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight
 from tester.kinds.specimen_on_track.papers.grosch import NEGLIGIBLE, PREDICT
-from tester.kinds.specimen_on_track.papers.made import (
+from tester.kinds.specimen_on_track.papers.paper_parts import (
     PRESSURE_PA,
     ROOM_C,
     SPEEDS_M_S,

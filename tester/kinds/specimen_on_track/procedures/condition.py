@@ -7,10 +7,10 @@ from math import inf
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.context import TrackContext
 from tester.kinds.specimen_on_track.procedures.slide import MeasureTrackRepeat
-from tester.kinds.specimen_on_track.recipe.steps import TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import TrackCondition
 from tester.machine.condition import MeasureCondition
 from tester.machine.measured import ConditionEnd, Ending
-from tester.machine.results import StoredResults
+from tester.machine.result_keeping import StoredResults
 
 
 class TrackResults(StoredResults[TrackContext]):

@@ -17,7 +17,7 @@ from tester.analysis.stability import REPEAT_WINDOWS, filled
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.context import TrackContext, TrackTarget
 from tester.kinds.specimen_on_track.procedures.motions import ComeToStand, GoTo, TakeTrackTare, arm
-from tester.kinds.specimen_on_track.recipe.steps import STRETCHES, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES, TrackCondition
 from tester.machine.activity import Activity
 from tester.machine.measured import Ending
 from tester.machine.motions import Power, Sequence, Settle

@@ -12,12 +12,12 @@ from tester.analysis.uncertainty import Budget
 from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource
 from tester.inputs.materials.setting import law_setting
-from tester.inputs.recipe.estimate import NEW, Outlook, StepEstimate
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
-from tester.inputs.recipe.repeats import expected
+from tester.inputs.recipe.repeats_section import expected
+from tester.inputs.recipe.time_estimate import NEW, Outlook, StepEstimate
 from tester.kinds.specimen_on_track.axes import TrackHeld, held_by
 from tester.kinds.specimen_on_track.budget import instruments_budget
-from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 PERSON_S: Final = 300.0

@@ -9,7 +9,7 @@ from typing import Final
 from tester.base.axes import Setpoint, condition_words
 from tester.base.source import Location, Problem, Tree
 from tester.inputs.recipe.conditions import conditions_of
-from tester.inputs.recipe.schema import Recipe
+from tester.inputs.recipe.recipe_schema import Recipe
 from tester.kinds.specimen_on_track.axes import AXES
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.schema import track_settings

@@ -1,4 +1,4 @@
-"""What this machine says about recipes (``tester.inputs.recipe.part``)."""
+"""What this machine says about recipes (``tester.inputs.recipe.recipe_part``)."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.base.words import rough_duration
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
-from tester.inputs.recipe.describe import repeats_words
-from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
-from tester.inputs.recipe.part import RecipePart
+from tester.inputs.recipe.grid_settings import Settings
 from tester.inputs.recipe.plan import Plan, PromptStep, Specimen, Stand, Step
-from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe
+from tester.inputs.recipe.plan_text import repeats_words
+from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
-from tester.inputs.recipe.settings import Settings
+from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate
 from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.feasible import low_friction, out_of_reach
-from tester.kinds.specimen_on_track.recipe.law import law_problems
+from tester.kinds.specimen_on_track.recipe.law_problems import law_problems
+from tester.kinds.specimen_on_track.recipe.plan_steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.recipe.schema import TrackGrid, TrackMeasure, TrackRecipe, track_settings
-from tester.kinds.specimen_on_track.recipe.steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 UNUSED: Final = ("window", "extend_to")

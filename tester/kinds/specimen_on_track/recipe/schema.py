@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Annotated, TypeAlias
 
 from tester.base.units import Quantity
+from tester.inputs.recipe.grid_settings import DEFAULT_EXTENSION, Settings, settings_of
 from tester.inputs.recipe.plan import Window
-from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe
-from tester.inputs.recipe.settings import DEFAULT_EXTENSION, Settings, settings_of
-from tester.kinds.specimen_on_track.recipe.steps import STRETCHES
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
+from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES
 
 Distance: TypeAlias = Annotated[float, Quantity("mm", ge=0.1, le=1e6)]
 AtLeast: TypeAlias = Annotated[float, Quantity("s", ge=1.0, le=3600.0)]

@@ -13,19 +13,19 @@ from drivers.ports import BusLost
 from tester.kinds.wheel_on_belt.commission.moves import COMMISSIONING, MovesExecutor
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import rig_bounds
-from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_run
 from tester.machine.activity import Activity
 from tester.machine.commission.person import Dialogue, Waits
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.state import Mode
 from tester.store.recorder import NullRecorder
 
 
 class ArmedSeat:
-    """The rig as the later steps see it (tester.machine.commission.step.Seat)."""
+    """The rig as the later steps see it (tester.machine.commission.commission_step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
         """Send nothing; the simulated rig gets a new wheel."""

@@ -13,8 +13,8 @@ from sim.physics.slip import predict
 from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import loss_ratios
+from tester.machine.commission.commission_step import Alone, Notes
 from tester.machine.commission.person import StepRefused
-from tester.machine.commission.step import Alone, Notes
 
 RECIPE: Final = """\
 recipe: {title}

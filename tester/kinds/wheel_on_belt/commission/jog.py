@@ -12,8 +12,8 @@ from math import degrees, pi
 from typing import Final
 
 from tester.kinds.wheel_on_belt.commission.quiet import JogSpeeds, QuietSeat
+from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
-from tester.machine.commission.step import Notes
 
 FIRST_SHARE: Final = 0.3
 """The first, little way may be read off by this share [A]: a ruler on some millimetres."""

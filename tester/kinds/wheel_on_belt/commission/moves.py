@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.executor import Executor, Procedures
 

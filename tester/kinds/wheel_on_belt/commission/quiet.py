@@ -17,13 +17,13 @@ from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
 from drivers.servo import ServoDrive
 from tester.kinds.wheel_on_belt.image.devices import Devices
-from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
+from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
-from tester.machine.ports import Ports
 from tester.machine.proof import ENABLE_S
+from tester.machine.rig_ports import Ports
 
 PRESS_S: Final = 2.0
 """Longest motion for a key press, s [A]: a terminal cannot detect a released key."""
@@ -247,7 +247,7 @@ class QuietConnector(Connector):
 
 
 class QuietSeat:
-    """The rig during the first steps (tester.machine.commission.step.Seat)."""
+    """The rig during the first steps (tester.machine.commission.commission_step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any, speeds: dict[str, JogSpeeds]) -> None:
         """Connect with the drives bounded (``jog_rig``)."""

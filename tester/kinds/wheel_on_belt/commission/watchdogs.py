@@ -19,10 +19,10 @@ from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_devices
+from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, StepRefused, Waits, choose, press, wait
-from tester.machine.commission.step import Notes
-from tester.machine.ports import Ports
 from tester.machine.proof import WatchdogProof
+from tester.machine.rig_ports import Ports
 
 SETPOINT_LATE: Final = 0x8250
 """EMCY code of an RPDO that did not arrive in time (CiA 301, table 26)."""
@@ -154,7 +154,7 @@ class TrialConnector(QuietConnector):
 
 
 class TrialSeat(QuietSeat):
-    """The rig lifted and unloaded, for trying watchdogs (tester.machine.commission.step.Seat)."""
+    """The rig lifted and unloaded, for trying watchdogs (tester.machine.commission.commission_step.Seat)."""
 
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
         """Connect; drives have the torque of a run."""

@@ -6,14 +6,16 @@ from math import inf
 from typing import Final
 
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
+from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s, may_heat, may_load, rig_bounds
-from tester.kinds.wheel_on_belt.control.safe_outputs import mirror_emergency, no_outputs, safe_outputs
-from tester.kinds.wheel_on_belt.control.state import WheelState
-from tester.kinds.wheel_on_belt.control.stops import (
+from tester.kinds.wheel_on_belt.control.stop_modes import (
     cool_outputs,
+    mirror_emergency,
     must_cool,
+    no_outputs,
     note_fast_stop,
     note_stop,
+    safe_outputs,
     stop_ended,
     stop_outputs,
 )

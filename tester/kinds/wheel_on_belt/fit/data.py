@@ -15,7 +15,7 @@ from enum import Enum
 from importlib.resources import files
 from typing import Final
 
-from tester.analysis.fit.law import FitPoint, Source, Sourced
+from tester.analysis.fit.fit_law import FitPoint, Source, Sourced
 
 APPENDICES: Final[Mapping[str, str]] = {"appendix-a": "appendix_a.csv", "appendix-b": "appendix_b.csv"}
 """Names of the packaged sources, and their files."""

@@ -13,7 +13,7 @@ from math import exp
 from typing import TYPE_CHECKING, Final
 
 from sim.physics.friction import COMPOUNDS, V2, V2_LOAD_N, V2_SLIP_M_S, V2_TEMPERATURE_C, PaperParameters, V2Parameters
-from tester.analysis.fit.law import Band, Law, LawParameter, Variable
+from tester.analysis.fit.fit_law import Band, Law, LawParameter, Variable
 
 if TYPE_CHECKING:
     import numpy as np

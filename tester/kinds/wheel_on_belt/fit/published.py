@@ -12,9 +12,9 @@ from typing import Final, NamedTuple
 
 from sim.physics.friction import COMPOUNDS, V2_TEMPERATURE_C, PaperParameters
 from tester.analysis.fit.check import Errors, errors_of
+from tester.analysis.fit.fit_law import FitPoint, Law, by_group
+from tester.analysis.fit.fit_part import Claim, PublishedTable, TableLine
 from tester.analysis.fit.joint import fit_only, predict
-from tester.analysis.fit.law import FitPoint, Law, by_group
-from tester.analysis.fit.part import Claim, PublishedTable, TableLine
 from tester.base.words import listed
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix, inferred_rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE, V2_LAW, joint_of

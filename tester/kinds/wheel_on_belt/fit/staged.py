@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from sim.physics.friction import V2_LOAD_N, V2_SLIP_M_S, V2_TEMPERATURE_C, PaperParameters
-from tester.analysis.fit.law import FitPoint, by_group
+from tester.analysis.fit.fit_law import FitPoint, by_group
 from tester.analysis.fit.solve import least_squares_of
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE, joint_of
 

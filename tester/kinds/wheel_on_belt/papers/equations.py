@@ -11,14 +11,14 @@ import numpy as np
 
 from sim.physics.friction import COMPOUNDS, PaperParameters, coefficient, thermal_factor
 from tester.analysis.fit.check import Errors, errors_of
+from tester.analysis.fit.fit_law import FitPoint, by_group
 from tester.analysis.fit.joint import fit_only, predict
-from tester.analysis.fit.law import FitPoint, by_group
 from tester.analysis.papers.item import PaperFinding, PaperItem, judged, slight, unjudged
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE
 from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, fitted, of_table_3
 from tester.kinds.wheel_on_belt.fit.staged import staged_table_3
-from tester.kinds.wheel_on_belt.papers.rows import COMPOUND_NAMES, errors_on, readable
+from tester.kinds.wheel_on_belt.papers.paper_rows import COMPOUND_NAMES, errors_on, readable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,14 @@ from tester.kinds.wheel_on_belt.fit.data import READABLE, rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP
 from tester.kinds.wheel_on_belt.fit.published import of_table_3
 from tester.kinds.wheel_on_belt.papers.equations import words
-from tester.kinds.wheel_on_belt.papers.rows import by_compound_words, errors_on, over_load, over_slip, peaks, steps
+from tester.kinds.wheel_on_belt.papers.paper_rows import (
+    by_compound_words,
+    errors_on,
+    over_load,
+    over_slip,
+    peaks,
+    steps,
+)
 
 DRAWS: Final = "tester figure RUN --law paper"
 NEARLY: Final = 0.95

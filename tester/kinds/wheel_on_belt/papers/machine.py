@@ -67,7 +67,7 @@ def _heating() -> PaperFinding:
 
 def _wheel() -> PaperFinding:
     from tester.kinds import load_rig
-    from tester.kinds.wheel_on_belt.rig.config import RigConfig
+    from tester.kinds.wheel_on_belt.rig.wheel_rig import RigConfig
 
     wheel = RigConfig.of(load_rig()).sim.wheel
     off_mm = max(abs(wheel.outer_diameter - OUTER_MM), abs(wheel.width - WIDTH_MM))

@@ -8,16 +8,24 @@ from math import log
 from typing import Final
 
 from sim.physics.friction import coefficient
+from tester.analysis.fit.fit_law import FitPoint, by_group
 from tester.analysis.fit.joint import fit_only, predict
-from tester.analysis.fit.law import FitPoint, by_group
 from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, unjudged
 from tester.kinds.wheel_on_belt.fit.data import READABLE, Reading, appendix, rows
 from tester.kinds.wheel_on_belt.fit.laws import V2_LAW
-from tester.kinds.wheel_on_belt.fit.master import MASTERS
+from tester.kinds.wheel_on_belt.fit.master_conditions import MASTERS
 from tester.kinds.wheel_on_belt.fit.published import FIT, QUOTED, VALIDATION, Quoted, of_table_3, quoted_rows, scaled
 from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.kinds.wheel_on_belt.papers.equations import CLAIMED, words
-from tester.kinds.wheel_on_belt.papers.rows import COMPOUND_NAMES, at, bias, errors_on, over_load, over_slip, readable
+from tester.kinds.wheel_on_belt.papers.paper_rows import (
+    COMPOUND_NAMES,
+    at,
+    bias,
+    errors_on,
+    over_load,
+    over_slip,
+    readable,
+)
 
 PRINTED_2: Final[Mapping[str, float]] = {"A009": 0.65, "A010": 0.48, "A012": 0.35}
 PRINTED_1: Final[Mapping[str, float]] = {"B001": 0.96, "A005": 0.78, "B009": 0.60}

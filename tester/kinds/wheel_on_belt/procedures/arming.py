@@ -9,8 +9,10 @@ from enum import Enum
 
 from drivers.canopen import objects as o
 from tester.kinds.wheel_on_belt.image.devices import Devices
+from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.rig.checks import EQUAL_DECELERATIONS
+from tester.kinds.wheel_on_belt.rig.wheel_rig import EQUAL_DECELERATIONS
+from tester.machine.connect import Arming
 from tester.machine.proof import ProofStage, WatchdogProof
 
 BUMP_S = 0.3
@@ -125,3 +127,19 @@ def unequal_decelerations(devices: Devices, radius_m: float) -> str:
         if not abs(at_rim - of_belt) <= EQUAL_DECELERATIONS * of_belt:
             return f"{name}: wheel {at_rim:.3g} m/s2 at the rim, belt {of_belt:.3g} m/s2: must be equal within 5 %"
     return ""
+
+
+class WheelArming(Arming[Devices, RigConfig]):
+    """The press lifts and the load cell is asked; wheel, belt and press follow, and stop without our heartbeat."""
+
+    def renew(self) -> None:
+        """Renew the jacket's lease; it stays in standby."""
+        self.devices.jacket.set_setpoint(self.rig.loops.heat.hub_min_c)
+
+    def lift(self) -> Unloaded:
+        """Lift the press, and ask the load cell."""
+        return Unloaded(self.devices, self.rig)
+
+    def prove(self) -> Proof:
+        """Try out the drives."""
+        return Proof(self.devices, self.rig)

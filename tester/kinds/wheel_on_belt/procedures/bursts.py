@@ -25,7 +25,7 @@ from tester.kinds.wheel_on_belt.procedures.burst_state import BurstNotes, Phase
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
 from tester.kinds.wheel_on_belt.procedures.run_in import RunIn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.machine.measured import Ending
 from tester.machine.motions import Power, Sequence, Settle
 

@@ -6,7 +6,7 @@ In pulses, as all sliding: each as long as the surface stays inside its band.
 from __future__ import annotations
 
 from tester.analysis.directions import is_reversed
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 
 
 class RunIn:

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from tester.analysis.wear import NO_CONDITION
+from tester.analysis.wear_rate import NO_CONDITION
 from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import Plan, PromptStep, Step
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
+from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
-from tester.kinds.wheel_on_belt.procedures.results import WheelResults
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, ShowContact
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, wheel_change
 from tester.machine.activity import Activity
 from tester.machine.executor import Procedures, Unforeseen

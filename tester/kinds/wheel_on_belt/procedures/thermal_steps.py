@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 from tester.inputs.recipe.plan import Soak
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, Turn, Yaw, near, straight
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Rest
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Rest
 from tester.kinds.wheel_on_belt.runs.heatings import KIND, LEAST_J, LEAST_RISE_K, heating_data
 from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Power, Sequence

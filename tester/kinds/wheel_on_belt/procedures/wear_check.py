@@ -14,7 +14,8 @@ from dataclasses import replace
 from math import hypot, isfinite, pi
 from typing import Final, NamedTuple
 
-from tester.analysis.wear import NO_CONDITION, WearCheck
+from tester.analysis.wear_rate import NO_CONDITION, WearCheck
+from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N, ROLL_CHECK_TURNS, roll_check_u_mm
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import NAN
 from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
@@ -22,8 +23,7 @@ from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, 
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, WheelLife, rubber_c
-from tester.kinds.wheel_on_belt.recipe.steps import WearCheck as Method
-from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_N, ROLL_CHECK_TURNS, roll_check_u_mm
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WearCheck as Method
 from tester.machine.motions import Power, Sequence, Settle
 
 TARE_WAIT_S: Final = 0.4

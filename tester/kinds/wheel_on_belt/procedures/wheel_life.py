@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from math import inf, nan, pi
 from typing import Final
 
-from tester.analysis.wear import WearCheck
+from tester.analysis.wear_rate import WearCheck
 from tester.kinds.wheel_on_belt.image.process import Readings
 from tester.kinds.wheel_on_belt.rig import WearConfig
 

@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
-from tester.kinds.wheel_on_belt.recipe.steps import Install, PreGrind, WornState
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind, WornState
 from tester.machine.motions import Power, Sequence
 from tester.store.records import PieceInfo
 

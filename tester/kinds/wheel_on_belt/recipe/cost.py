@@ -16,9 +16,9 @@ from sim.physics.slip import cornering_factor, slip_velocity
 from tester.analysis.judge import ALONE
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import Axes, Setpoint
-from tester.inputs.recipe.estimate import StepEstimate
 from tester.inputs.recipe.plan import Soak, Window
-from tester.inputs.recipe.repeats import HISTORIC_PERCENT, Counted, expected, repeats_each
+from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, Counted, expected, repeats_each
+from tester.inputs.recipe.time_estimate import StepEstimate
 from tester.kinds.wheel_on_belt.image.axes import AXES, Held, held_by
 from tester.kinds.wheel_on_belt.recipe.body import Body
 

@@ -9,14 +9,14 @@ from tester.analysis.difference import pieces_needed
 from tester.analysis.reference import EVERY, RESERVED
 from tester.base.axes import Axes, condition_words
 from tester.base.words import listed_some, rough_duration
-from tester.inputs.recipe.describe import repeats_words, window_words
-from tester.inputs.recipe.estimate import Estimate, StepEstimate
 from tester.inputs.recipe.plan import ConditionStep, PromptStep, Step
 from tester.inputs.recipe.plan_json import ConditionJson, quoted
-from tester.inputs.recipe.repeats import HISTORIC_PERCENT
+from tester.inputs.recipe.plan_text import repeats_words, window_words
+from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT
+from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
 from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
 from tester.kinds.wheel_on_belt.image.axes import held_by
-from tester.kinds.wheel_on_belt.recipe.steps import (
+from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Cool,
     Heat,
     Install,

@@ -13,16 +13,16 @@ from sim.physics.slip import slip_velocity
 from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Budget
 from tester.base.axes import Setpoint
-from tester.inputs.recipe.estimate import NEW, Outlook, StepEstimate
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
-from tester.inputs.recipe.repeats import MADE_UP, POOLED_DF, SURE, expected, repeats_each
-from tester.kinds.wheel_on_belt.budget import instruments_budget
+from tester.inputs.recipe.repeats_section import MADE_UP, POOLED_DF, SURE, expected, repeats_each
+from tester.inputs.recipe.time_estimate import NEW, Outlook, StepEstimate
+from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_TURNS, instruments_budget, roll_check_u_mm
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, held_by
 from tester.kinds.wheel_on_belt.recipe.body import Body
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
 from tester.kinds.wheel_on_belt.recipe.cost import ROLLING_M_S, ConditionCosts
 from tester.kinds.wheel_on_belt.recipe.order import Before, OrderCosts
-from tester.kinds.wheel_on_belt.recipe.steps import (
+from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Cool,
     Heat,
     Install,
@@ -32,7 +32,6 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelPlan,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
-from tester.kinds.wheel_on_belt.roll_check import ROLL_CHECK_TURNS, roll_check_u_mm
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig

@@ -14,13 +14,10 @@ from typing import TYPE_CHECKING, Final
 
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
-from tester.inputs.recipe.estimate import StepEstimate
 from tester.inputs.recipe.plan import PromptStep, Specimen
+from tester.inputs.recipe.time_estimate import StepEstimate
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
-from tester.kinds.wheel_on_belt.recipe.rounds import ReferenceRounds, ReservedWheel
-from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
-from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
-from tester.kinds.wheel_on_belt.recipe.steps import (
+from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     PreGrind,
     PreparePolicy,
     Rest,
@@ -29,6 +26,8 @@ from tester.kinds.wheel_on_belt.recipe.steps import (
     WheelStep,
     WheelWear,
 )
+from tester.kinds.wheel_on_belt.recipe.rounds import ReferenceRounds, ReservedWheel
+from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe, WheelSettings, wheel_settings
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, mount_again, prepare_wheel
 
 if TYPE_CHECKING:

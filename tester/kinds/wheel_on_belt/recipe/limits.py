@@ -18,15 +18,15 @@ from tester.base.axes import Axis
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import Quantity, UnitError, show, shown
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
-from tester.kinds.wheel_on_belt.recipe.reference import AT
+from tester.kinds.wheel_on_belt.recipe.references import AT
 from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD
-from tester.kinds.wheel_on_belt.rig.press import RIPPLE_N
+from tester.kinds.wheel_on_belt.rig.wheel_rig import RIPPLE_N
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
 
 DEFAULT_BAND_K = 2.0
-"""Temperature band of a recipe that names none (``tester.inputs.recipe.schema.MeasureModel``)."""
+"""Temperature band of a recipe that names none (``tester.inputs.recipe.recipe_schema.MeasureModel``)."""
 TOUCHES = 1.5
 """The least load is this times the touching force [A]: the press moves until it feels that force, and runout and noise
 add some 12 N. On the simulated rig 10 N trip "load overshoot", 12 N sometimes do, 15 N do not.

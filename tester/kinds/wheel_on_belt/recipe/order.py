@@ -9,7 +9,7 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from tester.base.axes import Setpoint
-from tester.inputs.recipe.estimate import StepEstimate
+from tester.inputs.recipe.time_estimate import StepEstimate
 from tester.kinds.wheel_on_belt.recipe.body import Body
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""This machine's part for recipes (``tester.inputs.recipe.part``)."""
+"""This machine's part for recipes (``tester.inputs.recipe.recipe_part``)."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tester.analysis.terms import Term
 from tester.base.axes import Axes, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
-from tester.inputs.recipe.estimate import Estimate, Estimator, StepEstimate
-from tester.inputs.recipe.part import RecipePart
+from tester.inputs.recipe.grid_settings import values_of
 from tester.inputs.recipe.plan import Plan, Stand, Step
-from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe
+from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import listed
-from tester.inputs.recipe.settings import values_of
+from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate
 from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.budget import terms_of
 from tester.kinds.wheel_on_belt.image.axes import AXES, KIND, LEAST_SPEED_M_S
@@ -23,13 +23,19 @@ from tester.kinds.wheel_on_belt.recipe import describe
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.limits import limit_problems
-from tester.kinds.wheel_on_belt.recipe.reference import reference_problems
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.references import reference_problems
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
 from tester.kinds.wheel_on_belt.recipe.reversal import reversal_problems
-from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure, WheelRecipe, for_wheels
-from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings, wheel_settings
-from tester.kinds.wheel_on_belt.recipe.steps import Install, WheelPlan
-from tester.kinds.wheel_on_belt.recipe.wear import wear_problems
+from tester.kinds.wheel_on_belt.recipe.schema import (
+    WheelGrid,
+    WheelMeasure,
+    WheelRecipe,
+    WheelSettings,
+    for_wheels,
+    wheel_settings,
+)
+from tester.kinds.wheel_on_belt.recipe.wear_checks import wear_problems
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 

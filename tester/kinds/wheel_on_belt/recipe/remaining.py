@@ -13,7 +13,7 @@ from dataclasses import replace
 from itertools import repeat
 
 from tester.inputs.recipe.plan import Mounted, PromptStep, Stand
-from tester.kinds.wheel_on_belt.recipe.steps import (
+from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Cool,
     Heat,
     Install,

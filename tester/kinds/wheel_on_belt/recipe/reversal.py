@@ -9,12 +9,11 @@ from math import cos, hypot, radians, sin
 from tester.base.axes import numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
-from tester.inputs.recipe.schema import GridModel, MeasureModel
+from tester.inputs.recipe.grid_settings import values_of
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel
 from tester.inputs.recipe.semantics import listed
-from tester.inputs.recipe.settings import values_of
 from tester.kinds.wheel_on_belt.image.axes import LEAST_SPEED_M_S, POSITIONED
-from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure
-from tester.kinds.wheel_on_belt.recipe.settings import wheel_settings
+from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelMeasure, wheel_settings
 
 KEY = "both_directions"
 

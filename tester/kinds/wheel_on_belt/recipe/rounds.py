@@ -13,11 +13,10 @@ from dataclasses import dataclass
 from tester.analysis.reference import RESERVED
 from tester.inputs.recipe.conditions import Condition
 from tester.inputs.recipe.plan import Specimen
-from tester.inputs.recipe.reference import reference_metadata
-from tester.kinds.wheel_on_belt.recipe.reference import reference_condition
-from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe
-from tester.kinds.wheel_on_belt.recipe.settings import WheelSettings
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, WheelStep
+from tester.inputs.recipe.reference_section import reference_metadata
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, WheelStep
+from tester.kinds.wheel_on_belt.recipe.references import reference_condition
+from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe, WheelSettings
 
 ABOVE_AMBIENT_K = 2.0
 """A hub turning in the air comes this near to ambient in a time worth waiting for [A]."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from itertools import repeat
 
 from tester.inputs.recipe.plan import PromptStep, Specimen
-from tester.kinds.wheel_on_belt.recipe.steps import (
+from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Cool,
     Heat,
     Install,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from tester.kinds.wheel_on_belt.rig.config import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import (
     ArmingConfig,
     AxesConfig,
@@ -18,6 +17,7 @@ from tester.kinds.wheel_on_belt.rig.sections import (
     WearConfig,
     interlock_values,
 )
+from tester.kinds.wheel_on_belt.rig.wheel_rig import RigConfig
 
 __all__ = [
     "ArmingConfig",

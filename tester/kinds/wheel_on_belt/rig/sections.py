@@ -105,7 +105,7 @@ else:
 
 @dataclass(frozen=True, slots=True)
 class LoadLoopConfig:
-    """Press control: approach, touch, hold (tester.kinds.wheel_on_belt.control.load_loop)."""
+    """Press control: approach, touch, hold (tester.kinds.wheel_on_belt.control.loops)."""
 
     bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
     rolling_bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
@@ -131,7 +131,7 @@ class LoadLoopConfig:
 
 @dataclass(frozen=True, slots=True)
 class HeatLoopConfig:
-    """Outer heat loop: surface error to hub setpoint (tester.kinds.wheel_on_belt.control.heat_loop)."""
+    """Outer heat loop: surface error to hub setpoint (tester.kinds.wheel_on_belt.control.loops)."""
 
     outer_gain: Annotated[float, "1", _NOT_NEGATIVE]
     """Kelvin of hub setpoint per kelvin of surface error."""

@@ -7,35 +7,63 @@ from math import log, nan, pi
 from drivers.joined_cell import JoinedCell
 from tester.analysis.closest import combining_of
 from tester.inputs.recipe.plan import Plan
-from tester.inputs.rig.sensors import quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
+from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N
 from tester.kinds.wheel_on_belt.context import Attendant, Context
-from tester.kinds.wheel_on_belt.control.heat_loop import HeatLoop
-from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
-from tester.kinds.wheel_on_belt.control.state import WheelState
+from tester.kinds.wheel_on_belt.control.loops import HeatLoop, LoadLoop, WheelState
+from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.control.step import WheelControl
+from tester.kinds.wheel_on_belt.image.axes import held_by, straight
 from tester.kinds.wheel_on_belt.image.devices import CELL_CHANNELS, SURFACE_CHANNELS, Devices, WheelDrives
 from tester.kinds.wheel_on_belt.image.process import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
-from tester.kinds.wheel_on_belt.procedures.connection import WheelArming
+from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.procedures.gates import Gates
-from tester.kinds.wheel_on_belt.procedures.plan_bounds import plan_bounds
-from tester.kinds.wheel_on_belt.procedures.results import WheelResults
-from tester.kinds.wheel_on_belt.procedures.resume import take_up, take_up_wheels
-from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
+from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
+from tester.kinds.wheel_on_belt.procedures.steps import DEFAULT_LOAD_N, DEFAULT_SPEED_M_S, WheelProcedures
+from tester.kinds.wheel_on_belt.procedures.take_up import take_up, take_up_wheels
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
-from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, PreGrind, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.machine.connect import Connector
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
 from tester.machine.rig_drivers import RigDrivers, load_cell_of
+from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
 from tester.machine.sampler import Sampler
 from tester.store.recorder import Recorder
-from tester.store.resume import ResumePoint
+from tester.store.resumable import ResumePoint
+
+
+def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
+    """Return the greatest load, speeds, temperature and positions among a plan's steps and its wheel changes."""
+    load, wheel, belt = ROLL_CHECK_N, rig.interlocks.cooldown_speed_m_s, 0.0
+    surface, positions = rig.ambient_c, straight()
+    conditions = False
+    grind = plan.prepare.pre_grind if isinstance(plan, WheelPlan) else None  # by hand nothing is planned
+    steps = (*plan.steps, grind) if grind is not None else plan.steps
+    for step in steps:
+        if isinstance(step, WheelCondition):
+            conditions = True
+            sp = held_by(step.setpoint)
+            load, wheel = max(load, sp.load_n), max(wheel, sp.wheel_speed_m_s)
+            belt, surface = max(belt, sp.belt_speed_m_s), max(surface, sp.temperature_c)
+            if step.both_directions:
+                belt = max(belt, sp.reversed().belt_speed_m_s)
+            positions = {name: max(most, abs(sp.positions[name])) for name, most in positions.items()}
+        elif isinstance(step, PreGrind):
+            load, wheel = max(load, step.load_n), max(wheel, step.wheel_speed_m_s)
+            belt = max(belt, step.belt_speed_m_s)
+        elif isinstance(step, Heat):
+            surface = max(surface, step.temperature_c)
+            if not conditions:
+                load, wheel = max(load, DEFAULT_LOAD_N), max(wheel, DEFAULT_SPEED_M_S)
+    # Matched speeds: the belt runs as fast as the wheel whenever there is to be no slip.
+    return Bounds(load, wheel, max(belt, wheel), surface, rig_bounds(rig).hub_c, positions)
+
 
 TITLES = {"ir_thermometer": "thermometer"}
 """Where a screen calls a device otherwise than the record does, by its key in the rig file."""

@@ -18,9 +18,9 @@ from typing import Final, cast
 from tester.kinds.wheel_on_belt.interlocks import hub, surface
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio, known_ratio
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.store.catalogue import run_folders, under_way
-from tester.store.reader import RunReader
-from tester.store.schema import StoreError
+from tester.store.record_schema import StoreError
+from tester.store.run_folders import run_folders, under_way
+from tester.store.run_reader import RunReader
 
 KIND: Final = "heat"
 LEAST_RISE_K: Final = 20.0

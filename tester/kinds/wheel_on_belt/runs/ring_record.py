@@ -8,7 +8,7 @@ from tester.analysis.ring_errors import RingSegment
 from tester.analysis.ring_runs import RingRun
 from tester.kinds.wheel_on_belt.image.ring_watch import BUS
 from tester.results.ring_part import RingPart
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 
 
 def ring_of(reader: RunReader, name: str) -> RingRun:

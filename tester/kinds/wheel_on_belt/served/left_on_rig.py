@@ -11,8 +11,8 @@ from tester.base.screen import Check
 from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.store.reader import RunReader
 from tester.store.records import PieceInfo
+from tester.store.run_reader import RunReader
 
 CELL_ZERO: Final = "zero of the load cell"
 

@@ -11,20 +11,20 @@ from typing import Final
 
 from tester.base.screen import HandAxis
 from tester.kinds.wheel_on_belt.context import Attendant, Context
-from tester.kinds.wheel_on_belt.control.load_loop import UNLOADED_N as STANDING_LOAD_N
+from tester.kinds.wheel_on_belt.control.loops import UNLOADED_N as STANDING_LOAD_N
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, straight
 from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
 from tester.kinds.wheel_on_belt.procedures.motions import TakeTare
 from tester.kinds.wheel_on_belt.recipe.limits import least_load_n
-from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_run
 from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
 from tester.machine.manual import NAME, ManualExecutor
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
 from tester.machine.served import ByHand
 from tester.store.recorder import Recorder

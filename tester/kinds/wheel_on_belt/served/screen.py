@@ -19,7 +19,7 @@ from tester.kinds.wheel_on_belt.image.process import (
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
-from tester.kinds.wheel_on_belt.recipe.steps import WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.served.manual import HAND
 from tester.machine.engine import Engine
 from tester.machine.panel import RunPanel, soak_view

@@ -4,24 +4,45 @@ from __future__ import annotations
 
 from typing import Final
 
+from drivers.temperature_controller import JACKET_LEASE_S
 from tester.base.quantities import Quantities
 from tester.base.screen import MachineView
 from tester.inputs.recipe.plan import Step
 from tester.inputs.rig import Rig
+from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
 from tester.kinds.wheel_on_belt.procedures.steps import title
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.served import manual
-from tester.kinds.wheel_on_belt.served.alone import left_alone
 from tester.kinds.wheel_on_belt.served.left_on_rig import HeatHistory, WheelLeft, left_by
 from tester.kinds.wheel_on_belt.served.screen import MACHINE, WheelPanel
 from tester.machine.engine import Engine
-from tester.machine.ports import Ports
+from tester.machine.panel import drives_alone
+from tester.machine.rig_ports import Ports
 from tester.machine.served import ByHand, History, Left, ServedKind
-from tester.store.reader import RunReader
 from tester.store.recorder import Recorder
+from tester.store.run_reader import RunReader
+
+PRESS = "The press stops where it is: where no spring lifts it, its load stays on the wheel."
+
+
+def left_alone(rig: RigConfig) -> str:
+    """Return what drives and heating do, and by when, from the rig file's numbers."""
+    return drives_alone(rig, PRESS, _heating(rig))
+
+
+def _heating(rig: RigConfig) -> str:
+    jacket = rig.devices["jacket"]
+    profile = profile_of(jacket.profile)
+    if "lease" in profile.writes:
+        return f"The jacket stops heating by itself ({JACKET_LEASE_S:g} s without a command)."
+    if jacket.heat_off == "fallback" and profile.falls_back_s is not None:
+        return f"The jacket falls back to a setpoint of no heat ({profile.falls_back_s:g} s without a command)."
+    if jacket.heat_off == "relay":
+        return "The jacket has no watchdog of its own: a relay, the rig file says, takes its supply. See to it."
+    return "The jacket has no watchdog of its own: switch its supply off."
 
 
 class WheelOnBelt:

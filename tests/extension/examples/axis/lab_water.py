@@ -10,7 +10,7 @@ from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image import axes
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.recipe.part import WheelPart
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED
 from tester.kinds.wheel_on_belt.runs.runs import WheelRuns
 from tester.kinds.wheel_on_belt.served.screen import MACHINE

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tester.analysis.fit.law import NAN, FitPoint, Law, LawParameter, Source, Variable
+from tester.analysis.fit.fit_law import NAN, FitPoint, Law, LawParameter, Source, Variable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from tester.analysis.fit.check import errors_of
+from tester.analysis.fit.fit_law import Band, Common, FitError, FitPoint, Source
 from tester.analysis.fit.joint import GroupFit, fit_group, fit_only, overall
-from tester.analysis.fit.law import Band, Common, FitError, FitPoint, Source
 from tester.analysis.fit.problem import ROBUST, FitProblem
 from tester.analysis.fit.resample import resample
 from tester.analysis.fit.solve import cost, solve, solve_many

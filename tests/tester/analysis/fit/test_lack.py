@@ -9,8 +9,8 @@ from math import inf, sqrt
 import numpy as np
 import pytest
 
+from tester.analysis.fit.fit_law import Common, FitPoint, Source
 from tester.analysis.fit.lack import Lack, denominator_of, lack_of, neighbours, power_of
-from tester.analysis.fit.law import Common, FitPoint, Source
 from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.resample import resample
 from tester.analysis.fit.solve import solve

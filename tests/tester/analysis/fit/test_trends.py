@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tester.analysis.fit.law import FitPoint, Law, Source, Variable
+from tester.analysis.fit.fit_law import FitPoint, Law, Source, Variable
 from tester.analysis.fit.resample import Resamples
 from tester.analysis.fit.trends import Trend, trends_of
 from tests.tester.analysis.fit.straight import LINE

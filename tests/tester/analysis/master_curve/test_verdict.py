@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tester.analysis.master_curve.collapse import collapse
-from tester.analysis.master_curve.made import Master, master_of
+from tester.analysis.master_curve.fitted_curve import Master, master_of
 from tester.analysis.master_curve.points import MasterPoint, set_of
 from tester.analysis.master_curve.verdict import Verdict, judge, signs_of
 from tests.campaigns.master.synthetic import FAILING, synthetic

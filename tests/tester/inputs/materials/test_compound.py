@@ -9,7 +9,7 @@ import pytest
 
 from tester.base.source import InvalidSource
 from tester.inputs.materials.compound import LoadedCompound, load_compound
-from tester.inputs.materials.surface import load_surface
+from tester.inputs.materials.surface_file import load_surface
 
 ROWS = "".join(f"      - [{-60 + 5 * i}, 1, {2000 / (i + 1):.3f}, {200 / (i + 1):.3f}]\n" for i in range(20))
 TABLE = f"moduli:\n  table:\n    columns: [temperature degC, frequency Hz, E' MPa, E'' MPa]\n    rows:\n{ROWS}"

@@ -10,7 +10,7 @@ from tester.base.source import InvalidSource
 from tester.inputs.materials.dma import read_dma
 from tester.inputs.materials.files import Findings
 from tester.inputs.materials.headings import DmaOptions
-from tester.inputs.materials.moduli import ModuliTable
+from tester.inputs.materials.measured_moduli import ModuliTable
 
 TEMPERATURES = range(-60, 60, 8)
 

@@ -15,7 +15,7 @@ from tester.analysis.terms import Term
 from tester.base.source import InvalidSource
 from tester.inputs.materials.compound import compound_model
 from tester.inputs.materials.library import Library
-from tester.inputs.materials.schema import CompoundModel
+from tester.inputs.materials.material_schema import CompoundModel
 from tester.inputs.recipe.foreseen import (
     LEAST_PERCENT,
     MOST,
@@ -31,7 +31,7 @@ from tester.inputs.recipe.foreseen import (
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
-from tester.run.kinds import load_rig, recipe_part
+from tester.run.kind_lookup import load_rig, recipe_part
 from tests.tester.inputs.recipe.test_precision import small_plan
 from tests.tester.inputs.recipe.texts import PREPARED, recipe, rig
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from tester.inputs.recipe.describe import lines
-from tester.inputs.recipe.plain import Mount
+from tester.inputs.recipe.plain_recipe import Mount
 from tester.inputs.recipe.plan import ConditionStep, Mounted, Stand
+from tester.inputs.recipe.plan_text import lines
 from tests.tester.machine.plain.bench import RECIPE, BenchRuns, bench_plan, bench_rig
 
 PART = BenchRuns.part

@@ -9,8 +9,8 @@ import pytest
 
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.uncertainty import Pool
-from tester.inputs.recipe.estimate import estimate
 from tester.inputs.recipe.foreseen import Foreseen, foreseen
+from tester.inputs.recipe.grid_settings import LEAST_REPEATS, Settings, settings_of
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.recipe.precision import (
     PrecisionError,
@@ -20,8 +20,8 @@ from tester.inputs.recipe.precision import (
     until_for_total,
     with_precision,
 )
-from tester.inputs.recipe.repeats import MADE_UP, expected, needed, reached_percent
-from tester.inputs.recipe.settings import LEAST_REPEATS, Settings, settings_of
+from tester.inputs.recipe.repeats_section import MADE_UP, expected, needed, reached_percent
+from tester.inputs.recipe.time_estimate import estimate
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART

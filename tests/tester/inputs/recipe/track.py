@@ -11,11 +11,11 @@ from tester.base.axes import Axes, Axis, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import Quantity, show
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
-from tester.inputs.recipe.estimate import NEW, Estimator, Outlook, StepEstimate
-from tester.inputs.recipe.part import RecipePart
 from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
-from tester.inputs.recipe.schema import GridModel, MeasureModel, Recipe, Section
+from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe, Section
 from tester.inputs.recipe.semantics import listed
+from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.inputs.rig import Rig
 
 TRACK = Axes(

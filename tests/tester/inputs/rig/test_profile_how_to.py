@@ -12,7 +12,7 @@ import pytest
 from drivers.sensor import Sensor
 from sim.nodes.sensor_slave import SensorSlave
 from tester.base.source import InvalidSource
-from tester.inputs.rig.sensors import FurtherChannel, further_channels
+from tester.inputs.rig.further_sensors import FurtherChannel, further_channels
 from tester.kinds import load_rig, load_rig_text, packaged_text
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.run.provenance import calibration_of

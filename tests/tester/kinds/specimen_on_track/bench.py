@@ -19,7 +19,7 @@ from tester.machine.run import Run
 from tester.machine.tickers import next_tick
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
-from tester.store.statements import Judged, Ticket
+from tester.store.sql import Judged, Ticket
 
 GROSCH = """\
 recipe: a block

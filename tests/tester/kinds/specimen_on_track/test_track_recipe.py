@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from tester.inputs.recipe.describe import lines
 from tester.inputs.recipe.loader import check, load_checked, load_recipe
 from tester.inputs.recipe.plan import Mounted, Plan, Stand
+from tester.inputs.recipe.plan_text import lines
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
-from tester.kinds.specimen_on_track.recipe.steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tests.tester.kinds.specimen_on_track.bench import DISC, GROSCH
 
 

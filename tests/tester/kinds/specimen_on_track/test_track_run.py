@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.tui.playback import load
 from tester.tui.replay import ReplayApp
 from tests.tester.kinds.specimen_on_track.bench import DISC

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tester.service.commands import Jog, RunRecipe, Stop
-from tester.service.state import StateView
+from tester.service.state_view import StateView
 from tests.tester.kinds.specimen_on_track.bench import DISC
 from tests.tester.service.stage import Script, Stage, play
 from tests.tester.service.test_manual_mode import armed, jog, off, value

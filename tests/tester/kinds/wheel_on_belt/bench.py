@@ -12,14 +12,14 @@ from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
+from tester.kinds.wheel_on_belt.control.loops import LoadLoop
 from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.gates import Gates
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.runs.build import build_run
 from tester.machine.activity import Activity
@@ -30,7 +30,7 @@ from tester.machine.sampler import Sampler
 from tester.machine.tickers import next_tick
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
-from tester.store.statements import Batch
+from tester.store.sql import Batch
 from tests.tester.inputs.recipe.texts import rig
 
 COLUMN = {name: i for i, name in enumerate(QUANTITIES.names)}

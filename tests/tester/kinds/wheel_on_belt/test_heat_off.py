@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tester.base.source import InvalidSource, load_tree
-from tester.inputs.rig.load import load
 from tester.inputs.rig.packaged import hardware_text
+from tester.inputs.rig.rig_files import load
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.served.alone import left_alone
+from tester.kinds.wheel_on_belt.served.served import left_alone
 
 LINE = "    heat_off: fallback "
 

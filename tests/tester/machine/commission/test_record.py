@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tester.machine.commission.record import BEGUN, DONE, READING, CommissionRecord, RecordError
+from tester.machine.commission.commission_step import CommissionStep, sections_sha256
+from tester.machine.commission.record import BEGUN, DONE, READING, REFUSED, CommissionRecord, RecordError, standing_of
+from tester.run.kind_lookup import load_rig
 
 
 def utc() -> str:
@@ -66,3 +68,25 @@ def test_what_is_no_number_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="JSON"):
         record.add("rig", "", "", "one", READING, "", {"x": float("nan")})
     assert not (tmp_path / "r.jsonl").exists()
+
+
+STEP = CommissionStep("jog", "a jog", ("can",))
+
+
+@pytest.mark.parametrize(
+    ("what", "same", "words"),
+    [
+        (DONE, True, "done on 2026-11-23, me: told"),
+        (DONE, False, "to be done again (the rig file has changed under it, 2026-11-23): told"),
+        (BEGUN, True, "to be done again (was cut off, 2026-11-23): told"),
+        (REFUSED, True, "to be done again (refused, 2026-11-23): told"),
+    ],
+)
+def test_a_step_stands_by_its_newest_entry_and_the_rig_file(what: str, same: bool, words: str, tmp_path: Path) -> None:
+    rig = load_rig("sim")
+    record = CommissionRecord(tmp_path / "r.jsonl", lambda: "2026-11-23T10:00:00Z", "me")
+    (fresh,) = standing_of(record, (STEP,), rig)
+    assert fresh.words == "to be done" and fresh.stands is None
+    record.add("rig", "", sections_sha256(rig, STEP.sections) if same else "another", "jog", what, "told")
+    (found,) = standing_of(record, (STEP,), rig)
+    assert found.words == words and (found.stands is not None) == (what == DONE and same)

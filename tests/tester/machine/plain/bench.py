@@ -16,20 +16,20 @@ from tester.base.axes import Axes, Axis, Setpoint
 from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
 from tester.base.source import load_tree
 from tester.inputs.recipe.loader import load_recipe
-from tester.inputs.recipe.plain import PlainPart
+from tester.inputs.recipe.plain_recipe import PlainPart
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig.config import OwnDevice, section_of
-from tester.inputs.rig.load import checked
 from tester.inputs.rig.parameter import Parameter
-from tester.inputs.rig.plain import PlainRig, PlainSim
+from tester.inputs.rig.plain_rig import PlainRig, PlainSim
+from tester.inputs.rig.rig_files import checked
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.control import PlainControl
 from tester.machine.plain.devices import PlainDevices
 from tester.machine.plain.image import PlainReadings
 from tester.machine.plain.rows import plain_table
 from tester.machine.plain.runs import PlainRuns
-from tester.machine.ports import Ports
 from tester.machine.prompts import Prompts
+from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
 from tester.run.simulated import spec_of
 from tester.store.recorder import NullRecorder

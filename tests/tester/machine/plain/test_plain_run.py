@@ -10,7 +10,7 @@ from sim.faults.can import FaultyCanWire
 from tester.base.source import InvalidSource
 from tester.machine.manual import ManualExecutor
 from tester.machine.plain.served import PlainServed, SpeedHand
-from tester.machine.ports import Ports
+from tester.machine.rig_ports import Ports
 from tester.machine.run import Outcome
 from tester.machine.run_parts import NoHistory
 from tester.machine.state import Mode

@@ -11,14 +11,13 @@ from typing import Any
 
 import pytest
 
-from tester.machine.commission.engine import CommissionOutcome, Ended
+from tester.machine.commission.commission_step import CommissionStep, StepReading
 from tester.machine.commission.person import Asks, Question
-from tester.machine.commission.record import DONE, REFUSED, RecordEntry
-from tester.machine.commission.standing import StepStanding
-from tester.machine.commission.step import CommissionStep, StepReading
-from tester.tui.guide.app import GuideApp
+from tester.machine.commission.record import DONE, REFUSED, RecordEntry, StepStanding
+from tester.machine.commission.step_engine import CommissionOutcome, Ended
 from tester.tui.guide.guide import GuideView
-from tester.tui.guide.person import Live, ScreenPerson
+from tester.tui.guide.guide_app import GuideApp
+from tester.tui.guide.guide_person import Live, ScreenPerson
 from tests.tester.service.views import HOSTILE
 from tests.tester.tui.stage import screen_text
 

@@ -14,9 +14,9 @@ from textual.pilot import Pilot
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.machine.commission.person import Question
 from tester.run.commissioning import CommissionOptions
-from tester.run.kinds import load_rig
-from tester.tui.guide.app import GuideApp
+from tester.run.kind_lookup import load_rig
 from tester.tui.guide.guide import Guide
+from tester.tui.guide.guide_app import GuideApp
 from tests.tester.tui.stage import WAIT_S, screen_text
 
 KEYS = {" ": "space", "\n": "enter"}

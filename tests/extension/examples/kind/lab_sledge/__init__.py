@@ -1,6 +1,6 @@
 """A sledge that a drive pulls over a plate through a spring: a kind of rig of a laboratory's own."""
 
-from tester.inputs.recipe.part import RecipePart
+from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.rig import Rig
 from tester.kinds.kind import Kind
 from tester.machine.interlock_sheet import InterlockSheet

@@ -1,7 +1,7 @@
 """What a recipe for the sledge may say: grids over one axis, the speed."""
 
 from tester.base.axes import Axes, Axis, Setpoint
-from tester.inputs.recipe.plain import PlainPart
+from tester.inputs.recipe.plain_recipe import PlainPart
 
 AXES = Axes(
     (

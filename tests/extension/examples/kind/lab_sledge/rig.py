@@ -11,7 +11,7 @@ from tester.base.quantities import Quantities
 from tester.inputs.rig.ceilings import Ceiling, ceilings_of
 from tester.inputs.rig.config import OwnDevice, section_of
 from tester.inputs.rig.parameter import SECTION, Parameter
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.plain.rows import PlainInputs, plain_table
 from tester.machine.row import FAST, LOADED, REPAIR, Interlock, at_most
 

@@ -7,7 +7,7 @@ from lab_sledge.recipe import AXES, PART
 from lab_sledge.rig import TABLE, SledgeRig
 from tester.base.axes import Setpoint
 from tester.base.screen import PlotView
-from tester.inputs.rig.plain import PlainRig
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.plain.image import PlainReadings
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.plain.served import PlainServed

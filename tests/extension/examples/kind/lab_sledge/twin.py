@@ -15,7 +15,7 @@ from sim.plain_twin import PlainTwin
 from sim.rig import RigSpec, SimRig
 from sim.wires.can_wire import CanWire
 from tester.base.config_reader import Range
-from tester.inputs.rig.plain import PlainSim
+from tester.inputs.rig.plain_rig import PlainSim
 
 POSITIVE = Range(gt=0.0)
 

@@ -18,7 +18,7 @@ from tester.kinds.specimen_on_track.axes import AXES
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.store.records import ConditionInfo, PieceInfo, RunInfo, SpecimenInfo
-from tester.store.statements import Judged
+from tester.store.sql import Judged
 from tester.store.writer import RunWriter
 
 SPEEDS_M_S = tuple(10.0 ** (-6.0 + 0.5 * i) for i in range(9))

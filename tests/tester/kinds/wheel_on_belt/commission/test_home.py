@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sim.machines.wheel_on_belt.rig import WheelRig
-from tester.machine.commission.engine import Ended
+from tester.machine.commission.step_engine import Ended
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed, named
 
 HOME = tuple(replace(step, needs=()) for step in named("home"))

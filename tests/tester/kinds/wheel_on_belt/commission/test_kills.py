@@ -21,13 +21,13 @@ from typing import Any
 import pytest
 
 from sim.machines.wheel_on_belt.rig import WheelRig
-from tester.kinds.wheel_on_belt.commission.steps import STEPS
+from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
-from tester.machine.commission.engine import CommissionOutcome, Ended
 from tester.machine.commission.person import Question
 from tester.machine.commission.record import BEGUN, DONE, CommissionRecord, record_path
+from tester.machine.commission.step_engine import CommissionOutcome, Ended
 from tester.run.commissioning import CommissionOptions, commission
-from tester.run.kinds import load_rig
+from tester.run.kind_lookup import load_rig
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="a process that is forked is POSIX")
 

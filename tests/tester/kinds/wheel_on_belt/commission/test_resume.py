@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
-from tester.machine.commission.engine import Ended
+from tester.machine.commission.commission_step import sections_sha256
 from tester.machine.commission.person import Question
 from tester.machine.commission.record import DONE
-from tester.machine.commission.step import sections_sha256
+from tester.machine.commission.step_engine import Ended
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed, named
 
 STEPS = named("identify", "jog belt", "jog press")

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from sim.machines.wheel_on_belt.rig import WheelRig
-from tester.kinds.wheel_on_belt.commission.steps import STEPS
+from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.commission.engine import Commissioning, CommissionOutcome
+from tester.machine.commission.commission_step import CommissionStep
 from tester.machine.commission.record import CommissionRecord
-from tester.machine.commission.step import CommissionStep
-from tester.run.kinds import load_rig
+from tester.machine.commission.step_engine import Commissioning, CommissionOutcome
+from tester.run.kind_lookup import load_rig
 from tester.run.simulated import simulated_ports
 
 

@@ -8,9 +8,7 @@ from math import cos, inf, pi, radians, sin
 import pytest
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.control.heat_loop import HeatLoop
-from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
-from tester.kinds.wheel_on_belt.control.state import WheelState
+from tester.kinds.wheel_on_belt.control.loops import HeatLoop, LoadLoop, WheelState
 from tester.kinds.wheel_on_belt.control.step import WheelControl
 from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.rig import RigConfig

@@ -9,7 +9,7 @@ import pytest
 from tester.kinds.wheel_on_belt.image.process import Press
 from tester.machine.state import Mode
 from tests.tester.kinds.wheel_on_belt.control.conftest import Bench
-from tests.tester.kinds.wheel_on_belt.control.test_stops import cool, lift, stand
+from tests.tester.kinds.wheel_on_belt.control.test_stop_modes import cool, lift, stand
 
 
 def rest(bench: Bench, mode: Mode = Mode.IDLE) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from tester.analysis.flags import CARRY_OVER
 from tester.analysis.results import ConditionStatus, Judgement
 from tester.kinds.wheel_on_belt.fit.laws import V2_LAW
-from tester.store.statements import Judged
+from tester.store.sql import Judged
 from tests.campaigns.fit.synthetic import DESIGN
 from tests.tester.analysis.series import means_of
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, result

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from sim.physics.friction import COMPOUNDS, V2, evaluate
+from tester.analysis.fit.fit_law import Law
 from tester.analysis.fit.joint import fit_only, predict
-from tester.analysis.fit.law import Law
 from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.solve import solve
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, PAPER, V2_LAW, joint_of, table_3_of, v2_of

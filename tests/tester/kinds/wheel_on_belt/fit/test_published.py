@@ -7,10 +7,10 @@ from dataclasses import astuple, replace
 import pytest
 
 from sim.physics.friction import COMPOUNDS, V2
+from tester.analysis.fit.fit_law import by_group
+from tester.analysis.fit.fit_part import PublishedTable
+from tester.analysis.fit.fit_text import table_lines
 from tester.analysis.fit.joint import fit_only
-from tester.analysis.fit.law import by_group
-from tester.analysis.fit.part import PublishedTable
-from tester.analysis.fit.text import table_lines
 from tester.kinds.wheel_on_belt.fit import published
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix
 from tester.kinds.wheel_on_belt.fit.laws import V2_LAW, table_3_of, v2_of

@@ -15,8 +15,8 @@ from drivers.joined_cell import JoinedCell
 from sim.faults.scene import Scene
 from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
 from tester.base.source import InvalidSource, load_tree
-from tester.inputs.rig.load import load
 from tester.inputs.rig.packaged import packaged_text
+from tester.inputs.rig.rig_files import load
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.run import Outcome
 from tester.run.provenance import record_statistics

@@ -14,7 +14,7 @@ from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.image.process import Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.machine.sampler import Sampler
-from tester.store.reader import RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.kinds.wheel_on_belt.bench import make_bench
 from tests.tester.results.made import made

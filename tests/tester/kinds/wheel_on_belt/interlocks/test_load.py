@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.control.load_loop import LoadLoop
+from tester.kinds.wheel_on_belt.control.loops import LoadLoop
 from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
 from tester.kinds.wheel_on_belt.interlocks.load import TOUCH_MARGIN_MM

@@ -14,7 +14,7 @@ from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.burst_state import Phase
 from tester.kinds.wheel_on_belt.procedures.bursts import TARE_FRESH_S, MeasureRepeat
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.machine.measured import Ending
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, condition_of, make_bench
 

@@ -11,8 +11,8 @@ from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
-from tester.kinds.wheel_on_belt.procedures.results import WheelResults
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
 from tester.store.recorder import NullRecorder

@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.first_contact import OFF
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures, title
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition
 from tester.machine.executor import Executor
 from tests.tester.inputs.recipe.texts import rig
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, condition_of, make_bench, plan_of

@@ -11,7 +11,7 @@ from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Turn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import Grind, InstallWheel, PreGrindStep
-from tester.kinds.wheel_on_belt.recipe.steps import Install, PreGrind
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
 from tests.tester.kinds.wheel_on_belt.bench import Bench, Simulation, make_bench

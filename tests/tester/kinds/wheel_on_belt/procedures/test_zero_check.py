@@ -11,7 +11,7 @@ from tester.kinds.wheel_on_belt.image.process import Press
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import PreGrindStep
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, contact_s, is_due
-from tester.kinds.wheel_on_belt.recipe.steps import PreGrind
+from tester.kinds.wheel_on_belt.recipe.plan_steps import PreGrind
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, make_bench

@@ -9,15 +9,15 @@ import pytest
 
 import recipes
 from tester.base.axes import Setpoint
-from tester.inputs.recipe.estimate import Estimate, StepEstimate, estimate
 from tester.inputs.recipe.loader import load_recipe
+from tester.inputs.recipe.time_estimate import Estimate, StepEstimate, estimate
 from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator, predicted_loss_mm
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.kinds.wheel_on_belt.recipe.settings import wheel_settings
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.schema import wheel_settings
 from tests.tester.inputs.recipe.texts import PREPARED, SMALL, real_rig, recipe, rig, with_line
 
 

@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import change_points, expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
 from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig, with_line
 
 

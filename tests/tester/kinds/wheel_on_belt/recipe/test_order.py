@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from tester.inputs.recipe.estimate import Estimate
+from tester.inputs.recipe.time_estimate import Estimate
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition, WheelPlan
 from tests.tester.inputs.recipe.texts import PREPARED, recipe, rig
 
 

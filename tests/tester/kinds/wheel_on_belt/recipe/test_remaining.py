@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from tester.inputs.recipe.plan import Mounted, PromptStep, Stand, Step
 from tester.kinds.wheel_on_belt.recipe.expand import expand
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
 from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig, with_line
 
 TWO = with_line('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n', PREPARED)

@@ -7,15 +7,15 @@ import json
 import pytest
 
 from tester.analysis.kelvin import Slope
-from tester.inputs.recipe.describe import lines
-from tester.inputs.recipe.estimate import Outlook, estimate
 from tester.inputs.recipe.loader import check
 from tester.inputs.recipe.plan_json import json_chunks
-from tester.kinds.wheel_on_belt.procedures.plan_bounds import plan_bounds
+from tester.inputs.recipe.plan_text import lines
+from tester.inputs.recipe.time_estimate import Outlook, estimate
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.kinds.wheel_on_belt.recipe.steps import WheelCondition
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
+from tester.kinds.wheel_on_belt.runs.build import plan_bounds
 from tests.tester.inputs.recipe.texts import recipe as read
 from tests.tester.inputs.recipe.texts import rig
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tester.inputs.recipe.plan import PromptStep
 from tester.kinds.wheel_on_belt.recipe.expand import expand
-from tester.kinds.wheel_on_belt.recipe.steps import Cool, Heat, Install, PreGrind, Rest
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, wheel_change
 from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig
 

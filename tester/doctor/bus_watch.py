@@ -1,0 +1,194 @@
+"""Watches a rig for a minute: reads every device as fast as a run does, listens to the CAN bus, times the computer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+
+from drivers.modbus.scan import LineScan, RegisterQuestion
+from drivers.ports import BusLost, CanPort, LinePort, TellingCanPort
+from tester.doctor.can_survey import Heard
+from tester.doctor.line_survey import LineSurvey
+from tester.doctor.open_wires import Wires
+from tester.inputs.rig import Rig
+
+PATIENCE_S = 0.15
+"""Patience for a reading, s: a slow profile's 60 ms, an adapter's latency, and a busy computer [A]."""
+
+STEP_S = 0.001
+"""Period for reading the lines, s."""
+
+
+@dataclass(slots=True)
+class UnitWatch:
+    """A device's answers over time."""
+
+    questions: int = 0
+    readings: int = 0
+    exceptions: int = 0
+    silences: int = 0
+    noises: int = 0
+    delays_s: list[float] = field(default_factory=list[float])
+    """Of the answers: from the end of the request to their beginning, s."""
+    oldest_s: float = 0.0
+    """The greatest age that a reading had when the next came, s."""
+    values: list[bytes] = field(default_factory=list[bytes])
+    """Registers of the first block, the last some."""
+    last_s: float = -inf
+
+    @property
+    def failed(self) -> int:
+        """Questions without a reading."""
+        return self.questions - self.readings
+
+
+@dataclass(slots=True)
+class RigWatch:
+    """The results of a watch."""
+
+    seconds: float = 0.0
+    can: Heard = field(default_factory=Heard)
+    can_lost: str = ""
+    can_errors: dict[str, int] | None = None
+    """Error frames by kind; None if the adapter reports none."""
+    can_state: str = ""
+    """The adapter's own state at the end, "" if it reports none."""
+    units: dict[str, UnitWatch] = field(default_factory=dict[str, UnitWatch])
+    """By the devices' names in the rig file."""
+    lines_lost: dict[str, str] = field(default_factory=dict[str, str])
+    late_s: list[float] = field(default_factory=list[float])
+    """Lateness of each scan, s; empty in simulated time."""
+
+
+_KEPT_VALUES = 200
+
+
+class _Line:
+    """A line with devices that are read in turn."""
+
+    def __init__(self, name: str, rig: Rig, port: LinePort, units: dict[str, UnitWatch]) -> None:
+        config = rig.lines[name]
+        self.name = name
+        self.port = port
+        self.scan = LineScan(config.framing, config.baud, config.parity)
+        self.units = units
+        self._asked: list[tuple[str, RegisterQuestion, float]] = []
+        self._due: dict[str, float] = {}
+        self._now = ""
+
+    def add(self, key: str, question: RegisterQuestion, period_s: float) -> None:
+        """Read a device with this period, s; 0 = as fast as possible."""
+        self._asked.append((key, question, period_s))
+        self._due[key] = -inf
+
+    def step(self, now: float) -> None:
+        """Take an answer and ask the next question; raises BusLost."""
+        self.scan.feed(self.port.read(now), now)
+        self.scan.service(self.port, now)
+        if self._now and self.scan.answer is not None:
+            self._take(self._now)
+            self._now = ""
+        if not self._now:
+            self._next(now)
+
+    def _next(self, now: float) -> None:
+        due = [entry for entry in self._asked if self._due[entry[0]] <= now]
+        if not due:
+            return
+        key, question, period_s = min(due, key=lambda entry: self._due[entry[0]])
+        self._due[key] = now + period_s
+        self._now = key
+        self.units[key].questions += 1
+        self.scan.ask(question, PATIENCE_S)
+        self.scan.service(self.port, now)
+
+    def _take(self, key: str) -> None:
+        unit, answer = self.units[key], self.scan.answer
+        assert answer is not None
+        if answer.ok:
+            unit.readings += 1
+            unit.delays_s.append(answer.delay_s)
+            if unit.last_s > -inf:
+                unit.oldest_s = max(unit.oldest_s, answer.at_s - unit.last_s)
+            unit.last_s = answer.at_s
+            unit.values.append(answer.data)
+            del unit.values[:-_KEPT_VALUES]
+        elif answer.exception:
+            unit.exceptions += 1
+        elif answer.noise:
+            unit.noises += 1
+        else:
+            unit.silences += 1
+
+
+def watched(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], seconds: float, *, can: bool) -> RigWatch:
+    """Watch a rig for ``seconds``; ``lines``: the surveyed lines; ``can``: whether the bus could be opened."""
+    result = RigWatch()
+    opened = _open(rig, wires, lines, result)
+    bus = wire = _bus(rig, wires, result) if can else None
+    period_s = 1.0 / rig.scan.sliding_hz
+    begun_s = wires.now()
+    scan_due_s = begun_s + period_s
+    while (now := wires.now()) < begun_s + seconds:
+        if now >= scan_due_s - 1e-9:
+            if wires.real:
+                result.late_s.append(now - scan_due_s)
+            missed = int((now - scan_due_s) / period_s)
+            scan_due_s += period_s * (1 + missed)
+            bus = _listen(bus, now, rig, result)
+        for line in list(opened):
+            try:
+                line.step(now)
+            except BusLost as lost:
+                result.lines_lost[line.name] = str(lost)
+                opened.remove(line)
+        wires.wait_until(min(now + STEP_S, max(scan_due_s, now)))
+        if wires.now() <= now:
+            wires.wait_until(now + STEP_S)
+    if isinstance(wire, TellingCanPort):
+        result.can_errors, result.can_state = dict(wire.errors), wire.state
+    result.seconds = wires.now() - begun_s
+    result.can.seconds = result.seconds
+    return result
+
+
+def _open(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], result: RigWatch) -> list[_Line]:
+    opened: list[_Line] = []
+    for name, survey in lines.items():
+        there = {key: unit for key, unit in survey.units.items() if unit.there}
+        if survey.lost or not there:
+            continue
+        try:
+            line = _Line(name, rig, wires.line(name, rig.lines[name]), result.units)
+        except BusLost as lost:
+            result.lines_lost[name] = str(lost)
+            continue
+        for key, unit in there.items():
+            result.units[key] = UnitWatch()
+            block = unit.profile.blocks[0]
+            line.add(
+                key, RegisterQuestion(unit.config.unit_id, block.function, block.address, block.count), block.period_s
+            )
+        opened.append(line)
+    return opened
+
+
+def _bus(rig: Rig, wires: Wires, result: RigWatch) -> CanPort | None:
+    try:
+        bus = wires.can(rig.can.bitrate)
+        bus.receive(wires.now())
+    except BusLost as lost:
+        result.can_lost = str(lost)
+        return None
+    return bus
+
+
+def _listen(bus: CanPort | None, now: float, rig: Rig, result: RigWatch) -> CanPort | None:
+    if bus is None:
+        return None
+    try:
+        result.can.take(bus.receive(now), rig.can.node)
+    except BusLost as lost:
+        result.can_lost = str(lost)
+        return None
+    return bus

@@ -1,0 +1,109 @@
+"""The device parameters of a rig: reads them, writes them to a file, and compares them with an earlier file."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+from tester.base import clock
+from tester.doctor.examination import Examination
+from tester.inputs.rig import Rig
+from tester.inputs.rig.further_sensors import title_of
+from tester.run.kept import IDENTITY, KEPT, object_key, object_name
+from tester.run.set_up import DeviceParameter, Parameters, mapped, stored, written, written_at_connect
+from tester.store.run_reader import RunReader
+
+FORMAT = 1
+"""Version of the file; another one is refused."""
+
+
+class DumpError(ValueError):
+    """A file is not a dump of parameters; the message gives the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterDump:
+    """The parameters of every device of a rig that answered."""
+
+    rig: str
+    taken_utc: str
+    devices: Parameters
+    silent: tuple[str, ...] = ()
+    """Devices of the rig file that did not answer."""
+
+    @property
+    def text(self) -> str:
+        """The dump as a file."""
+        devices = {
+            device: {
+                key: {"value": one.value, "name": one.name, "written": one.written} for key, one in parameters.items()
+            }
+            for device, parameters in self.devices.items()
+        }
+        data = {"format": FORMAT, "rig": self.rig, "taken_utc": self.taken_utc, "devices": devices,
+                "silent": list(self.silent)}  # fmt: skip
+        return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def dumped(e: Examination) -> ParameterDump:
+    """Read the parameters of every device of a rig."""
+    devices: dict[str, dict[str, DeviceParameter]] = {}
+    silent: list[str] = []
+    for name, config in e.rig.drives().items():
+        answers = e.can.objects.get(config.node_id)
+        if answers is None:
+            silent.append(name)
+            continue
+        by_connect = written_at_connect(config)
+        kept = (*IDENTITY, *KEPT, *written(config), *mapped(config))
+        devices[name] = {
+            object_key(key): DeviceParameter(answers[key].text, object_name(key), object_key(key) in by_connect)
+            for key in kept if key in answers and answers[key].ok
+        }  # fmt: skip
+    for line in e.lines.values():
+        for key, unit in line.units.items():
+            device = title_of(e.rig, key)
+            if not unit.there:
+                silent.append(device)
+                continue
+            found = {"profile": DeviceParameter(unit.profile.name, unit.profile.title)}
+            for name, answer in unit.configuration.items():
+                if answer.ok:
+                    value = str(int.from_bytes(answer.data, "big"))
+                    found[f"0x{answer.question.address:04X}"] = DeviceParameter(value, name, name != "device type")
+            devices[device] = found
+    return ParameterDump(e.rig.name, clock.utc_now(), devices, tuple(silent))
+
+
+def read_dump(path: Path) -> ParameterDump:
+    """Return the dump of a file; raises DumpError, OSError."""
+    try:
+        data = cast("dict[str, object]", json.loads(path.read_text(encoding="utf-8")))
+        if data["format"] != FORMAT:
+            raise DumpError(f"{path}: format {data['format']} is not known (expected {FORMAT})")
+        devices = cast("dict[str, dict[str, dict[str, object]]]", data["devices"])
+        parameters = {
+            device: {
+                key: DeviceParameter(str(one["value"]), str(one["name"]), bool(one["written"]))
+                for key, one in found.items()
+            }
+            for device, found in devices.items()
+        }
+        silent = cast("list[str]", data["silent"])
+        return ParameterDump(str(data["rig"]), str(data["taken_utc"]), parameters, tuple(map(str, silent)))
+    except DumpError:
+        raise
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        expected = "expected what `tester bus params dump` writes"
+        raise DumpError(f"{path} is no dump of parameters ({expected}): {error}") from error
+
+
+def stored_in(rig: Rig, folder: Path) -> Parameters:
+    """Return a run's stored parameters; raises StoreError, DumpError if it stored none."""
+    with RunReader(folder) as reader:
+        parameters = stored(rig, reader.parameters())
+    if not parameters:
+        raise DumpError(f"{folder.name} has no parameters on record: it was never connected")
+    return parameters

@@ -1,0 +1,127 @@
+"""A surface's file: read with every problem at its line, and every doubt."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+
+from tester.base.plugins import MissingExtraError
+from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
+from tester.inputs.materials.files import DataFile, DataFileError, Findings, MaterialFile, read_beside
+from tester.inputs.materials.material_schema import RadialModel, ScanModel, SurfaceModel
+from tester.inputs.materials.radial import RadialSpectrum
+from tester.inputs.materials.surface_scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
+
+
+@dataclass(frozen=True, slots=True)
+class LoadedSurface:
+    """A surface with its file; ``radial`` where its spectrum is a table or a scan's."""
+
+    model: SurfaceModel
+    file: MaterialFile
+    radial: RadialSpectrum | None = None
+    notes: tuple[str, ...] = ()
+    """Notes on the reading of a scan."""
+
+    def holds(self) -> str:
+        """Return the source of its heights, in words."""
+        parts: list[str] = []
+        if self.model.spectrum is not None:
+            s = self.model.spectrum
+            parts.append(f"self-affine, H {s.H:g}, waves of {_length(s.q1)} to {_length(s.q0)}")
+        if self.radial is not None:
+            q, origin = self.radial.q_1_m, "of a scan" if self.model.scan is not None else "as a table"
+            parts.append(f"spectrum {origin}, {len(q)} points, waves of {_length(q[-1])} to {_length(q[0])}")
+        if self.model.waves is not None:
+            w = self.model.waves.coarse
+            parts.append(f"waves, coarse {w.wavelength * 1e3:g} mm, Ra {w.Ra * 1e3:g} mm")
+        return "; ".join(parts)
+
+
+def _length(q_1_m: float) -> str:
+    return f"{2e6 * np.pi / q_1_m:.3g} um"
+
+
+def load_surface(path: Path, name: str | None = None) -> LoadedSurface:
+    """Read a surface's file; ``name`` names it in messages. Raises InvalidSource, MissingExtraError."""
+    tree, problems = read_tree(path, name)
+    model, findings = _validated(tree, problems)
+    data: tuple[DataFile, ...] = ()
+    radial: RadialSpectrum | None = None
+    if model is not None and model.radial is not None:
+        radial = _table(model.radial, tree, findings)
+    elif model is not None and model.scan is not None:
+        radial, data = _scanned(model.scan, path, tree, findings)
+    findings.end()
+    assert model is not None
+    for number, doubt in enumerate(model.doubts):
+        findings.doubt(tree.position(("doubts", number)), doubt)
+    file = MaterialFile("surface", model.name, path, tree.text, data, tuple(sorted(findings.doubts)))
+    return LoadedSurface(model, file, radial, tuple(findings.notes))
+
+
+def surface_model(text: str, name: str) -> SurfaceModel:
+    """Return the content of a surface's file, without the files that it refers to. Raises InvalidSource."""
+    tree, problems = read_tree(text, name)
+    model, findings = _validated(tree, problems)
+    findings.end()
+    assert model is not None
+    return model
+
+
+def _validated(tree: Tree, problems: Sequence[Problem]) -> tuple[SurfaceModel | None, Findings]:
+    findings = Findings(tree.name, list(problems))
+    if not isinstance(tree.data, dict):
+        findings.refuse((1, 1), "a surface is a list of keys: name, and one of spectrum, radial, scan, waves")
+        return None, findings
+    try:
+        return SurfaceModel.model_validate(tree.data), findings
+    except ValidationError as error:
+        findings.problems += problems_from_validation(error, tree, SurfaceModel)
+        return None, findings
+
+
+def _table(model: RadialModel, tree: Tree, findings: Findings) -> RadialSpectrum | None:
+    at = ("radial", "rows")
+    for number, (q, power) in enumerate(model.rows):
+        if not q > 0.0 or not power > 0.0:
+            findings.refuse(tree.position((*at, number)), f"q {q:g} 1/m, C {power:g} m4: both are to be above 0")
+    for number, (before, here) in enumerate(pairwise(model.rows), start=1):
+        if not here[0] > before[0]:
+            disorder = f"q {here[0]:g} 1/m does not rise above {before[0]:g} 1/m: a point twice, or out of order"
+            findings.refuse(tree.position((*at, number)), disorder)
+    if len(model.rows) < 2:
+        findings.refuse(tree.position(at), f"{len(model.rows)} points are too few (expected 2 or more)")
+    if findings.problems:
+        return None
+    q, power = np.array(model.rows, dtype=np.float64).T
+    return RadialSpectrum(q, power)
+
+
+def _scanned(
+    model: ScanModel, path: Path, tree: Tree, findings: Findings
+) -> tuple[RadialSpectrum | None, tuple[DataFile, ...]]:
+    try:
+        data = read_beside(path, model.file, MAX_BYTES)
+    except DataFileError as error:
+        findings.refuse(tree.position(("scan", "file")), f"file: {error}")
+        return None, ()
+    options = ScanOptions(model.pixel, model.unit, model.detrend, "pixel: 1 um", "unit: um")
+    inner = Findings(str(path.parent / data.name))
+    try:
+        scan = read_scan(path.parent / data.name, data.content, options, inner)
+        radial = spectrum_of(scan, model.detrend, inner)
+    except InvalidSource as error:
+        findings.problems += error.problems
+        return None, ()
+    except MissingExtraError as error:
+        findings.refuse(tree.position(("scan", "file")), str(error))
+        return None, ()
+    findings.doubts += inner.doubts
+    findings.notes += inner.notes
+    return radial, (data,)

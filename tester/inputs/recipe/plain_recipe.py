@@ -1,0 +1,182 @@
+"""Recipes of a plain machine: a grid of its axes, one step for each condition, each specimen mounted once.
+
+A kind defines how fast a condition slides, and how many blocks it makes in a second; the rest of a recipe follows.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from tester.analysis.stability import REPEAT_WINDOWS
+from tester.base.axes import Setpoint, condition_words
+from tester.base.source import Problem, Tree
+from tester.base.units import Quantity, UnitError, show
+from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
+from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
+from tester.inputs.recipe.plan_text import repeats_words, window_words
+from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.recipe_schema import Recipe
+from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, expected
+from tester.inputs.recipe.time_estimate import NEW, Outlook, StepEstimate
+from tester.inputs.rig import Rig
+from tester.inputs.rig.ceilings import value_at
+
+SPREAD = 0.2
+"""Half the range of the rig time, as its share [A]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mount(Step):
+    """A person puts a specimen on. ``piece`` counts from 1 in the plan, ``replicate`` from 1 in a specimen."""
+
+    kind: ClassVar[str] = "mount"
+    specimen: int
+    replicate: int
+    piece: int
+    compound: str
+    note: str = ""
+
+
+class PlainEstimator:
+    """Durations of the steps of a plain machine (``tester.inputs.recipe.time_estimate.Estimator``)."""
+
+    def __init__(self, part: PlainPart, rig: Rig, repeatability: Mapping[str, float] | None = None) -> None:
+        """``repeatability``: s between repeats, per cent of the coefficient, by compound."""
+        self.part = part
+        self.person_s = 0.0 if rig.simulated else part.person_s
+        self._s_percent = dict(repeatability or {})
+
+    def walk(self, plan: Plan) -> list[StepEstimate]:
+        return [
+            self._condition(step) if isinstance(step, ConditionStep) else StepEstimate(self.person_s)
+            for step in plan.steps
+        ]
+
+    def _condition(self, step: ConditionStep) -> StepEstimate:
+        repeats = expected(step, self.s_percent(step.setpoint.compound))
+        blocks_per_s, m_per_s = self.part.pace(step.setpoint)
+        contact_s = REPEAT_WINDOWS * step.window.duration_s(blocks_per_s) + self.part.settle_s
+        return StepEstimate(
+            repeats * (contact_s + self.part.between_s), repeats * contact_s * m_per_s, bursts=1, repeats=repeats
+        )
+
+    def shut_down_s(self, plan: Plan) -> float:
+        return self.part.between_s
+
+    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
+        seconds = sum(step.seconds for step in steps) + down_s
+        return (1.0 - SPREAD) * seconds, (1.0 + SPREAD) * seconds
+
+    def s_percent(self, compound: str) -> float:
+        return self._s_percent.get(compound, HISTORIC_PERCENT)
+
+    def mu(self, setpoint: Setpoint) -> None:
+        """Return None: no coefficient is expected."""
+
+    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
+        return (NEW for _ in plan.conditions())
+
+    def reversible(self, step: ConditionStep) -> bool:
+        return False
+
+    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> None:
+        """Return None: the instruments' budget is unknown."""
+
+
+class PlainPart(RecipePart):
+    """A plain machine's part of the recipe reader. A kind sets ``kind`` and ``axes`` and defines its ``pace``.
+
+    An axis with a ``limit`` is checked against the key of that name in the rig file, in the axis's ``recipe_unit``.
+    """
+
+    settle_s: ClassVar[float] = 2.0
+    """Time at a condition before its samples count, s [A]."""
+    between_s: ClassVar[float] = 2.0
+    """Time from one repeat to the next: standstill and commit, s [A]."""
+    person_s: ClassVar[float] = 300.0
+    """Time that a person takes to mount a specimen, s [A]."""
+
+    @abstractmethod
+    def pace(self, setpoint: Setpoint) -> tuple[float, float]:
+        """Return how many blocks (``Roles.block``) a condition makes in a second, and how many metres it slides."""
+
+    def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> PlainEstimator:
+        return PlainEstimator(self, rig, repeatability)
+
+    def expand(self, recipe: Recipe, rig: Rig, estimator: object = None) -> Plan:
+        """Return the plan: each replicate of a specimen is mounted and goes through its conditions."""
+        conditions = conditions_of(recipe, self.settings)
+        block_value = self.axes.number_of(self.axes.blocks)
+        steps: list[Step] = []
+        condition = piece = 0
+        specimens = tuple(
+            Specimen(i, specimen_model.compound, specimen_model.note)
+            for i, specimen_model in enumerate(recipe.specimens, start=1)
+        )
+        for specimen in specimens:
+            for replicate in range(1, recipe.replicates + 1):
+                piece += 1
+                steps.append(Mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.note))
+                for block in ordered(conditions, block_value, recipe.order, specimen.index, replicate):
+                    for values, row, grid, how in block:
+                        condition += 1
+                        steps.append(ConditionStep(
+                            len(steps), condition, (specimen.index - 1) * len(conditions) + row, specimen.index,
+                            replicate, grid, Setpoint(specimen.compound, values, self.axes), how.repeats,
+                            how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most,
+                            how.until_percent,
+                        ))  # fmt: skip
+        least = min((specimen_model.settings.min_valid for specimen_model in conditions), default=1)
+        return Plan(recipe.recipe, tuple(steps), specimens, least, metadata_of(recipe), recipe.kind, self.axes)
+
+    def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
+        top = tree.data if isinstance(tree.data, dict) else {}
+        grids = top.get("grids")
+        for index, grid in enumerate(grids if isinstance(grids, list) else []):
+            for axis in self.axes:
+                listed = grid.get(axis.name) if isinstance(grid, dict) and axis.limit else None
+                most = value_at(rig, tuple(axis.limit.split("."))) if listed is not None else None
+                for place, value in enumerate(listed if isinstance(listed, list) else [listed]):
+                    try:
+                        asked = Quantity(axis.recipe_unit).read(value)
+                    except UnitError:
+                        continue
+                    if most is not None and abs(asked) > most:
+                        at = ("grids", index, axis.name, *([place] if isinstance(listed, list) else []))
+                        source = f'(limit {show(most, axis.recipe_unit)}: {axis.limit} of rig "{rig.name}")'
+                        problem = f"{axis.name}: {show(asked, axis.recipe_unit)} is more than the rig allows {source}"
+                        yield tree.problem(at, problem)
+
+    def remaining(self, plan: Plan, stand: Stand) -> Plan:
+        steps: list[Step] = []
+        mount: Mount | None = None
+        last = max((mounted.number for mounted in stand.mounted), default=0)
+        for step in plan.steps:
+            if isinstance(step, Mount):
+                mount = step
+            elif not isinstance(step, ConditionStep) or step.condition not in stand.ended:
+                if mount is not None:
+                    last += 1
+                    steps.append(
+                        Mount(len(steps), mount.specimen, mount.replicate, last, mount.compound, mount.note)
+                    )  # fmt: skip
+                    mount = None
+                steps.append(step)
+        return Plan(plan.name, tuple(steps), plan.specimens, plan.min_valid, plan.metadata, plan.kind, plan.axes)
+
+    def words(self, step: Step, one: StepEstimate) -> str:
+        if isinstance(step, ConditionStep):
+            return f"{self.title(step)}: {repeats_words(step)} x {window_words(step.window)}"
+        return self.title(step)
+
+    def title(self, step: Step) -> str:
+        """Return the work of a step, for an observer."""
+        if isinstance(step, Mount):
+            return f"put on specimen {step.specimen}: {step.compound}" + (f" ({step.note})" if step.note else "")
+        return condition_words(step.setpoint) if isinstance(step, ConditionStep) else step.kind
+
+    def heading(self, plan: Plan, step: Step) -> str:
+        return f"specimen {step.specimen}, replicate {step.replicate}" if isinstance(step, Mount) else ""

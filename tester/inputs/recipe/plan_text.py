@@ -1,0 +1,56 @@
+"""A plan in words: its steps in order, its duration and its wear."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tester.base.words import rough_duration
+from tester.inputs.recipe.plan import ConditionStep, Plan, Step, Window
+from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.time_estimate import Estimate
+
+_WIDTH = 76
+"""Columns of a line before its duration."""
+
+
+def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
+    """Yield the plan line by line: every step with its duration, then the totals."""
+    yield plan.name
+    for step, step_estimate in zip(plan.steps, estimate.steps, strict=True):
+        heading = part.heading(plan, step)
+        if heading:
+            yield ""
+            yield heading
+        text = f"{_indent(step)}{part.words(step, step_estimate)}"
+        yield f"{text:<{_WIDTH}} {rough_duration(step_estimate.seconds):>10}" if step_estimate.seconds else text
+    yield ""
+    yield from totals(plan, estimate, part)
+
+
+def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
+    """Yield the totals of the plan, a figure in each line."""
+    conditions = list(plan.conditions())
+    repeats = sum(step.repeats * step.scheme.repeats_each for step in conditions)
+    yield f"conditions        {len(conditions)}, {repeats} repeats"
+    least, most = rough_duration(estimate.rig_seconds_low), rough_duration(estimate.rig_seconds_high)
+    yield f"rig time          {rough_duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
+    yield f"sliding distance  {estimate.sliding_m:.0f} m"
+    yield from part.totals(plan, estimate)
+
+
+def repeats_words(step: ConditionStep) -> str:
+    """Return the number of repeats that must count, and the precision if the recipe has one: 4 (until 2 %).
+
+    In both directions they are pairs: 4 pairs.
+    """
+    pairs = " pairs" if step.both_directions else ""
+    return f"{step.repeats}{pairs}" + (f" (until {step.until_percent:.3g} %)" if step.until_percent is not None else "")
+
+
+def window_words(window: Window) -> str:
+    """Return a window in a recipe's notation: 30 rev, or 60 s."""
+    return f"{window.revolutions:g} rev" if window.revolutions is not None else f"{window.seconds or 0.0:g} s"
+
+
+def _indent(step: Step) -> str:
+    return "    " if isinstance(step, ConditionStep) else "  "

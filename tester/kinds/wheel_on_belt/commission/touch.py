@@ -1,0 +1,162 @@
+"""Homing, first contact and tare, and the ratio of the speeds from rolling: the armed rig's cold steps."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import Any, Final
+
+from sim.physics.friction import KNOWN
+from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
+from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact, Friction
+from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
+from tester.machine.commission.commission_step import Notes
+from tester.machine.commission.person import Dialogue, StepRefused, Waits, choose, line, measure
+from tester.machine.motions import Power, Sequence, Settle
+
+ANGLE_DEG: Final = 0.5
+"""Greatest deviation of a homed axis from straight [A]: misalignment that the budget includes."""
+DIAMETER_MM: Final = 0.5
+"""Greatest deviation of a new wheel's diameter from the rig file's [A]: three times a caliper's resolution on rubber.
+"""
+TARE_S: Final = 2.0
+ROLLING_N: Final = 50.0
+"""Load of the rolling wheel [A]: the indentation shortens its radius by only some hundredths of a mm."""
+SPEEDS_M_S: Final = (0.2, 0.5, 0.8)
+HALVINGS: Final = 6
+"""Number of halvings to find the belt speed at which friction reverses: from +-(3 % and 10 mm/s) to 0.05 %."""
+SURFACE_S: Final = 3.0
+"""Time for reading the lifted tread: thirty readings of 0.1 K leave 0.02 K [A]."""
+SWEEP_SHARE: Final = 0.03
+CREEP_M_S: Final = 0.010
+RATIO_SHARE: Final = 0.005
+"""Tolerance of the speeds' ratio [A]: scales are known to 0.1 %, a diameter to 0.15 mm of 90, the rolling radius to
+0.05 mm.
+"""
+
+
+def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Check positioned axes after homing: a person reads whether their zero is straight."""
+    angles: dict[str, Any] = {}
+    for name in seat.run.engine.devices.axes.positioned:
+        at = seat.ctx.readings.positions[name]
+        text = f"{name}: it was homed and is at {at:.2f} deg; what does an inclinometer show?"
+        read = yield from measure(f"angle {name}", text, "deg")
+        off = read - at
+        angles[name] = {"shown_deg": at, "read_deg": read}
+        if not abs(off) <= ANGLE_DEG:
+            config = seat.rig.axes.driven()[name]
+            raise StepRefused(
+                f"home of the {name} axis: straight is {off:+.2f} deg off. In the rig file:"
+                f" axes.{name}.home_offset: {config.home_offset - off:.2f} (now {config.home_offset:g})"
+            )
+    notes.values = angles
+    notes.text = "homed; " + ", ".join(f"{name} {angle['read_deg']:+.2f} deg" for name, angle in angles.items())
+
+
+def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Measure the wheel, touch it at little load, see friction reverse, and tare the cell."""
+    believed = seat.rig.geometry.wheel_diameter_mm
+    read = yield from measure("diameter", f"what does a caliper show of the new wheel (believed {believed:g})?", "mm")
+    if not abs(read - believed) <= DIAMETER_MM:
+        raise StepRefused(
+            f"wheel diameter: {read:g} mm measured, the rig file has {believed:g} mm."
+            f" In the rig file: geometry.wheel_diameter: {read:g} mm"
+        )
+    compound = yield from _compound(notes)
+    yield from seat.do(FirstContact())
+    reference: list[float] = []
+    tare = _tare(seat, reference)
+    yield from seat.do(Sequence(Power(True), Lift(), tare))
+    if tare.failed:
+        raise StepRefused(f"tare: {tare.failed}")
+    press_mm = seat.ctx.contact.contact_mm
+    yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
+    notes.values = {"compound": compound, "diameter_mm": read, "touched_mm": press_mm, "zero": reference}
+    zero = ", ".join(f"{one:.2f}" for one in reference[:3])
+    notes.text = f"wheel of {compound}, {read:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
+
+
+def _compound(notes: Notes) -> Generator[Waits, str, str]:
+    """Return the wheel's compound, from the command line or the person."""
+    given, known = notes.given.get("compound", ""), ", ".join(KNOWN)
+    if given:
+        answer = yield from choose("compound given", f"is the wheel of the compound {given}?", "yes", "no")
+        if answer == "yes":
+            return given
+    text = f"which compound is on the wheel? The expected coefficient is known for {known}"
+    return (yield from line("compound", f"{text}; any other name will do"))
+
+
+def _tare(seat: ArmedSeat, reference: list[float]) -> TakeTare:
+    limits = seat.rig.interlocks
+    return TakeTare(TARE_S, reference, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
+
+
+def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
+    """Find the slip at which friction reverses at three speeds; the part proportional to speed is the ratio of the
+    scales.
+    """
+    first = SPEEDS_M_S[0]
+    yield from seat.do(
+        Sequence(Power(True), Lift(), Turn(first, first), Settle(0.5), _tare(seat, []), Load(ROLLING_N, percent=5.0))
+    )
+    reversals: list[tuple[float, float]] = []
+    for speed in SPEEDS_M_S:
+        yield from seat.do(Turn(speed, speed))
+        slip = yield from _turns_round(seat, speed)
+        reversals.append((speed, slip))
+        notes.read("friction turns round", {"wheel_m_s": speed, "slip_m_s": slip})
+    yield from seat.do(Sequence(Turn(first, first), Lift()))
+    surface_c, _ = yield from mean_temperatures(seat, SURFACE_S)
+    yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
+    count = len(reversals)
+    mean_v, mean_s = sum(v for v, _ in reversals) / count, sum(s for _, s in reversals) / count
+    square = sum((v - mean_v) ** 2 for v, _ in reversals)
+    ratio = sum((v - mean_v) * (s - mean_s) for v, s in reversals) / square
+    creep = mean_s - ratio * mean_v
+    left = sum((s - creep - ratio * v) ** 2 for v, s in reversals)
+    resolved = 2.0 * (SWEEP_SHARE * SPEEDS_M_S[-1] + CREEP_M_S) / 2.0**HALVINGS
+    standard = ((left / (count - 2) + resolved * resolved / 12.0) / square) ** 0.5
+    if not abs(ratio) <= RATIO_SHARE + 2.0 * standard:
+        geometry = seat.rig.geometry
+        raise StepRefused(
+            f"speed ratio: rolling freely the belt is {100 * ratio:+.2f} % (+-{100 * standard:.2f} %) off the rim:"
+            f" either geometry.wheel_diameter is {geometry.wheel_diameter_mm * (1.0 - ratio):.2f} mm, or in the rig"
+            f" file axes.belt.velocity_increments: {seat.rig.axes.belt.velocity_increments * (1.0 - ratio):.7g}"
+        )
+    notes.values = {
+        "ratio_error": ratio, "standard_uncertainty": standard, "creep_m_s": creep,
+        "turns_round": [list(one) for one in reversals], "surface_c": surface_c,
+    }  # fmt: skip
+    notes.text = (
+        f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %),"
+        f" creep {1e3 * creep:.1f} mm/s"
+    )
+
+
+def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
+    """Return the slip (wheel less belt, m/s, as shown) at which friction reverses."""
+    reach = SWEEP_SHARE * speed + CREEP_M_S
+    low, high = -reach, reach
+    ends: list[float] = []
+    for slip in (low, high):
+        friction = yield from _friction(seat, speed, slip)
+        ends.append(friction)
+    if not (ends[0] < 0.0 < ends[1]):
+        raise StepRefused(
+            f"friction does not turn round between {low:.3f} and {high:.3f} m/s of slip at {speed:g} m/s"
+            f" ({ends[0]:.1f}, {ends[1]:.1f} N): direction, scale or diameter of wheel or belt"
+        )
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        friction = yield from _friction(seat, speed, middle)
+        low, high = (low, middle) if friction > 0.0 else (middle, high)
+    return 0.5 * (low + high)
+
+
+def _friction(seat: ArmedSeat, speed: float, slip: float) -> Generator[Waits, str, float]:
+    activity = Friction(speed, speed - slip)
+    yield from seat.do(activity)
+    return activity.friction_n / activity.count
+
+

@@ -1,0 +1,189 @@
+"""The press: lift to clear, approach the wheel, hold the load.
+
+The press is a velocity-controlled screw, the contact a stiff spring, so velocity to force is an integrator: a
+proportional law with the gain ``2 pi bandwidth / stiffness`` gives first-order settling; the integral part only
+removes the slow drift from wear and thermal growth.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from math import exp, inf, isfinite, nan, pi, sqrt
+from typing import Final
+
+from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
+from tester.kinds.wheel_on_belt.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, Contact
+from tester.kinds.wheel_on_belt.interlocks.inputs import StopStart
+from tester.kinds.wheel_on_belt.rig import HeatLoopConfig, LoadLoopConfig
+from tester.machine.state import ControlState
+
+_INF: Final = inf
+_LOAD: Final = Press.LOAD
+_TURN: Final = 2.0 * pi
+DECELERATION_SHARE: Final = 0.6
+"""Share of ``loops.load.acceleration`` that profiles to a position use: they come down gently where they end."""
+POSITION_GAIN_PER_S: Final = 6.0
+"""Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
+HELD_BAND: Final = 0.03
+"""Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
+
+
+@dataclass(slots=True)
+class LoadLoop(Contact):
+    """State of the press control."""
+
+    diameter_mm: float = nan
+    """The wheel's diameter when it was touched last: since then it has worn."""
+    seen_open: bool = False
+    """The contact was open since it was touched last: where it is touched again is where the rubber begins."""
+    integral_mm_s: float = 0.0
+    error_n: float = 0.0
+    """Load error, filtered over one turn or so; decides between the fast and the holding bandwidth."""
+
+    def forget_contact(self) -> None:
+        """Forget where the wheel was touched: another wheel is installed."""
+        self.contact_mm = nan
+
+    def velocity(self, demand: Demand, readings: Readings, dt: float, loop: LoadLoopConfig) -> float:
+        """Return the press velocity in mm/s (positive = towards the wheel) for this scan.
+
+        Unknown force or position never presses: the result is then a retraction.
+        """
+        force, position = readings.force_z_n, readings.press_mm
+        if demand.press is not _LOAD or not (-_INF < force < _INF and -_INF < position < _INF):
+            return self._lift(force, position, loop)
+        change_n = loop.follow_rate_n_s * dt
+        self.highest_n = max(demand.load_n, self.highest_n - change_n)
+        self.lowest_n = min(demand.load_n, self.lowest_n + change_n)
+        self._track_contact(force, readings, loop)
+        self.loaded = self.in_contact and (self.loaded or force >= 0.5 * demand.load_n)
+        if not self.in_contact:
+            self.integral_mm_s = 0.0
+            self.error_n = demand.load_n
+            return self._approach(demand, position, loop)
+        return self._hold(demand, force, dt, loop)
+
+    def lifted_mm(self, loop: LoadLoopConfig) -> float:
+        """Return the press position that counts as lifted, mm: a clearance off the known contact, else fully back."""
+        return max(0.0, self.contact_mm - loop.clearance_mm) if isfinite(self.contact_mm) else 0.0
+
+    def _lift(self, force: float, position: float, loop: LoadLoopConfig) -> float:
+        """Return the velocity to the lifted position; while the cell shows a load, the press goes back to its end."""
+        self.in_contact = self.loaded = False
+        self._look_open(force, loop)
+        self.highest_n = self.lowest_n = 0.0
+        self.integral_mm_s = 0.0
+        if not isfinite(position):
+            return -loop.lift_speed_mm_s
+        distance = (self.lifted_mm(loop) if force < UNLOADED_N else 0.0) - position
+        if distance >= 0.0:
+            return min(distance * POSITION_GAIN_PER_S, loop.loading_speed_mm_s) if distance > 0.5 else 0.0
+        return -min(loop.lift_speed_mm_s, _profile(-distance, loop), -distance * POSITION_GAIN_PER_S)
+
+    def _look_open(self, force: float, loop: LoadLoopConfig) -> None:
+        if force < loop.open_share * loop.touch_load_n:
+            self.seen_open = True
+
+    def worn_to_mm(self, diameter_mm: float) -> float:
+        """Return where a wheel of this diameter would be touched now, mm; NaN where it has not been touched yet."""
+        worn = 0.5 * (self.diameter_mm - diameter_mm)
+        return self.contact_mm + worn if worn > 0.0 else self.contact_mm
+
+    def _track_contact(self, force: float, readings: Readings, loop: LoadLoopConfig) -> None:
+        """Note touching; a load that comes again before the contact was open says nothing about where it begins."""
+        self._look_open(force, loop)
+        if not self.in_contact and force > loop.touch_load_n:
+            self.in_contact = True
+            if self.seen_open:
+                self.contact_mm, self.diameter_mm = readings.press_mm, readings.diameter_mm
+            self.seen_open = False
+        elif self.in_contact and not self.loaded and force < 0.3 * loop.touch_load_n:
+            self.in_contact = False
+
+    def _approach(self, demand: Demand, position: float, loop: LoadLoopConfig) -> float:
+        landing = min(
+            loop.touch_speed_mm_s if demand.quick_touch else loop.loading_speed_mm_s,
+            0.5 * demand.load_n * _gain(loop, loop.bandwidth_hz, 0.0),
+        )
+        if not isfinite(self.contact_mm):
+            return landing
+        distance = self.contact_mm - position
+        if distance <= 0.0:
+            return landing
+        return min(
+            loop.touch_speed_mm_s,
+            sqrt(landing * landing + 2.0 * DECELERATION_SHARE * loop.acceleration_mm_s2 * distance),
+        )
+
+    def _hold(self, demand: Demand, force: float, dt: float, loop: LoadLoopConfig) -> float:
+        error = demand.load_n - force
+        self.error_n += (error - self.error_n) * (1.0 - exp(-dt / loop.error_filter_s))
+        near = abs(self.error_n) < HELD_BAND * demand.load_n
+        bandwidth = loop.rolling_bandwidth_hz if near else loop.bandwidth_hz
+        gain = _gain(loop, bandwidth, force)
+        limit = loop.touch_speed_mm_s if demand.quick_touch else loop.loading_speed_mm_s
+        if near:
+            self.integral_mm_s += gain * self.error_n * dt / loop.integral_s
+            self.integral_mm_s = min(max(self.integral_mm_s, -0.1 * limit), 0.1 * limit)
+        return min(max(gain * error + self.integral_mm_s, -limit), limit)
+
+
+def _gain(loop: LoadLoopConfig, bandwidth_hz: float, force_n: float) -> float:
+    """Return mm/s per N that closes the loop at ``bandwidth_hz`` at the contact's tangent stiffness."""
+    stiffness = loop.stiffness_n_per_mm * math.pow(max(force_n, 20.0) / 200.0, STIFFNESS_EXPONENT)
+    return _TURN * bandwidth_hz / stiffness
+
+
+def _profile(distance_mm: float, loop: LoadLoopConfig) -> float:
+    """Return the speed in mm/s from which the press can stop within ``distance_mm``."""
+    return sqrt(2.0 * DECELERATION_SHARE * loop.acceleration_mm_s2 * distance_mm)
+
+
+@dataclass(slots=True)
+class HeatLoop:
+    """State of the outer loop."""
+
+    hub_setpoint_c: float = 25.0
+    target_c: float = float("nan")
+    integral_k: float = 0.0
+    due_s: float = float("-inf")
+
+    def update(
+        self, now: float, target_c: float, surface_c: float, ambient_c: float, loss_ratio: float, loop: HeatLoopConfig
+    ) -> float:
+        """Return the hub setpoint in degC, recomputed once every ``loop.period_s``.
+
+        ``loss_ratio`` is the steady hub-surface difference per kelvin of surface above ambient: the rubber's
+        resistance times the surface's loss conductance (dimensionless).
+        """
+        if target_c != self.target_c:
+            self.target_c = target_c
+            self.integral_k = 0.0
+            self.due_s = now
+        if now < self.due_s or not isfinite(surface_c):
+            return self.hub_setpoint_c
+        self.due_s = now + loop.period_s
+        error = target_c - surface_c
+        if abs(error) < loop.integral_band_k:
+            self.integral_k += loop.outer_gain * error * loop.period_s / loop.outer_integral_s
+            self.integral_k = min(max(self.integral_k, -loop.integral_limit_k), loop.integral_limit_k)
+        steady = target_c + max(0.0, target_c - ambient_c) * loss_ratio
+        wanted = steady + loop.outer_gain * error + self.integral_k
+        self.hub_setpoint_c = min(max(wanted, loop.hub_min_c), loop.hub_max_c)
+        return self.hub_setpoint_c
+
+
+class WheelState(ControlState[Setpoints]):
+    """Everything ``WheelControl.step`` carries from one scan to the next; plain data, copyable."""
+
+    def __init__(self, setpoints: Setpoints, load: LoadLoop, heat: HeatLoop) -> None:
+        """Begin in idle."""
+        super().__init__(setpoints)
+        self.load = load
+        self.heat = heat
+        self.stop_start = StopStart()
+        self.turning_since_s = inf
+        """Since when the wheel has been confirmed turning."""
+        self.hub_ceiling: list[tuple[float, float]] = []
+        """(time, hub setpoint) within ``runaway_window``, falling ones only: the first is the highest."""

@@ -1,0 +1,137 @@
+"""The stops, scan by scan, from leaving RUN to standstill. Their deadlines: ``interlocks.stops``."""
+
+from __future__ import annotations
+
+from math import inf, isfinite
+
+from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
+from tester.kinds.wheel_on_belt.control.loops import WheelState
+from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s
+from tester.kinds.wheel_on_belt.image.process import Setpoints
+from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
+from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
+from tester.kinds.wheel_on_belt.interlocks.known import contactor_open, standing, unloaded
+from tester.kinds.wheel_on_belt.interlocks.operation import COOLDOWN_AT_MOST_S, COOLDOWN_HUB_C, COOLDOWN_SPEED_M_S
+from tester.kinds.wheel_on_belt.interlocks.stops import HEAT_OFF_S, LIFTED_MM, PRESS_LAG_S, SLIP_OUT_S, STOP_TIMEOUT_S
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.state import Mode
+
+
+def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
+    """Overwrite the commands with the safe ones, all in this scan; no action waits for another.
+
+    Heat off and contactor open, press retracting, both drives to zero on equal linear decelerations (``fast``: by
+    quick stop, and the press as fast as it goes). Positioned axes stay where they are: moving them would not help.
+    """
+    setpoints.heat = False
+    setpoints.contactor = False
+    setpoints.hub_c = rig.loops.heat.hub_min_c
+    setpoints.press_mm_s = -rig.axes.press.max_speed if fast else -rig.loops.load.lift_speed_mm_s
+    setpoints.wheel_rad_s = 0.0
+    setpoints.belt_m_s = 0.0
+    setpoints.quick_stop = fast
+
+
+def no_outputs(setpoints: Setpoints, rig: RigConfig) -> None:
+    """Set every command to zero and want no power: at rest. What was escalated stays so until it is acknowledged."""
+    safe_outputs(setpoints, rig, fast=False)
+    setpoints.press_mm_s = 0.0
+    setpoints.enable = False
+
+
+def mirror_emergency(setpoints: Setpoints, rig: RigConfig) -> None:
+    """Set every command to zero: the hardware has taken over, and nothing may start when it gives the power back.
+
+    The quick stop ends in power off by itself; the press wants no power, so that its spring lifts it.
+    """
+    safe_outputs(setpoints, rig, fast=True)
+    setpoints.press_mm_s = 0.0
+    setpoints.enable = False
+
+
+def note_stop(state: WheelState, view: InterlockInputs, bounds: Bounds) -> None:
+    """Record the drives' speeds at the begin of a stop; an unknown speed counts as the highest allowed.
+
+    A press on its way to the contact still has its ramp ahead of it, and the lag of scan and drive.
+    """
+    start = state.stop_start
+    start.speed_m_s = _speed(view, bounds)
+    coming = max(view.press.high_mm_s, state.setpoints.press_mm_s)
+    coming_mm = coming * (view.parameters[PRESS_LAG_S] + 0.5 * coming / view.rig.axes.press.deceleration)
+    start.press_mm = view.readings.press_mm + coming_mm if isfinite(view.readings.press_mm) else inf
+
+
+def note_fast_stop(state: WheelState, view: InterlockInputs, bounds: Bounds) -> None:
+    """Record the drives' speeds at the begin of the quick stop."""
+    state.stop_start.fast_speed_m_s = _speed(view, bounds)
+
+
+def _speed(view: InterlockInputs, bounds: Bounds) -> float:
+    wheel, belt = abs(view.readings.wheel_speed_m_s), abs(view.readings.belt_speed_m_s)
+    if isfinite(wheel) and isfinite(belt):
+        return max(wheel, belt)
+    return max(bounds.wheel_speed_m_s, bounds.belt_speed_m_s)
+
+
+def stop_outputs(state: WheelState, view: InterlockInputs) -> None:
+    """Command a controlled or a fast stop."""
+    out, r, rig = state.setpoints, view.readings, view.rig
+    fast = state.mode is not Mode.STOPPING
+    wheel_rad_s = out.wheel_rad_s
+    safe_outputs(out, rig, fast=fast)
+    loaded = not (r.force_z_n < UNLOADED_N)
+    matched_m_s = confirmed_speed_m_s(view.parameters)
+    slipping = not (-matched_m_s < r.slip_m_s < matched_m_s)
+    if not fast and loaded and slipping and view.stopped_s < view.parameters[SLIP_OUT_S] and r.wheel_speed_m_s > 0.0:
+        # Slip to zero first: with equal decelerations the slower belt would stop while the wheel still turns.
+        out.wheel_rad_s = wheel_rad_s
+        out.belt_m_s = min(r.wheel_speed_m_s, rig.limits.belt_speed_m_s)
+    lifted_mm = state.load.lifted_mm(rig.loops.load) if unloaded(view) else 0.0
+    if r.press_mm <= lifted_mm + view.parameters[LIFTED_MM]:
+        out.press_mm_s = 0.0
+
+
+def stop_ended(state: WheelState, view: InterlockInputs) -> bool:
+    """Return whether the rig is at rest, lifted, unloaded and without heat, or the time for it is over ("stop not
+    ended").
+    """
+    r = view.readings
+    if r.now_s - state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
+        return True
+    lifted = r.press_mm <= state.load.lifted_mm(view.rig.loops.load) + view.parameters[LIFTED_MM]
+    if state.mode is Mode.EMERGENCY or state.setpoints.power_off or r.drives_disabled:
+        lifted = True  # the press has no power: the open contact is what counts
+    return standing(view) and lifted and unloaded(view) and heat_off(view)
+
+
+def heat_off(view: InterlockInputs) -> bool:
+    """Return whether the heat is known to be off: no output and the contactor open.
+
+    Once the time for both is over, one of them is enough, for it keeps the heat off; the other one's row has tripped.
+    """
+    r, p = view.readings, view.parameters
+    silent = r.jacket_valid and r.now_s - r.jacket_at_s <= p[STALE_JACKET_S] and r.heat_percent <= 0.0
+    if view.stopped_s <= p[HEAT_OFF_S]:
+        return silent and contactor_open(view)
+    return silent or contactor_open(view)
+
+
+def must_cool(view: InterlockInputs) -> str:
+    """Return why the wheel is to turn on after a controlled stop: standing, a hot hub would bake it in one spot."""
+    r = view.readings
+    hub_c = r.hub_c if r.jacket_valid else view.jacket.hub_c
+    healthy = r.drives_enabled and not r.drive_fault
+    return "jacket hot" if healthy and hub_c > view.parameters[COOLDOWN_HUB_C] else ""
+
+
+def cool_outputs(state: WheelState, view: InterlockInputs) -> str:
+    """Command the cool-down: unloaded creep, heat off. Return why it is over, "" while it is not."""
+    out, r, p, now = state.setpoints, view.readings, view.parameters, view.readings.now_s
+    safe_outputs(out, view.rig, fast=False)
+    out.press_mm_s = 0.0
+    if r.jacket_valid and r.hub_c <= p[COOLDOWN_HUB_C]:
+        return "cooled down"
+    if now - state.mode_since_s > p[COOLDOWN_AT_MOST_S]:
+        return "cool-down time over"
+    out.wheel_rad_s = p[COOLDOWN_SPEED_M_S] / (r.diameter_mm * 0.5e-3) if r.diameter_mm > 1.0 else 0.0
+    return ""

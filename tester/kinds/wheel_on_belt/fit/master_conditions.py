@@ -1,0 +1,70 @@
+"""Why no master curve is made of what a wheel on a belt measured, each time with its own figures.
+
+A wheel under hundreds of newtons at tenths of a metre a second heats its surface by friction. A repeat is then a
+stretch of a warming surface, within a band of temperature, and the rubber below is at another one. What is measured
+shows it: mu of these rubbers has a maximum over temperature at every speed, and below it rises with speed too, which no
+shift of time against temperature allows (``tester.analysis.master_curve.verdict``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from statistics import median
+from typing import Final
+
+from tester.analysis.fit.fit_law import FitPoint, Sourced
+from tester.analysis.master_curve.points import MasterPart, MasterPoint, MasterRun, MasterSource
+from tester.analysis.master_curve.verdict import signs_of
+from tester.kinds.wheel_on_belt.fit.data import appendix
+from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
+
+COOL_W: Final = 1.0
+"""Power of friction below which a surface is taken to stay as warm as it was made [A]: a slow block has less."""
+
+
+class WheelMasters:
+    """Conditions of a wheel, and why they are refused."""
+
+    def run(self, folder: Path) -> MasterRun:
+        """Return the conditions of a run with the reason against them; raises StoreError."""
+        from tester.kinds.wheel_on_belt.fit.run_data import run_points
+
+        return _refused(run_points(folder))
+
+    def packaged(self, name: str) -> MasterRun:
+        """Return the conditions of an appendix with the reason against them; raises KeyError."""
+        return _refused(appendix(name))
+
+
+def _refused(found: Sourced) -> MasterRun:
+    sliding = [one for one in found.points if one.measured[SLIP] > 0.0]
+    rolling = [(one.label, "rolls without slip") for one in found.points if not one.measured[SLIP] > 0.0]
+    points = tuple(_point(one) for one in sliding)
+    powers = [one.value * one.measured[LOAD] * one.measured[SLIP] for one in sliding]
+    hot = [power for power in powers if power > COOL_W]
+    refusal = ""
+    if hot:
+        told = [
+            f"friction heats the surface of the wheel with {median(hot):.0f} W (up to {max(hot):.0f} W), so a condition"
+            " is a stretch of a warming surface and its temperature not that of the rubber"
+        ]
+        signs = signs_of(points)
+        if signs.same:
+            told.append(
+                f"mu changes the same way with speed and with temperature in {signs.same} of {signs.cells} places where"
+                " both are clear, which no shift of time against temperature allows"
+            )
+        refusal = "; ".join(told)
+    return MasterRun(points, (*found.left_out, *rolling), refusal)
+
+
+def _point(one: FitPoint) -> MasterPoint:
+    held: Mapping[str, str] = {"load": f"{one.nominal[LOAD]:g} N"}
+    return MasterPoint(
+        one.label, one.group, one.measured[SLIP], one.measured[TEMPERATURE], one.nominal[TEMPERATURE], one.value,
+        MasterSource(one.source.name), held,
+    )  # fmt: skip
+
+
+MASTERS: Final[MasterPart] = WheelMasters()

@@ -1,0 +1,94 @@
+"""Rows of the appendices as items of the paper need them: series over one variable, errors by compound."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
+
+from tester.analysis.fit.check import Errors, errors_of
+from tester.analysis.fit.fit_law import FitPoint, by_group
+from tester.kinds.wheel_on_belt.fit.data import appendix
+from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
+from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, of_table_3
+
+USUAL_LOAD_N, USUAL_SLIP_M_S = 200.0, 0.3
+"""Held while the other is varied."""
+COMPOUND_NAMES = ("1#", "2#", "3#")
+
+
+def readable() -> list[FitPoint]:
+    """Return the rows of both appendices that can be read, without sideslip, none inferred."""
+    return [*appendix(FIT).points, *appendix(VALIDATION).points]
+
+
+def over_load() -> list[FitPoint]:
+    """Return the rows at the usual slip velocity."""
+    return [entry for entry in readable() if entry.nominal[SLIP] == USUAL_SLIP_M_S]
+
+
+def over_slip() -> list[FitPoint]:
+    """Return the rows at the usual load."""
+    return [entry for entry in readable() if entry.nominal[LOAD] == USUAL_LOAD_N]
+
+
+def series(points: Iterable[FitPoint], variable: int) -> list[list[FitPoint]]:
+    """Return the rows that differ in one variable alone, each series ascending."""
+    result: dict[tuple[object, ...], list[FitPoint]] = {}
+    for entry in points:
+        setting = tuple(value for i, value in enumerate(entry.nominal) if i != variable)
+        result.setdefault((entry.group, *setting), []).append(entry)
+    return [sorted(subset, key=lambda entry: entry.nominal[variable]) for subset in result.values()]
+
+
+def steps(points: Iterable[FitPoint], variable: int, up: bool) -> tuple[int, int]:
+    """Return in how many steps along a variable the coefficient changes as stated, and how many there are."""
+    pairs = [pair for subset in series(points, variable) for pair in pairwise(subset)]
+    return sum((b.value > a.value) is up and a.value != b.value for a, b in pairs), len(pairs)
+
+
+def peaks(points: Iterable[FitPoint]) -> tuple[int, int, list[str]]:
+    """Return how many series over temperature peak at 70 degC, how many reach beyond it, and which do not."""
+    phrase: list[str] = []
+    count = 0
+    for subset in series(points, TEMPERATURE):
+        if not {55.0, 70.0, 85.0} <= {entry.nominal[TEMPERATURE] for entry in subset}:
+            continue
+        count += 1
+        top = max(subset, key=lambda entry: entry.value)
+        if top.nominal[TEMPERATURE] != 70.0:
+            phrase.append(f"{top.label} at {top.nominal[TEMPERATURE]:g} degC")
+    return count - len(phrase), count, phrase
+
+
+def errors_on(predicted: Callable[[Sequence[FitPoint]], Sequence[float]], points: Sequence[FitPoint]) -> Errors:
+    """Return how far predictions are off rows."""
+    return errors_of(predicted(points), [entry.value for entry in points])
+
+
+def by_compound_words(points: Sequence[FitPoint]) -> str:
+    """Return how far Eqs 7 to 9 are off rows, by compound."""
+    each = [errors_on(of_table_3, subset) for subset in by_group(points).values()]
+    every = errors_on(of_table_3, points)
+    means = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in each)
+    return f"mean {means} % ({', '.join(by_group(points))}), largest {100.0 * every.largest:.0f} %"
+
+
+def bias(points: Sequence[FitPoint]) -> float:
+    """Return the mean of measured over Eqs 7 to 9, less 1; NaN of none."""
+    if not points:
+        return float("nan")
+    return sum(entry.value / value for entry, value in zip(points, of_table_3(points), strict=True)) / len(points) - 1.0
+
+
+def at(
+    points: Iterable[FitPoint], compound: str, *, celsius: float | None = None, load: float | None = None,
+    slip: float | None = None,
+) -> list[FitPoint]:  # fmt: skip
+    """Return the rows of a compound at values that are given."""
+    asked = {TEMPERATURE: celsius, LOAD: load, SLIP: slip}
+    setting = {place: value for place, value in asked.items() if value is not None}
+    return [
+        entry
+        for entry in points
+        if entry.group == compound and all(entry.nominal[i] == value for i, value in setting.items())
+    ]

@@ -1,0 +1,252 @@
+"""A rig of this kind: its sections together, and the knowledge for reading its file (tester.inputs.rig.config)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from math import ceil
+from typing import ClassVar, Final
+
+from drivers.axis import AxisConfig
+from drivers.profiles import ProfileError
+from sim.physics.parameters import SimParameters
+from tester.base.quantities import Quantities
+from tester.base.source import Location
+from tester.inputs.rig.ceilings import Ceiling
+from tester.inputs.rig.cells import skew_problem
+from tester.inputs.rig.config import HEAT_OFF, OwnDevice, Rig
+from tester.inputs.rig.parameter import Parameter
+from tester.inputs.rig.profiles import profile_of
+from tester.kinds.wheel_on_belt import KIND
+from tester.kinds.wheel_on_belt.image.axes import POSITIONED
+from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.interlocks.table import TABLE
+from tester.kinds.wheel_on_belt.rig.sections import (
+    HARMFUL_N,
+    ArmingConfig,
+    AxesConfig,
+    CertificatesConfig,
+    GatesConfig,
+    GeometryConfig,
+    InterlocksConfig,
+    LimitsConfig,
+    LoopsConfig,
+    ObserverConfig,
+    WearConfig,
+)
+from tester.kinds.wheel_on_belt.rig.wheel_ceilings import CEILINGS
+from tester.machine.interlock_table import InterlockTable
+
+EQUAL_DECELERATIONS = 0.05
+"""Wheel and belt must decelerate alike, in m/s2, within this share [A]: otherwise one stops before the other."""
+
+_Found = Iterator[tuple[Location, str]]
+
+
+def problems_between(rig: RigConfig) -> _Found:
+    """Yield inconsistencies, with their places in the file."""
+    for check in (_speeds, _decelerations, _units, _press, _temperatures, _skew, _heat_off):
+        yield from check(rig)
+
+
+def _speeds(rig: RigConfig) -> _Found:
+    """A drive that clamps below the rig's limit would run slower than it is asked, silently."""
+    wheel = rig.axes.wheel.max_speed * 0.5e-3 * rig.geometry.wheel_diameter_mm
+    if wheel < rig.limits.wheel_speed_m_s:
+        yield ("axes", "wheel", "max_speed"), f"gives {wheel:.3f} m/s, less than limits.wheel_speed"
+    if rig.axes.belt.max_speed < rig.limits.belt_speed_m_s:
+        yield ("axes", "belt", "max_speed"), f"{rig.axes.belt.max_speed:g} m/s is less than limits.belt_speed"
+    if rig.loops.load.lift_speed_mm_s > rig.axes.press.max_speed:
+        yield ("loops", "load", "lift_speed"), "is above axes.press.max_speed"
+    if rig.loops.load.acceleration_mm_s2 > min(rig.axes.press.acceleration, rig.axes.press.deceleration):
+        yield ("loops", "load", "acceleration"), "is above what axes.press can follow"
+
+
+def _decelerations(rig: RigConfig) -> _Found:
+    radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
+    for key in ("deceleration", "quick_stop_deceleration"):
+        wheel = float(getattr(rig.axes.wheel, key)) * radius_m
+        belt = float(getattr(rig.axes.belt, key))
+        if abs(wheel - belt) > EQUAL_DECELERATIONS * belt:
+            message = f"wheel {wheel:.3g} m/s2 at the rim, belt {belt:.3g} m/s2: they must be equal within 5 %"
+            yield ("axes", "wheel", key), message
+
+
+def _units(rig: RigConfig) -> _Found:
+    due = {"wheel": "rad/s", "belt": "m/s", "press": "mm/s"} | {axis.name: axis.recipe_unit for axis in POSITIONED}
+    for name, axis in rig.axes.driven().items():
+        if axis.unit != due[name]:
+            yield ("axes", name, "unit"), f"the {name} axis is in {due[name]}, not {axis.unit}"
+    if not rig.axes.press.digital_io:
+        yield ("axes", "press", "digital_io"), "the press drive carries the safety chain's inputs (expected true)"
+    if rig.interlocks.stale_inputs_s < 2.0 * rig.axes.press.inputs_period_s:
+        message = "is less than two of axes.press.inputs_period: a single lost frame would stop the rig"
+        yield ("interlocks", "stale_inputs"), message
+
+
+def _press(rig: RigConfig) -> _Found:
+    problem = torque_problem(rig)
+    if problem:
+        yield ("axes", "press", "screw"), problem
+
+
+def _skew(rig: RigConfig) -> _Found:
+    needed = rig.own["load_cell"].channels
+    yield from skew_problem(rig, needed, rig.interlocks.cell_skew_s)
+
+
+def _heat_off(rig: RigConfig) -> _Found:
+    """The heat ends without this program: by a lease, or by what the file says that the machine has instead."""
+    for name, device in rig.devices.items():
+        if device.heat_off and (name != "jacket" or device.heat_off not in HEAT_OFF):
+            expected = "it is the jacket's" if name != "jacket" else f"expected {' or '.join(HEAT_OFF)}"
+            yield ("devices", name, "heat_off"), f"{device.heat_off} ({expected})"
+    jacket = rig.devices.get("jacket")
+    try:
+        profile = profile_of(jacket.profile) if jacket is not None else None
+    except ProfileError:
+        return  # another check reports it
+    if jacket is None or profile is None or rig.simulated or "lease" in profile.writes:
+        return
+    if jacket.heat_off == "fallback" and profile.falls_back_s is None:
+        message = f"{profile.title} has no setpoint of its own that it falls back to (falls_back_s): expected relay"
+        yield ("devices", "jacket", "heat_off"), message
+    elif not jacket.heat_off:
+        ways = "; ".join(f"{key}: {words}" for key, words in HEAT_OFF.items())
+        message = f"{profile.title} has no lease: it heats on when the PC is silent. Say by heat_off what ends that"
+        yield ("devices", "jacket"), f"{message} ({ways})"
+
+
+def _temperatures(rig: RigConfig) -> _Found:
+    heat = rig.loops.heat
+    if heat.hub_max_c > rig.limits.jacket_c:
+        yield ("loops", "heat", "hub_max"), f"{heat.hub_max_c:g} degC is above limits.jacket"
+    if heat.hub_min_c >= heat.hub_max_c:
+        yield ("loops", "heat", "hub_min"), "is not below hub_max"
+
+
+RIPPLE_N: Final = 10.0
+"""Load variation from the tread's runout with the press at rest, peak to peak, N [A]: 7 to 10 N at 200 to 400 N."""
+
+
+def with_torque_limit(rig: RigConfig) -> RigConfig:
+    """Return a rig whose press drive has the torque for ``limits.load``, or less where the file says so.
+
+    A press without ``screw`` keeps what the file says: nothing is known of what its torque does.
+    """
+    press = rig.axes.press
+    if press.screw is None:
+        return rig
+    needed = ceil(1000.0 * press.screw.torque_nm(rig.limits.load_n) / press.rated_torque_nm)
+    limited = replace(press, max_torque_per_mille=min(press.max_torque_per_mille, needed))
+    return replace(rig, axes=replace(rig.axes, press=limited))
+
+
+def torque_problem(rig: RigConfig) -> str:
+    """Return why the limit of the press's torque does not do, or ""; the rig is one of ``with_torque_limit``."""
+    press = rig.axes.press
+    if press.screw is None:
+        return ""
+    torque_nm = 1e-3 * press.max_torque_per_mille * press.rated_torque_nm
+    most_n, least_n = press.screw.pushed_n(torque_nm), press.screw.reached_n(torque_nm)
+    if most_n + RIPPLE_N > HARMFUL_N:
+        return (
+            f"{torque_nm:.3f} N m (0x6072), which {rig.limits.load_n:g} N take with the most friction, press with"
+            f" {most_n:.0f} N with the least, and {RIPPLE_N:g} N of runout make that more than {HARMFUL_N:g} N:"
+            " lower limits.load, or narrow down efficiency and drag"
+        )
+    if least_n < rig.limits.load_n:
+        return (
+            f"{torque_nm:.3f} N m (max_torque_per_mille) surely press with {least_n:.0f} N only, limits.load is"
+            f" {rig.limits.load_n:g} N: lower the one or raise the other"
+        )
+    return ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigConfig(Rig):
+    """A rig: everything about the machine that software needs to know, and nothing about a test."""
+
+    packaged: ClassVar[Mapping[str, str]] = KIND.rigs
+    may_lack: ClassVar[tuple[str, ...]] = (
+        *Rig.may_lack,
+        "axes.*.rpdo_deadline",
+        "axes.*.speed_zero",
+        "axes.*.inputs_period",
+        "axes.*.max_torque_per_mille",
+        "axes.*.home_timeout",
+        "devices.*.emissivity",
+        "loops",
+        "gates",
+        "interlocks",
+        "arming",
+        "wear",
+        "observer.friction_heat_fraction",
+        "observer.belt_conductance",
+        "observer.thermal",
+    )
+    stated: ClassVar[tuple[str, ...]] = ("observer.wheel",)
+    manual: ClassVar[tuple[str, ...]] = tuple(axis.name for axis in POSITIONED)
+    own: ClassVar[Mapping[str, OwnDevice]] = {
+        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True),
+        "jacket": OwnDevice("jacket", "jacket"),
+        "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer"),
+    }
+    quantities: ClassVar[Quantities] = QUANTITIES
+    table: ClassVar[InterlockTable] = TABLE
+    """The rows that control evaluates; a laboratory's own kind may have more."""
+    parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
+    watched: ClassVar[tuple[str, ...]] = TABLE.channels
+    ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS
+    real: ClassVar[tuple[tuple[str, str], ...]] = (
+        ("the estimates and the thermal interlocks believe of the wheel. The simulated wheel behaves by `sim`\n",
+         "the estimates and the thermal interlocks believe of the wheel. All [A].\n"),
+        ("# below, so a wrong belief can be tried out: --set observer.friction_heat_fraction=0.2. All [A].\n", ""),
+        ("    profile: simulated_jacket       #",
+         "    heat_off: fallback              # [A] it has no lease; try it out: hub warm, cable off. Else: relay\n"
+         "    profile: eurotherm_3200         #"),
+        ("# air around a real rig; the simulated rig's is sim.ambient", "# air around the rig"),
+    )  # fmt: skip
+
+    geometry: GeometryConfig
+    limits: LimitsConfig
+    axes: AxesConfig
+    loops: LoopsConfig
+    gates: GatesConfig
+    interlocks: InterlocksConfig
+    arming: ArmingConfig
+    wear: WearConfig
+    observer: ObserverConfig
+    calibration: CertificatesConfig = field(default_factory=CertificatesConfig)
+    sim: SimParameters = field(default_factory=SimParameters)
+    """The simulated rig's physics; without meaning on a real one."""
+
+    @property
+    def ambient_c(self) -> float:
+        """Temperature of the air around the rig, degC: of the simulated rig's air, else as the file states it."""
+        return self.sim.ambient if self.simulated else self.observer.ambient_c
+
+    def in_air(self, ambient_c: float) -> RigConfig:
+        """Return a rig whose file states this temperature of the air around a real one, degC."""
+        return replace(self, observer=replace(self.observer, ambient_c=ambient_c))
+
+    def stale_limits(self) -> Mapping[str, tuple[str, float]]:
+        """Return the keys and values, s, of how old readings may be."""
+        limits = self.interlocks
+        return {
+            "load_cell": ("interlocks.stale_cell", limits.stale_cell_s),
+            "ir_thermometer": ("interlocks.stale_ir", limits.stale_ir_s),
+            "jacket": ("interlocks.stale_jacket", limits.stale_jacket_s),
+        }
+
+    def drives(self) -> Mapping[str, AxisConfig]:
+        """Return the axes that have a drive, by name."""
+        return self.axes.driven()
+
+    def settled(self) -> RigConfig:
+        """Return the rig with the limit of the press's torque."""
+        return with_torque_limit(self)
+
+    def problems(self) -> Iterator[tuple[Location, str]]:
+        """Yield what does not fit together between the kind's sections, with its place."""
+        return problems_between(self)

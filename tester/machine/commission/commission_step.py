@@ -1,0 +1,217 @@
+"""A step of a commissioning, and what a kind brings for it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import inf
+from typing import Any, Protocol
+
+from tester.base.config_reader import as_tree
+from tester.inputs.rig import Rig
+from tester.machine.commission.person import AskPerson, Dialogue, Person
+from tester.machine.rig_ports import Ports
+
+
+class Seat(Protocol):
+    """A rig on its wires for one step: driven by a ticker, and handed to a procedure."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether the procedure may begin."""
+        ...
+
+    @property
+    def finished(self) -> bool:
+        """Whether everything is at rest and released."""
+        ...
+
+    @property
+    def reason(self) -> str:
+        """Why it ended by itself; "" after a request."""
+        ...
+
+    def tick(self, now: float) -> float:
+        """Do everything due at ``now`` s; return the time of the next call."""
+        ...
+
+    def stop(self, why: str, *, fast: bool = False) -> None:
+        """Bring everything to standstill, power off; idempotent."""
+        ...
+
+    def abandon(self) -> None:
+        """Send a safe state once: no tick follows."""
+        ...
+
+
+@dataclass(slots=True)
+class Notes:
+    """A procedure's output: messages to the person, and entries for the record."""
+
+    tell: Callable[[str], None]
+    read: Callable[[str, Mapping[str, Any]], object]
+    """Record a reading at once."""
+    done: Mapping[str, Mapping[str, Any]]
+    """Values of the finished steps, by step."""
+    given: Mapping[str, str] = field(default_factory=dict[str, str])
+    """The command line's answers, by the question's key."""
+    values: dict[str, Any] = field(default_factory=dict[str, Any])
+    """Values of the entry with which the step passes."""
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class StepReading:
+    """A present reading of the rig, for a person: ``value`` in ``unit``, NaN without one; ``words`` beside it."""
+
+    label: str
+    value: float
+    unit: str
+    decimals: int
+    words: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Alone:
+    """The tools of a step without a seat."""
+
+    rig: Rig
+    person: Person
+    run_recipe: Callable[[str, str], Mapping[str, Any]]
+    """Run a recipe (its name and text) on the rig as an ordinary run; return its results as plain data.
+
+    Raises StepRefused if it did not complete.
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class CommissionStep:
+    """One step. ``sections``: dotted keys of the rig file that its result depends on; a change of them invalidates it.
+
+    ``needs``: steps whose results it uses. Either ``seat`` or ``alone`` is set: the step has the rig on its wires, or
+    it runs a recipe or nothing. ``readings``: reads values for the person from a seat; changes nothing.
+    """
+
+    name: str
+    title: str
+    sections: tuple[str, ...]
+    needs: tuple[str, ...] = ()
+    seat: Callable[[Any, Ports, Any], Any] | None = None
+    """Makes a seat from rig, wires and the hands at the rig."""
+    procedure: Callable[[Any, Notes], Dialogue] | None = None
+    alone: Callable[[Alone, Notes], None] | None = None
+    readings: Callable[[Any], Sequence[StepReading]] | None = None
+
+
+def sections_sha256(rig: Rig, sections: tuple[str, ...]) -> str:
+    """Return the hash of a rig file's content under some dotted keys; missing keys count as nothing."""
+    tree = as_tree(rig)
+    sections_found = {key: _at(tree, key.split(".")) for key in sections}
+    text = json.dumps(sections_found, sort_keys=True, ensure_ascii=False, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _at(tree: object, keys: list[str]) -> object:
+    for key in keys:
+        if not isinstance(tree, Mapping):
+            return None
+        here: Mapping[str, object] = tree  # pyright: ignore[reportUnknownVariableType]
+        tree = here.get(key)
+    return tree
+
+
+class Walk:
+    """A seat and a procedure, ticked together (tester.machine.tickers.Ticked)."""
+
+    def __init__(self, seat: Seat, procedure: Dialogue, person: Person) -> None:
+        """Do nothing before the first tick."""
+        self.seat = seat
+        self.person = person
+        self.ended = False
+        """The procedure has ended, or given up."""
+        self.error: Exception | None = None
+        self.now_s = 0.0
+        self._procedure = procedure
+        self._awaited: Any = None
+        self._begun = False
+
+    @property
+    def finished(self) -> bool:
+        """Whether the rig is at rest."""
+        return self.seat.finished
+
+    @property
+    def waiting(self) -> bool:
+        """Whether simulated time stops because a person thinks."""
+        asked = isinstance(self._awaited, AskPerson) and not self.ended and not self.seat.finished
+        return asked and self.person.time_stands and self.seat.ready and self.person.taken(inf) is None
+
+    def tick(self, now: float) -> float:
+        """Tick the rig, then resume the procedure as far as possible."""
+        self.now_s = now
+        due = self.seat.tick(now)
+        if self.seat.ready and not self.seat.finished and not self.ended:
+            self._go_on(now)
+        return due
+
+    def stop(self, why: str, *, fast: bool = False) -> None:
+        """Give the step up."""
+        self.ended = True
+        self.seat.stop(why, fast=fast)
+
+    def _go_on(self, now: float) -> None:
+        """Resume the procedure as long as its condition is already met."""
+        try:
+            if not self._begun:
+                self._begun = True
+                self._await(next(self._procedure))
+            while not self.ended and (answer := self._answer(now)) is not None:
+                self._await(self._procedure.send(answer))
+        except StopIteration:
+            self._end("step done")
+        except Exception as error:  # noqa: BLE001 - whatever it raises, the rig stops first; raised again later
+            self.error = error
+            self._end("step given up")
+
+    def _await(self, awaited: Any) -> None:
+        self._awaited = awaited
+        if isinstance(awaited, AskPerson):
+            self.person.put(awaited.question)
+
+    def _answer(self, now: float) -> str | None:
+        """Return the value to resume the procedure with; None while it has to wait."""
+        if not isinstance(self._awaited, AskPerson):
+            return "" if self._awaited(now) else None
+        answer = self.person.taken(now)
+        if answer is None:
+            return None
+        refusal = self._awaited.question.refusal(answer)
+        if refusal:
+            self.person.tell(refusal)
+            self.person.put(self._awaited.question)
+            return None
+        return answer
+
+    def _end(self, why: str) -> None:
+        self.ended = True
+        self.seat.stop(why)
+
+
+class AtTheTwin(Person, Protocol):
+    """A person who reads the true values of a simulated rig."""
+
+    def at(self, hands: Any) -> None:
+        """Move to a rig with newly opened wires; ``hands``: the simulated rig."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class CommissionPart:
+    """The steps in their order, and the person who does them on the simulated rig."""
+
+    steps: tuple[CommissionStep, ...]
+    compounds: tuple[str, ...]
+    """Compounds with a model for the expected coefficient; any other is only a name."""
+    twin: Callable[[Callable[[str], None]], AtTheTwin]

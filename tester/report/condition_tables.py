@@ -1,0 +1,167 @@
+"""Sections on the measurements: the table of conditions, drift and repeats, and exclusions with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from tester.analysis.results import NOT_TRUSTED, WITH_CARE, mark_of
+from tester.base.axes import condition_words
+from tester.base.words import NONE, decimal
+from tester.report.layout import (
+    Listing,
+    Paragraph,
+    Part,
+    ReportRow,
+    ReportSection,
+    ReportTable,
+    Tone,
+    heads,
+    rendered,
+)
+from tester.report.record_section import RunRecord
+from tester.results.columns import Column, Output, Table
+from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table, recipe_rows
+from tester.results.run_results import RunResults, remedy
+from tester.results.tally import flag_lines, tally_of
+
+SHORT_ROWS = 20
+"""Longest table of conditions on the first page; longer ones are summarised by compound."""
+_TONES: dict[str, Tone] = {NOT_TRUSTED: "bad", WITH_CARE: "care"}
+
+
+def tone_of(condition_row: ConditionRow) -> Tone:
+    """Return the tone of a condition's row: without a value, with a doubt, or plain."""
+    return _TONES.get(mark_of(condition_row.result.status, condition_row.result.flags), "")
+
+
+def conditions_section(record: RunRecord, key: str) -> ReportSection:
+    """Return the table of conditions with both uncertainties, and below it the wear of checked pieces."""
+    results = record.results
+    conditions = recipe_rows(conditions_table(results))
+    axes = results.axes.columns(row.info.setpoint for row in conditions.rows)
+    shown = conditions.view(Output.REPORT, axis_keys(axes))
+    parts: list[Part] = [
+        Paragraph(
+            f"Each coefficient mu comes with two expanded uncertainties U (95 %): that of this {results.worn} in this "
+            f"condition, and that of the compound, which any other {results.worn} of it comes with. mu is at the "
+            "temperature that was asked for, as both uncertainties are; beside it is the coefficient as measured, at "
+            f"the mean temperature that was measured. {WITH_CARE} marks a value to be taken with care, "
+            f"{NOT_TRUSTED} a number that is not to be trusted."
+        ),
+        rendered(shown, f"Conditions of {record.name}", COUNTS_NOTE, tone=tone_of),
+    ]
+    advised, flags = [*_advice(results)], [*flag_lines(results)]
+    parts += [Listing(advised, "care")] if advised else []
+    parts += [Paragraph("Flags:"), Listing(flags)] if flags else []
+    again = [line for setting in results.settings for line in setting.lines(results.worn)]
+    tone = "care" if any(setting.disagrees for setting in results.settings) else ""
+    parts += [Paragraph("Settings that were measured several times:"), Listing(again, tone)] if again else []
+    worn = [*results.wear_lines()]
+    parts += [Paragraph("Diameters that were checked, with the wear rate:"), Listing(worn)] if worn else []
+    return ReportSection(key, "Conditions", parts)
+
+
+COUNTS_NOTE = "valid: in the mean, of those asked for; s: standard deviation between them"
+
+
+def _advice(results: RunResults) -> Iterator[str]:
+    for row in results.rows:
+        if not row.result.ok or row.result.doubts:
+            yield row.advise()
+
+
+def short_table(results: RunResults) -> ReportTable:
+    """Return the main table in short, for a first page: every condition, or every compound where conditions are
+    many."""
+    conditions = recipe_rows(conditions_table(results))
+    if len(conditions.rows) <= SHORT_ROWS:
+        axes = results.axes.differing(row.info.setpoint for row in conditions.rows)
+        return rendered(conditions.view(Output.COVER, axis_keys(axes)), "What was found", tone=tone_of)
+    return _by_compound(conditions)
+
+
+def _by_compound(conditions: Table[ConditionRow]) -> ReportTable:
+    mu, this, whole = (conditions[key] for key in ("mu", "u_expanded_percent", "u_expanded_compound_percent"))
+    rows: list[ReportRow] = []
+    for compound in dict.fromkeys(row.info.compound for row in conditions.rows):
+        of_compound = [row for row in conditions.rows if row.info.compound == compound]
+        valued = sorted((row for row in of_compound if row.result.ok), key=lambda row_: row_.result.mu)
+        cells = [compound, f"{len(valued)} of {len(of_compound)}"]
+        for row_ in (valued[0], valued[-1]) if valued else ():
+            cells.append(f"{mu.text(row_)} at {condition_words(row_.info.setpoint, compound=False)}")
+        cells += [_median(column, valued) for column in (this, whole) if valued]
+        cells += [NONE] * (6 - len(cells))
+        cells.append(str(sum(bool(row.result.doubts) for row in valued)))
+        rows.append(ReportRow(cells))
+    titles = heads(
+        "compound", "conditions with a value", "lowest mu", "highest mu", f"typical {this.head}",
+        f"typical {whole.head}", "with a doubt", text=(0, 2, 3),
+    )  # fmt: skip
+    note = "typical: the median over the conditions; the table of conditions lists every condition"
+    return ReportTable("What was found, by compound", titles, rows, note, cards=True)
+
+
+def _median(column: Column[ConditionRow], valued: Sequence[ConditionRow]) -> str:
+    """Return the middle value of a column."""
+    middle = sorted(valued, key=lambda row: float(str(column.value(row))))
+    return column.text(middle[len(middle) // 2])
+
+
+def drift_section(record: RunRecord, key: str) -> ReportSection:
+    """Return the drift of each condition's repeats, the repeats left out, and the make-ups."""
+    parts: list[Part] = [
+        Paragraph(
+            "Drift is the change of the coefficient over a window, with its bound; the trend is the change from the "
+            "first repeat to the last. A make-up is a repeat, or a pair of repeats where both directions are measured, "
+            "in place of one that was refused."
+        ),
+        _drift_table(record),
+    ]
+    out = record.left_out()
+    if out:
+        rows = [
+            ReportRow(
+                (
+                    f"{repeat.condition}/{repeat.repeat}",
+                    condition_words(condition.info.setpoint),
+                    decimal(repeat.result.mu_resultant, 3),
+                    reason,
+                )
+            )
+            for condition, repeat, reason in out
+        ]
+        titles = heads("repeat", "condition", "mu as measured", "why it is in no mean", text=(0, 1, 3))
+        parts.append(ReportTable("Repeats that are left out", titles, rows))
+    else:
+        parts.append(Paragraph("No repeat is left out: every one that was made is in its mean.", "good"))
+    if record.said:
+        lines = [
+            f"{condition.condition}/{condition.repeat} {'left out' if condition.excluded else 'taken in again'} by "
+            f"{condition.operator or 'an unnamed person'}, {condition.utc}: {condition.reason}"
+            for condition in record.said
+        ]
+        parts += [Paragraph("Decisions of people on single repeats:"), Listing(lines)]
+    return ReportSection(key, "Drift, repeats, exclusions", parts)
+
+
+def _drift_table(record: RunRecord) -> ReportTable:
+    table = conditions_table(record.results)
+    shown = table.of(row for row in table.rows if row.measured is not None).view(Output.REPEATS)
+    condition = Column[ConditionRow]("words", "condition", lambda row: condition_words(row.info.setpoint))
+    void = Column[ConditionRow](
+        "interrupted", "interrupted", lambda row: len(record.void.get(row.info.condition, ())), "", 0
+    )
+    number, *columns, flags = shown.columns
+    return rendered(
+        Table((number, condition, *columns, void, flags), shown.rows), "Drift and repeats of each condition",
+        "made = valid + left out; make-ups are among those made; interrupted attempts are in no count", tone=tone_of,
+    )  # fmt: skip
+
+
+def verdict(results: RunResults) -> list[Part]:
+    """Return in words how many conditions have a value, their flags, and the remedies."""
+    tally = tally_of(results)
+    tone: Tone = "bad" if tally.missing else "care" if tally.doubted else "good"
+    reasons = sorted({text for row in results.rows if (text := remedy(row.result))})
+    helps = [Listing([f"What helps: {text}." for text in reasons])] if reasons else []
+    return [Paragraph(tally.sentence, tone), *helps]

@@ -1,0 +1,138 @@
+"""Parts that a rig's kind provides; only this module and the commands look kinds up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from tester import kinds
+from tester.analysis.ring_runs import RingRun
+from tester.base.source import InvalidSource, Problem, read_tree
+from tester.inputs.rig import Rig
+from tester.kinds import PACKAGED, UnknownKindError, find
+from tester.results.ring_part import RingPart
+from tester.store.run_reader import RunReader
+
+if TYPE_CHECKING:
+    from tester.inputs.recipe.loader import LoadedRecipe
+    from tester.inputs.recipe.recipe_part import RecipePart
+    from tester.machine.run_parts import KindRun
+    from tester.machine.served import ServedKind
+
+
+Part = TypeVar("Part")
+
+
+def to_be_run(rig: Rig) -> Rig:
+    """Return the rig; raises InvalidSource, as all here, if its kind cannot run recipes."""
+    _brought(rig, "runs", find(rig.kind).runs)
+    return rig
+
+
+def run_parts(rig: Rig) -> KindRun:
+    """Return the kind's part that builds runs."""
+    return _brought(rig, "runs", find(rig.kind).runs)()
+
+
+def served_kind(rig: Rig) -> ServedKind:
+    """Return the kind's part for the service."""
+    return _brought(rig, "service", find(rig.kind).served)()
+
+
+def recipe_part(rig: Rig) -> RecipePart:
+    """Return the kind's part for recipes."""
+    return _brought(rig, "recipes", find(rig.kind).recipe)()
+
+
+def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> LoadedRecipe:
+    """Return a recipe that a rig can carry out (tester.inputs.recipe.loader.load_checked).
+
+    Raises InvalidSource with every problem. A recipe that does not name its kind, and is plainly written for another
+    packaged kind than the rig's, gives only that problem.
+    """
+    from tester.inputs.recipe.loader import load_checked
+
+    try:
+        return load_checked(source, rig, recipe_part(rig), name)
+    except InvalidSource as error:
+        other = _kind_written_for(source, rig, len(error.problems))
+        if not other:
+            raise
+        first = error.problems[0]
+        there = next(iter(find(other).rigs))
+        meant = f"the keys are of a recipe for a rig of kind {other} (such as --rig {there})"
+        text = f'{meant}, rig "{rig.name}" is of kind {rig.kind}'
+        raise InvalidSource([Problem(first.file, first.line, first.column, text)]) from error
+
+
+def _kind_written_for(source: Path | str, rig: Rig, problems: int) -> str:
+    """Return the packaged kind whose schema gives a recipe less than half as many problems, "" without any."""
+    from tester.inputs.recipe.loader import validated
+
+    try:
+        tree, _ = read_tree(source)
+    except InvalidSource:
+        return ""
+    if not isinstance(tree.data, dict) or "kind" in tree.data:
+        return ""
+    for kind in PACKAGED:
+        part = find(kind).recipe if kind != rig.kind else None
+        if part is not None and 2 * len(validated(tree, part())[1]) < problems:
+            return kind
+    return ""
+
+
+def _brought(rig: Rig, what: str, part: Callable[[], Part] | None) -> Callable[[], Part]:
+    if part is None:
+        text = f"kind: a rig of the kind {rig.kind} cannot run recipes, because the kind has no {what}"
+        raise InvalidSource([Problem(f"rig {rig.name}", 1, 1, text)])
+    return part
+
+
+def load_rig(source: str | Path = kinds.SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
+    """Return the rig of a file, or the packaged rig of that name (tester.inputs.rig.rig_files.load).
+
+    Raises InvalidSource, even for a valid rig if its kind cannot run recipes.
+    """
+    return to_be_run(kinds.load_rig(source, overrides, accept_risk))
+
+
+def load_rig_text(text: str | Path) -> Rig:
+    """Return the rig of a stored text or file; raises InvalidSource as ``load_rig``.
+
+    Its risks were accepted when the run began, or are checked when it resumes (tester.run.session).
+    """
+    return to_be_run(kinds.load_rig_text(text))
+
+
+@dataclass(frozen=True, slots=True)
+class RingFound:
+    """A run's record of its ring; ``rig``: the file of its rig."""
+
+    part: RingPart
+    run: RingRun
+    rig: str
+
+
+def ring_part(kind: str) -> RingPart | None:
+    """Return a kind's ring part; None if it has none, or is not installed."""
+    try:
+        found = find(kind).ring
+    except UnknownKindError:
+        return None
+    return found() if found is not None else None
+
+
+def ring_in(folder: Path) -> RingFound | None:
+    """Return the ring of a run; None if its kind has none. Raises StoreError."""
+    with RunReader(folder) as reader:
+        info = reader.run().info
+        part = ring_part(info.kind)
+        return RingFound(part, part.of(reader, folder.name), info.rig_source) if part is not None else None
+
+
+def of_one_rig(found: Sequence[RingFound], like: RingFound) -> list[RingFound]:
+    """Return the rings of one rig, in order of time: rings of other rigs age separately."""
+    return sorted((one for one in found if one.rig == like.rig), key=lambda one: one.run.started)

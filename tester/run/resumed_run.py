@@ -1,0 +1,225 @@
+"""Prepares an interrupted run to resume: the rest of its plan, and a check that recipe and rig are unchanged.
+
+The run's folder holds the texts it began with. These, or the files they were copied from, may have been changed on
+purpose: hashes find both, and each is reported with the remedy.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from tester.base import clock
+from tester.base.source import read_tree
+from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.recipe_schema import Recipe
+from tester.inputs.rig import Rig
+from tester.machine.result_keeping import condition_records
+from tester.run.kind_lookup import checked_recipe, load_rig, load_rig_text, recipe_part
+from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info
+from tester.run.run_materials import KeptFile, kept_files, put_back, used_materials, write_materials
+from tester.store.disk import write_text
+from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, StoredCondition, StoredRun, risk_text
+from tester.store.resumable import ResumePoint, resume_point
+from tester.store.run_reader import RunReader
+from tester.store.sql import calibration_sha256, text_sha256
+from tester.store.writer import RunWriter
+
+LATER = "asked for once it is known with which text the run resumes"
+"""Stands in for the reason that a rig's risks need, while texts are compared."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resumed:
+    """An interrupted run, ready to resume."""
+
+    rig: Rig
+    plan: Plan
+    """The rest of the plan."""
+    seed: int
+    point: ResumePoint
+    begin: Callable[[RunWriter], None]
+    summary: str
+    """Summary for people, in one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """The texts to resume with, and their changes."""
+
+    recipe_text: str
+    rig: Rig
+    recipe_source: str
+    rig_source: str
+    changes: tuple[Change, ...]
+    where: tuple[str, ...]
+    """The files that differ, a line each."""
+
+
+def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> Resumed | str:
+    """Return the run in a folder, ready to resume, or the reason for refusing.
+
+    ``reason``: why it may resume although recipe, rig or calibration changed; stored with each change. ``accept_risk``:
+    why safety keys of the rig may be looser than they should be; needed again at every resume. Raises StoreError for an
+    unreadable record, InvalidSource for a recipe or rig file that is invalid now.
+    """
+    with RunReader(folder) as reader:
+        run, stored, point = reader.run(), reader.conditions(), resume_point(reader)
+    found = _found(folder, run, point.session, reason)
+    if found.changes and not reason:
+        subjects = ", ".join(dict.fromkeys(change.subject for change in found.changes))
+        return f"{subjects} changed since the run began ({'; '.join(found.where)}): --reason TEXT resumes all the same"
+    risks = accepted_risks(found.rig, accept_risk)
+    if risks and not accept_risk:
+        return f"{risks[LOOSE_KEYS]}: --accept-risk REASON resumes all the same"
+    part = recipe_part(found.rig)
+    recipe = checked_recipe(found.recipe_text, found.rig, str(folder / "recipe.yaml"))
+    plan = part.expand(recipe.recipe, found.rig)
+    conditions = list(condition_records(plan))
+    refused = _another_plan(conditions, stored)
+    if refused:
+        return refused
+    restored, lost = put_back(folder, run.info.materials)
+    if lost:
+        return f"{', '.join(lost)}: changed since the run began, and the record has only its hash: put it back"
+    added = _added_materials(folder, run, recipe.recipe, found)
+    begun = {s.info.condition for s in stored if _begun(s)}
+    to_come = [c for c in conditions if c.condition not in begun]
+    session = session_info(point.session, point.origin_s, operator)
+
+    def begin(writer: RunWriter) -> None:
+        writer.begin_session(session)
+        writer.resume_run(found.changes)
+        for change in found.changes:
+            if change.subject == "recipe":
+                writer.replace_recipe(found.recipe_text, to_come, found.recipe_source)
+        if any(change.subject != "recipe" for change in found.changes):
+            writer.replace_rig(found.rig.text, calibration_of(found.rig), point.session, found.rig_source)
+        if added:
+            write_materials(folder, added)
+            writer.add_materials([file.stored for file in added])
+        if found.changes:
+            write_text(folder / "recipe.yaml", found.recipe_text)
+            write_text(folder / "rig.yaml", found.rig.text)
+        writer.add_metadata(risks)
+        if risks:
+            writer.event(0.0, "risk", risk_text(risks), "warning")
+        writer.event(0.0, "resume", f"stretch {session.session} of the run{': ' + reason if reason else ''}")
+
+    if any(change.subject == "calibration" for change in found.changes):
+        # A new scale or zero makes the old reference meaningless.
+        point = replace(point, reference_tare=None)
+    return Resumed(
+        rig=found.rig,
+        plan=part.remaining(plan, point.stand),
+        seed=run.info.seed or 0,
+        point=point,
+        begin=begin,
+        summary=_summary(folder, point, len(conditions), restored),
+    )
+
+
+def _added_materials(folder: Path, run: StoredRun, recipe: Recipe, found: Found) -> tuple[KeptFile, ...]:
+    """Return the files that only the changed recipe names; recorded files stay as they are."""
+    if not any(change.subject == "recipe" for change in found.changes):
+        return ()
+    recorded = run.info.materials
+    source = Path(found.recipe_source) if found.recipe_source else folder / "recipe.yaml"
+    used = used_materials(recipe, source, [file.name for file in recorded if file.role != "data"])
+    return kept_files(used.files, [file.file for file in recorded])
+
+
+def _summary(folder: Path, point: ResumePoint, conditions: int, restored: Sequence[str]) -> str:
+    over = len(point.stand.ended)
+    at = point.next_repeat
+    where = f", resumes at repeat {at[1]} of condition {at[0]}" if at is not None else ""
+    back = f"; {', '.join(restored)} put back as recorded" if restored else ""
+    return f"{folder.name}: {over} of {conditions} conditions are over{where}{back}"
+
+
+# -- what changed -------------------------------------------------------------------------------------------------
+
+
+def _found(folder: Path, run: StoredRun, session: int, reason: str) -> Found:
+    where: list[str] = []
+    stored = run.info.rig_text
+    recipe_text, recipe_source = _present(
+        run.info.recipe_text, folder / "recipe.yaml", _text_of, run.info.recipe_source, _recipe_at_source(run), where
+    )
+    rig_text, rig_source = _present(
+        stored, folder / "rig.yaml", lambda path: _rig_text(path, stored), run.info.rig_source, _rig_at_source(run),
+        where,
+    )
+    rig = load_rig_text(rig_text)
+    figures = calibration_sha256(calibration_of(rig))
+    utc = clock.utc_now()
+    changes = [
+        Change(session, utc, subject, before, after, text, reason)
+        for subject, before, after, text in (
+            ("recipe", run.recipe_sha256, text_sha256(recipe_text), run.info.recipe_text),
+            ("rig", run.rig_sha256, text_sha256(rig_text), run.info.rig_text),
+            ("calibration", run.calibration_sha256, figures, ""),
+        )
+        if before != after
+    ]
+    if changes and not where:
+        where.append("the profile of a device")
+    return Found(recipe_text, rig, recipe_source, rig_source, tuple(changes), tuple(where))
+
+
+def _present(
+    stored: str, copy: Path, read: Callable[[Path], str], source: str, at_source: str | None, where: list[str]
+) -> tuple[str, str]:
+    """Return the text to resume with, and its source: the folder's copy if it was changed, else the original."""
+    if copy.is_file():
+        text = read(copy)
+        if text != stored:
+            where.append(str(copy))
+            return text, ""
+    if at_source is not None and at_source != stored:
+        where.append(f"the original of {copy.name}, {source}")
+        return at_source, source
+    return stored, source
+
+
+def _text_of(path: Path) -> str:
+    return read_tree(path)[0].text
+
+
+def _rig_text(path: Path | str, stored: str, overrides: Sequence[str] = ()) -> str:
+    """Return a rig file's present text, or the stored text if it is the same rig, written by an older version."""
+    rig = load_rig(path, overrides, LATER)
+    return stored if rig == load_rig_text(stored) else rig.text
+
+
+def _recipe_at_source(run: StoredRun) -> str | None:
+    source = run.info.recipe_source
+    if not source or source.startswith(PACKAGED) or not Path(source).is_file():
+        return None
+    return _text_of(Path(source))
+
+
+def _rig_at_source(run: StoredRun) -> str | None:
+    """Return the rig file's present text; None for a packaged rig, which changes only with the program."""
+    where, *overrides = shlex.split(run.info.rig_source) or [""]
+    if not (Path(where).is_absolute() and Path(where).is_file()):
+        return None
+    return _rig_text(where, run.info.rig_text, overrides)
+
+
+def _begun(stored: StoredCondition) -> bool:
+    return stored.started_s == stored.started_s
+
+
+def _another_plan(conditions: Sequence[ConditionInfo], stored: Sequence[StoredCondition]) -> str:
+    """Return why a changed recipe is a different test: it lacks, or alters, a condition that has begun."""
+    now = {condition.condition: condition for condition in conditions}
+    for begun in stored:
+        if _begun(begun) and now.get(begun.info.condition) != begun.info:
+            return (
+                f"the recipe is a different test: it lacks or alters condition {begun.info.condition}, which has "
+                "measurements; begin a new run"
+            )
+    return ""

@@ -1,0 +1,178 @@
+"""Material files of a recipe: finds those of its compounds and surface, copies them to the run's folder, records them.
+
+The copies lie beside the run's recipe as the originals lie beside theirs, so a reader of the run's recipe finds them
+first. A name without a file remains just a name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+import recipes
+from sim.physics.materials import UnknownMaterialError
+from tester.base.source import InvalidSource
+from tester.inputs.materials.files import FOLDERS, MaterialFile, Role
+from tester.inputs.materials.library import Library
+from tester.inputs.materials.material_schema import CompoundModel
+from tester.inputs.recipe.recipe_schema import Recipe
+from tester.inputs.rig import Rig
+from tester.run.kind_lookup import recipe_part
+from tester.store.disk import write_whole
+from tester.store.records import StoredMaterial
+from tester.store.sql import text_sha256
+
+SHORT_BYTES = 256 * 1024
+"""Limit for recording the content of a data file, if it is a text, bytes."""
+PACKAGED = "packaged: "
+
+
+@dataclass(frozen=True, slots=True)
+class KeptFile:
+    """A file to copy into a run's folder: its record and its content."""
+
+    stored: StoredMaterial
+    content: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class UsedMaterials:
+    """The files that a recipe's names stand for, and the names without a file (role and name)."""
+
+    files: tuple[MaterialFile, ...] = ()
+    bare: tuple[tuple[Role, str], ...] = ()
+
+    @property
+    def doubts(self) -> list[str]:
+        """Return the doubts about the files, a line each."""
+        return [str(doubt) for file in self.files for doubt in file.doubts]
+
+
+def used_materials(recipe: Recipe, path: Path, leave_out: Iterable[str] = ()) -> UsedMaterials:
+    """Return the files that a recipe at ``path`` names; raises InvalidSource with all problems of the first bad file.
+
+    ``leave_out``: names to skip.
+    """
+    library = Library.beside(path)
+    known = set(leave_out)
+    files: list[MaterialFile] = []
+    bare: list[tuple[Role, str]] = []
+    for role, name in _named(recipe):
+        if name in known:
+            continue
+        try:
+            loaded = library.compound(name) if role == "compound" else library.surface_file(name)
+        except UnknownMaterialError:
+            bare.append((role, name))
+            continue
+        files.append(loaded.file)
+    return UsedMaterials(tuple(files), tuple(bare))
+
+
+def described_compounds(recipe: Recipe, path: Path, rig: Rig) -> dict[str, CompoundModel]:
+    """Return the models in the files of a recipe's compounds, by name; empty if they do not apply to the rubber on the
+    rig.
+
+    Skips unreadable files: the recipe's check reports them.
+    """
+    if not recipe_part(rig).rubs_as_described(rig):
+        return {}
+    library, models = Library.beside(path), dict[str, CompoundModel]()
+    for name in dict.fromkeys(specimen.compound for specimen in recipe.specimens):
+        with suppress(UnknownMaterialError, InvalidSource):
+            models[name] = library.compound(name).model
+    return models
+
+
+def _named(recipe: Recipe) -> Iterator[tuple[Role, str]]:
+    for name in dict.fromkeys(specimen.compound for specimen in recipe.specimens):
+        yield "compound", name
+    if recipe.abrasive is not None:
+        yield "surface", recipe.abrasive.name
+
+
+def kept_files(files: Sequence[MaterialFile], taken: Iterable[str] = ()) -> tuple[KeptFile, ...]:
+    """Return the copies for a run's folder, each file before the files it refers to.
+
+    ``taken``: files that exist there already. A second file of the same name gets its own folder.
+    """
+    there = {name.casefold() for name in taken}
+    kept: list[KeptFile] = []
+    for file in files:
+        names = [file.path.name, *(data.name for data in file.data)]
+        folder = next(place for place in _places(FOLDERS[file.role]) if not there & {_at(place, n) for n in names})
+        there |= {_at(folder, name) for name in names}
+        doubts = "\n".join(map(str, file.doubts))
+        source = _source(file.path)
+        stored = StoredMaterial(
+            file.role, file.name, f"{folder}/{file.path.name}", source, text_sha256(file.text), file.text, doubts
+        )
+        kept.append(KeptFile(stored, file.text.encode()))
+        for data in file.data:
+            record = StoredMaterial(
+                "data", data.name, f"{folder}/{data.name}", source, data.sha256, _short_text(data.content)
+            )
+            kept.append(KeptFile(record, data.content))
+    return tuple(kept)
+
+
+def _places(folder: str) -> Iterator[str]:
+    yield folder
+    yield from (f"{folder}/{number}" for number in range(2, 10_000))
+
+
+def _at(folder: str, name: str) -> str:
+    return f"{folder}/{name}".casefold()
+
+
+def _source(path: Path) -> str:
+    """Return where a file was read from, as stored."""
+    if recipes.FOLDER in path.parents:
+        return f"{PACKAGED}{path.relative_to(recipes.FOLDER).as_posix()}"
+    return str(path.absolute())
+
+
+def _short_text(content: bytes) -> str | None:
+    if len(content) > SHORT_BYTES or b"\0" in content:
+        return None
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return None
+
+
+def write_materials(folder: Path, kept: Iterable[KeptFile]) -> None:
+    """Copy materials into a run's folder; raises OSError."""
+    for file in kept:
+        _write(folder / file.stored.file, file.content)
+
+
+def _write(path: Path, content: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+
+    def fill(part: Path) -> None:
+        part.write_bytes(content)
+
+    write_whole(path, fill)
+
+
+def put_back(folder: Path, stored: Iterable[StoredMaterial]) -> tuple[list[str], list[str]]:
+    """Restore the copies in a run's folder from the record.
+
+    Returns the restored files, and those that cannot be restored: changed, with only their hash on record.
+    """
+    restored: list[str] = []
+    lost: list[str] = []
+    for material in stored:
+        path = folder / material.file
+        if path.is_file() and sha256(path.read_bytes()).hexdigest() == material.sha256:
+            continue
+        if material.text is None:
+            lost.append(material.file)
+            continue
+        _write(path, material.text.encode())
+        restored.append(material.file)
+    return restored, lost

@@ -1,0 +1,146 @@
+"""The page of all papers: the command writes the stored page, and every item has a verdict with its numbers."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+import pytest
+
+from tester.analysis.papers.item import (
+    Paper,
+    PaperFinding,
+    PaperItem,
+    PaperVerdict,
+    judged,
+    not_attempted,
+    slight,
+    unjudged,
+)
+from tester.analysis.papers.papers_page import page_text
+from tester.cli.main import invoke, root
+from tester.kinds import packaged_papers
+
+pytest.importorskip("scipy", reason="needs the extra `report`")
+
+PAGE = Path(__file__).with_name("papers.txt")
+"""As `tester paper --all` printed it last; a change of a verdict or a number is a change of this file."""
+NUMBER = re.compile(r"(?<![\w.])[+-]?\d+\.?\d*(?:e[+-]\d+)?")
+ITEMS = [(paper.name, item) for paper in packaged_papers() for item in paper.items]
+COMMANDS = sorted({item.command for _, item in ITEMS if item.command})
+
+
+@pytest.fixture(scope="module")
+def written() -> str:
+    return page_text(packaged_papers())
+
+
+def same(a: str, b: str) -> bool:
+    """Tell whether two lines differ in the last digit of numbers at most."""
+    if NUMBER.sub("#", a) != NUMBER.sub("#", b):
+        return False
+    return all(
+        abs(float(x) - float(y)) <= 1.01 * unit(x) for x, y in zip(NUMBER.findall(a), NUMBER.findall(b), strict=True)
+    )
+
+
+def unit(number: str) -> float:
+    """Return one in the last digit of a decimal number; of a whole one, which counts something, 0."""
+    mantissa, e, exponent = number.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    return 10.0 ** (int(exponent) - decimals) if e else (10.0**-decimals if decimals else 0.0)
+
+
+def test_the_page_is_what_the_command_writes(written: str) -> None:
+    lines, stored = written.splitlines(), PAGE.read_text(encoding="utf-8").splitlines()
+    assert len(lines) == len(stored)
+    assert [(a, b) for a, b in zip(lines, stored, strict=True) if not same(a, b)] == []
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "alike"),
+    [
+        ("off by 1.2 %", "off by 1.3 %", True),
+        ("off by 1.2 %", "off by 1.4 %", False),
+        ("36 of 79", "37 of 79", False),
+        ("| reproduced | 1.2", "| refuted | 1.2", False),
+    ],
+)
+def test_pages_may_differ_by_rounding_alone(a: str, b: str, alike: bool) -> None:
+    assert same(a, b) is alike
+
+
+PLACES = {
+    "Wheel on a belt": [f"Fig {i}" for i in range(1, 16)] + [f"Eq {i}" for i in range(1, 10)]
+    + [f"Table {i}" for i in (1, 2, 3)] + ["Appendix A", "Appendix B", "5 (1)", "5 (2)", "5 (3)"],
+    "Grosch and Persson": [f"Fig {i}" for i in range(1, 18)] + [f"Eq {i}" for i in range(1, 5)] + ["Table 1", "8", "9"],
+    "GrETA": [f"Fig {i}" for i in range(1, 22)] + [f"Eq {i}" for i in range(1, 23)] + ["Table 1", "Conclusions"],
+}  # fmt: skip
+
+
+def places(items: Sequence[PaperItem]) -> set[str]:
+    """Return the places that items name, spans and lists written out."""
+    found: set[str] = set()
+    for item in items:
+        for kind, text in re.findall(r"(Fig|Eq|Table)s? ([\d, abcto]+)", item.where):
+            spans = re.findall(r"(\d+)[abc]?(?: to (\d+))?", text)
+            found |= {f"{kind} {i}" for low, high in spans for i in range(int(low), int(high or low) + 1)}
+        found |= {part.strip() for part in item.where.split(",")}
+    return found
+
+
+@pytest.mark.parametrize("name", PLACES)
+def test_every_figure_table_and_equation_is_there(name: str) -> None:
+    (paper,) = [one for one in packaged_papers() if one.name == name]
+    assert set(PLACES[name]) - places(paper.items) == set()
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_of_the_page_is_one(command: str) -> None:
+    for one in command.replace("RUN", "latest").split(", then "):
+        name, *arguments = shlex.split(one.removeprefix("tester "))
+        context = click.Context(root)
+        found = root.get_command(context, name)
+        assert found is not None
+        while isinstance(found, click.Group):
+            part = found.get_command(context, arguments.pop(0))
+            assert part is not None
+            found = part
+        found.make_context(name, arguments)
+
+
+def test_json_has_the_same_items_as_the_page(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    small = (Paper("P", "somebody", (PaperItem("Eq 1", "a | b", "tester runs", lambda: judged(True, "0.1 %")),)),)
+    monkeypatch.setattr("tester.kinds.packaged_papers", lambda: small)
+    assert invoke(["paper", "--all", "--json"]) == 0
+    assert '"verdict": "reproduced"' in capsys.readouterr().out
+    assert invoke(["paper", "--all"]) == 0
+    assert r"| Eq 1 | a \| b | reproduced | 0.1 % | `tester runs` |" in capsys.readouterr().out
+
+
+def test_a_verdict_is_worked_out_when_it_is_asked_for() -> None:
+    asked: list[int] = []
+
+    def work_out() -> PaperFinding:
+        asked.append(1)
+        return judged(len(asked) < 2, str(len(asked)))
+
+    paper = Paper("P", "", (PaperItem("Eq 1", "", "", work_out),))
+    first, second = page_text([paper]), page_text([paper])
+    assert "| reproduced | 1 |" in first and "| refuted | 2 |" in second
+    assert "| P | 1 | 0 | 0 |" in first and "| P | 0 | 1 | 0 |" in second
+
+
+def test_what_is_not_attempted_has_its_reason() -> None:
+    assert not_attempted("Fig 1", "a drawing", "no numbers").work_out() == unjudged("no numbers")
+    reasons = [item.work_out() for _, item in ITEMS if "not_attempted" in getattr(item.work_out, "__qualname__", "")]
+    assert reasons and all(one.verdict is PaperVerdict.NOT_ATTEMPTED and len(one.error) > 10 for one in reasons)
+
+
+def test_differences_of_rounding_are_not_told_as_digits() -> None:
+    assert (slight(3e-16), slight(2.4e-5)) == ("less than 1e-09", "2e-05")
