@@ -68,12 +68,12 @@ def dumped(e: Examination) -> ParameterDump:
             if not unit.there:
                 silent.append(device)
                 continue
-            found = {"profile": DeviceParameter(unit.profile.name, unit.profile.title)}
+            parameters = {"profile": DeviceParameter(unit.profile.name, unit.profile.title)}
             for name, answer in unit.configuration.items():
                 if answer.ok:
                     value = str(int.from_bytes(answer.data, "big"))
-                    found[f"0x{answer.question.address:04X}"] = DeviceParameter(value, name, name != "device type")
-            devices[device] = found
+                    parameters[f"0x{answer.question.address:04X}"] = DeviceParameter(value, name, name != "device type")
+            devices[device] = parameters
     return ParameterDump(e.rig.name, clock.utc_now(), devices, tuple(silent))
 
 
@@ -86,8 +86,8 @@ def read_dump(path: Path) -> ParameterDump:
         devices = cast("dict[str, dict[str, dict[str, object]]]", data["devices"])
         parameters = {
             device: {
-                key: DeviceParameter(str(one["value"]), str(one["name"]), bool(one["written"]))
-                for key, one in found.items()
+                key: DeviceParameter(str(parameter["value"]), str(parameter["name"]), bool(parameter["written"]))
+                for key, parameter in found.items()
             }
             for device, found in devices.items()
         }

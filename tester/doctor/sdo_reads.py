@@ -47,8 +47,8 @@ class NodeAccess:
             wires.wait_until(wires.now() + STEP_S)
             scan.feed(self._port.receive(wires.now()), self._port, wires.now())
             scan.service(self._port, wires.now())
-        found = scan.answers.get(self._node, {}).get(key)
-        return found or ObjectAnswer(key, error=f"nothing answers at node {self._node} within {PATIENCE_S:g} s")
+        answer = scan.answers.get(self._node, {}).get(key)
+        return answer or ObjectAnswer(key, error=f"nothing answers at node {self._node} within {PATIENCE_S:g} s")
 
     def may_write(self, key: Key) -> None:
         """Raise WriteRefusedError for a command, and for a drive that has power."""

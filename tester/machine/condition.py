@@ -11,7 +11,7 @@ from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
 from tester.machine.result_keeping import MeasuredRepeat, StoredResults
 
 LAST: Final = (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED)
-"""A repeat that ends so ends its condition."""
+"""A repeat with one of these endings ends its condition."""
 
 
 class Repeat(MeasuredRepeat, Protocol):
@@ -28,30 +28,30 @@ RepeatT = TypeVar("RepeatT", bound=Repeat)
 
 
 class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
-    """The activity of one condition. A kind says in ``begin`` what a repeat is, and in ``ready`` what comes before."""
+    """The activity of one condition. A kind implements ``begin`` (the repeat) and ``ready`` (the work before it)."""
 
     def __init__(self, step: StepT, results: StoredResults[ContextT]) -> None:
-        """``results``: where repeats go."""
+        """``results`` takes the repeats."""
         self.condition = step
         self.results = results
         self.done_before = results.repeats_done(step)
         """Repeats that an earlier stretch of the run committed."""
         self.repeat = self.done_before
         self.voided = 0
-        """Attempts at the present repeat that a hold cut off."""
+        """Attempts at the present repeat that a hold interrupted."""
         self.key = 0
         self.measuring: RepeatT | None = None
         self.outcome: RepeatOutcome | None = None
         self.end: ConditionEnd | None = None
         """How the condition ends; None while it is measured."""
         self.failed = ""
-        """Why the zero of the load cell is not to be trusted: the run ends."""
+        """Why the zero of the load cell is not trustworthy: the run ends."""
         self._looked = False
 
-    # -- what a kind says -----------------------------------------------------------------------------------
+    # -- by a kind ------------------------------------------------------------------------------------------
 
     def ready(self, ctx: ContextT) -> bool:
-        """Return whether the next repeat may begin; set ``end`` where it never will."""
+        """Return whether the next repeat may begin; set ``end`` if it never will."""
         return True
 
     def begin(self, ctx: ContextT, attempt: int) -> RepeatT:
@@ -65,7 +65,7 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
         ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: {self.outcome.text}")
 
     def resume(self, ctx: ContextT) -> None:
-        """Void a repeat that a hold has cut off: it is made again. One that is being committed stays."""
+        """Void a repeat that a hold has interrupted; it is repeated. A repeat that is being committed stays."""
         if self.outcome is None and self.measuring is not None:
             self.results.void_repeat(ctx, self.key, "held by the operator")
             ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: void, held by the operator")
@@ -102,7 +102,7 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
         ctx.progress.revolutions_wanted = REPEAT_WINDOWS * (step.window.revolutions or 0.0)
 
     def _committed(self, ctx: ContextT) -> bool:
-        """Wait until the repeat is on disk; then go on to the next one, or close the condition."""
+        """Wait until the repeat is on disk; then begin the next, or close the condition."""
         assert self.outcome is not None and self.measuring is not None
         if not self.outcome.ticket.done:
             return False

@@ -1,4 +1,4 @@
-"""Whether the Modbus lines are quick enough for the ages that the rig file allows, by what was measured at connect."""
+"""Checks, from measurements at connect, that the Modbus lines are quick enough for the rig file's limits of age."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ SELDOM_S: Final = 0.2
 """Of a device read less often than this two replies are enough to begin with [A]: its limits are far above a reply."""
 SELDOM_REPLIES: Final = 2
 FINE_S: Final = 0.002
-"""While replies of a real line are measured it is looked at this often, s: their times are known to that."""
+"""Period for reading a real line while its replies are measured, s: the resolution of their times."""
 READINGS: Final = 2.0
-"""A device's limit of age has to hold this many readings with their waits [A]: one may be late or lost."""
+"""A device's limit of age must hold this many readings with their waits [A]: one may be late or lost."""
 
 
 def measured(devices: DeviceList) -> bool:
     """Return whether enough replies of every device were measured."""
     return all(
-        one.driver.station.reply.count >= (REPLIES if one.driver.profile.blocks[0].period_s < SELDOM_S else
+        device.driver.station.reply.count >= (REPLIES if device.driver.profile.blocks[0].period_s < SELDOM_S else
                                            SELDOM_REPLIES)
-        for one in devices.modbus
+        for device in devices.modbus
     )
 
 
@@ -33,18 +33,19 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
 
     ``limits``: by a device's name, the rig file's key and the greatest age of its reading, s.
     """
-    for one in devices.modbus:
-        key, limit_s = _limit(one, limits)
+    for device in devices.modbus:
+        key, limit_s = _limit(device, limits)
         if limit_s is None:
             continue
-        link, station = one.driver.link, one.driver.station
+        link, station = device.driver.link, device.driver.station
         exchange_s = link.exchange_s(station)
         others_s = sum(link.exchange_s(other) for other in link.stations if other is not station)
-        needed_s = READINGS * (one.driver.profile.blocks[0].period_s + exchange_s) + others_s
+        needed_s = READINGS * (device.driver.profile.blocks[0].period_s + exchange_s) + others_s
         if not needed_s <= limit_s:
             port = next(port for port, other in devices.lines if other is link)
             return (
-                f"{one.title}: line {one.line} is too slow for {key}, {_ms(limit_s)}: a reply takes {_ms(exchange_s)},"
+                f"{device.title}: line {device.line} is too slow for {key}, {_ms(limit_s)}:"
+                f" a reply takes {_ms(exchange_s)},"
                 f" {_ms(station.reply.greatest_s)} of them beyond the wire, and two readings {_ms(needed_s)}."
                 f" To do: {getattr(port, 'remedy', '') or 'a quicker adapter'}"
             )
@@ -53,18 +54,18 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
 
 def allow_late(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> None:
     """Let time-outs follow replies that get slower during the run, as far as the ages allow."""
-    for one in devices.modbus:
-        _, limit_s = _limit(one, limits)
+    for device in devices.modbus:
+        _, limit_s = _limit(device, limits)
         if limit_s is not None:
-            one.driver.station.longest_s = limit_s / READINGS - one.driver.profile.blocks[0].period_s
+            device.driver.station.longest_s = limit_s / READINGS - device.driver.profile.blocks[0].period_s
 
 
 def described(devices: DeviceList) -> str:
     """Return a line for the journal: replies, time-outs, adapters that hear themselves or were asked to be quick."""
     parts: list[str] = []
-    for one in devices.modbus:
-        reply = one.driver.station.reply
-        parts.append(f"{one.title} {1e3 * reply.least_s:.1f} to {_ms(reply.greatest_s)}")
+    for device in devices.modbus:
+        reply = device.driver.station.reply
+        parts.append(f"{device.title} {1e3 * reply.least_s:.1f} to {_ms(reply.greatest_s)}")
     text = "replies beyond the wire: " + ", ".join(parts)
     for port, link in devices.lines:
         if link.hears_itself and link.stations:

@@ -1,4 +1,4 @@
-"""A slower look at the Modbus devices: what they refuse, and how many of their answers fail."""
+"""A slow check of the Modbus devices: their refusals, and the share of failed requests."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from drivers.modbus import Device
 from drivers.modbus.request import Counters
 
 PERIOD_S: Final = 0.5
-"""Between two looks, s [A]. Silence and age are watched in every scan; this is for what lasts."""
+"""Time between two checks, s [A]. Silence and age are watched in every scan; this is for lasting trouble."""
 WINDOW: Final = 4
-"""Looks that a share of failed requests is taken over: 2 s [A]."""
+"""Number of checks that a share of failed requests covers: 2 s [A]."""
 NAMED: Final = 0.1
-"""From this share of failed requests on a device is named beside whatever trips [A]."""
+"""From this share of failed requests a device is named in a trip [A]."""
 LEAST_REQUESTS: Final = 8
-"""Fewer requests in the window than this say nothing about a line [A]."""
+"""Fewer requests in the window than this are not judged [A]."""
 
 
 class _Record:

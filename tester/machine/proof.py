@@ -26,7 +26,7 @@ RESET_EVERY_S = 0.2
 
 
 class ProofStage(Enum):
-    """Where a proof is."""
+    """Stage of a proof."""
 
     ENABLE = "enable the drives"
     MOVE = "let them creep"
@@ -37,10 +37,10 @@ class ProofStage(Enum):
 
 
 class WatchdogProof:
-    """Goes through the stages, one call of ``step`` a scan. ``failure`` says what was not shown; "" while all is."""
+    """Goes through the stages, one call of ``step`` a scan. ``failure``: the failed proof; "" without one."""
 
     emergency: int = HEARTBEAT_LOST
-    """Code of the EMCY by which a drive says that it has noticed."""
+    """Code of the EMCY with which a drive reports the missing signal."""
     unloaded: tuple[str, ...] = ()
     """Facts proven before this proof began."""
 
@@ -62,7 +62,7 @@ class WatchdogProof:
         self._asked: set[str] = set()
         self._ran_on: set[str] = set()
 
-    # -- what a kind says -----------------------------------------------------------------------------------
+    # -- by a kind ------------------------------------------------------------------------------------------
 
     def begin(self, now: float) -> None:
         """Begin to creep: every drive is in operation."""
@@ -80,14 +80,14 @@ class WatchdogProof:
         """Return whether every drive is at rest."""
         raise NotImplementedError
 
-    # -- what is withheld -----------------------------------------------------------------------------------
+    # -- withholding ----------------------------------------------------------------------------------------
 
     def withhold(self, withheld: bool) -> None:
-        """Keep back, or send again, what the drives watch: our heartbeat."""
+        """Withhold, or send again, the signal that the drives watch: our heartbeat."""
         self.devices.master.withhold_heartbeat = withheld
 
     def watched(self) -> list[ServoDrive]:
-        """Return the drives that have to stop by themselves."""
+        """Return the drives that must stop by themselves."""
         return [drive for drive in self.devices.drives if drive.config.proves_watchdog]
 
     def ran_on(self, name: str) -> str:
@@ -101,25 +101,25 @@ class WatchdogProof:
 
     @property
     def done(self) -> bool:
-        """Everything has been shown, or something has not."""
+        """Whether the proof is over, successful or not."""
         return self.stage is ProofStage.DONE or bool(self.failure)
 
     @property
     def provokes(self) -> bool:
-        """Drives are made to stop by themselves, or have not been reset yet after that."""
+        """Whether drives are made to stop by themselves, or have not been reset since."""
         if self.stage is ProofStage.RESTORE:
             return self.watchdog
         return self.stage in (ProofStage.WITHHOLD, ProofStage.STILL)
 
     def proven(self) -> str:
-        """Return a line for the journal: what was shown, and what was not because the rig file says so."""
+        """Return a line for the journal: what was proven, and what the rig file excludes."""
         shown, left_out = list(self.unloaded), list[str]()
         self.watchdogs(shown, left_out)
         text = f"shown: {', '.join(shown) or 'nothing'}"
         return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
 
     def watchdogs(self, shown: list[str], left_out: list[str]) -> None:
-        """Sort the drives' watchdogs into those that were shown, and those that were not."""
+        """Sort the drives' watchdogs into proven and unproven ones."""
         (shown if self.follow else left_out).append("drives follow")
         for drive in self.devices.drives:
             proven = drive.config.name in self.reported
@@ -139,7 +139,7 @@ class WatchdogProof:
             self.stop()
 
     def stop(self) -> None:
-        """Bring every drive to standstill and power off; nothing is withheld any more."""
+        """Bring every drive to standstill and power off; stop withholding."""
         self.withhold(False)
         for drive in self.devices.drives:
             drive.goal = Goal.DISABLED

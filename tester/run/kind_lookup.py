@@ -119,10 +119,10 @@ class RingFound:
 def ring_part(kind: str) -> RingPart | None:
     """Return a kind's ring part; None if it has none, or is not installed."""
     try:
-        found = find(kind).ring
+        part = find(kind).ring
     except UnknownKindError:
         return None
-    return found() if found is not None else None
+    return part() if part is not None else None
 
 
 def ring_in(folder: Path) -> RingFound | None:
@@ -135,4 +135,4 @@ def ring_in(folder: Path) -> RingFound | None:
 
 def of_one_rig(found: Sequence[RingFound], like: RingFound) -> list[RingFound]:
     """Return the rings of one rig, in order of time: rings of other rigs age separately."""
-    return sorted((one for one in found if one.rig == like.rig), key=lambda one: one.run.started)
+    return sorted((ring for ring in found if ring.rig == like.rig), key=lambda ring: ring.run.started)

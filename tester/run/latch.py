@@ -78,9 +78,9 @@ def acknowledge(found: Sequence[OpenTrip], by: str, own: Path | None = None) -> 
     A folder that differs from its manifest keeps it: a new manifest would hide the difference. Raises StoreError,
     OSError.
     """
-    for folder in dict.fromkeys(one.folder for one in found):
+    for folder in dict.fromkeys(trip.folder for trip in found):
         sound = folder != own and (folder / MANIFEST).is_file() and not _problems(folder)
-        acknowledge_trips(folder, [one.trip.id for one in found if one.folder == folder], by, clock.utc_now())
+        acknowledge_trips(folder, [trip.trip.id for trip in found if trip.folder == folder], by, clock.utc_now())
         if sound:
             write_all(folder)
 

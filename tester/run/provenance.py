@@ -126,9 +126,9 @@ def library_versions() -> dict[str, str]:
 
     And every extension that this process has loaded, with its package and the hash of its file.
     """
-    found = {package: _version(package, ABSENT) for package in LIBRARIES}
-    found |= {f"{EXTENSION}{one.group}/{one.name}": one.describe() for one in plugins().loaded}
-    return found | {"python": platform.python_version(), "platform": platform.platform()}
+    versions = {package: _version(package, ABSENT) for package in LIBRARIES}
+    versions |= {f"{EXTENSION}{plugin.group}/{plugin.name}": plugin.describe() for plugin in plugins().loaded}
+    return versions | {"python": platform.python_version(), "platform": platform.platform()}
 
 
 def recipe_source(path: Path) -> str:

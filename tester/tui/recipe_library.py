@@ -57,7 +57,7 @@ def shelf(folder: Path) -> list[ListedRecipe]:
     for where in (folder / OWN, folder):
         if where.is_dir() and where.resolve() != shipped:
             files = sorted(where.glob("*.yaml"))
-            listed += [one for one in (_read(file.stem, file, shipped=False) for file in files) if _looks_like_one(one)]
+            listed += [r for r in (_read(file.stem, file, shipped=False) for file in files) if _looks_like_one(r)]
     return listed
 
 

@@ -172,8 +172,8 @@ class LookApp(App[str]):
         """``theme``: a name of THEMES, "" = by the terminal; ``plain``: ASCII only."""
         super().__init__()
         self._theme_wanted = theme
-        for one in THEMES.values():
-            self.register_theme(one)
+        for known in THEMES.values():
+            self.register_theme(known)
         self.theme = THEMES.get(theme, DARK).name
         self._last_filters: list[LineFilter] = [Colourless()] if self.no_color else []
         if plain:

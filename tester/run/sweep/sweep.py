@@ -75,20 +75,20 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     tasks: list[SweepTask] = []
     name = recipe_text = ""
-    held: Axes | None = None
+    axes: Axes | None = None
     for point in points_of(options.axes):
         rig = load_rig(options.rig, overrides_of(options.axes, point))
         recipe = checked_recipe(path, rig)
         name, recipe_text, rig_text = recipe.recipe.recipe, recipe.tree.text, rig.text
-        held = recipe.recipe.axes
+        axes = recipe.recipe.axes
         materials = kept_files(used_materials(recipe.recipe, path).files)
         tasks += [
             SweepTask(len(tasks) + i, point, seed, recipe_text, rig_text, materials)
             for i, seed in enumerate(seeds, start=1)
         ]
-    assert held is not None  # a sweep has at least one point, even without axes
+    assert axes is not None  # a sweep has at least one point, even without axes
     worn = served_kind(plain).machine.specimen
-    return Sweep(options, name, recipe_text, plain.text, held, worn, tuple(tasks))
+    return Sweep(options, name, recipe_text, plain.text, axes, worn, tuple(tasks))
 
 
 def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, int]:

@@ -112,15 +112,15 @@ def _setpoint_header(held: Axes) -> Row:
 
 
 def _setpoints(row: RowResult) -> Row:
-    held = row.setpoint
-    return (row.row, held.compound, *(nominal(axis.of(held)) for axis in held.axes))
+    setpoint = row.setpoint
+    return (row.row, setpoint.compound, *(nominal(axis.of(setpoint)) for axis in setpoint.axes))
 
 
 def row_record(row: RowResult) -> dict[str, Cell]:
     """Return a row's cells by column, as numbers and texts."""
-    held = row.setpoint
-    setpoints = {axis.column: axis.of(held) for axis in held.axes}
-    return {"row": row.row, "compound": held.compound, **setpoints, **row.cells}
+    setpoint = row.setpoint
+    setpoints = {axis.column: axis.of(setpoint) for axis in setpoint.axes}
+    return {"row": row.row, "compound": setpoint.compound, **setpoints, **row.cells}
 
 
 def _by_point(results: Sequence[CaseResult]) -> Iterator[tuple[tuple[str, ...], list[CaseResult]]]:

@@ -18,7 +18,7 @@ from tester.tui.starting import call
 def _choices() -> list[tuple[str, str, str]]:
     """Return name, file name and title of every format, without loading installed packages."""
     others = [(name, name, "of an installed package") for name in format_names() if name not in FORMATS]
-    return [(one.name, one.file, one.title) for one in FORMATS.values()] + others
+    return [(form.name, form.file, form.title) for form in FORMATS.values()] + others
 
 
 class ExportDialog(Dialog):

@@ -110,18 +110,18 @@ def repeat_words(one: RepeatRow) -> str:
 def trace_parts(found: Iterable[RepeatRow], width: int = WIDTH, *, plain: bool = False) -> Parts:
     """Return the traces one below the other, each under its number."""
     listed = list(found)
-    known = [y for one in listed for ends in one.trace if ends is not None for y in ends]
+    known = [y for repeat in listed for ends in repeat.trace if ends is not None for y in ends]
     if not listed:
         return [("no repeat is committed", FAINT)]
     scale = PlotRange(least=0.1)
     if known:
         scale.cover(min(known), max(known))
     lines: list[Parts] = []
-    for one in listed:
-        lines.append([(f"repeat {one.repeat}: {one.figures}", FAINT if one.exclusion else "bold")])
-        if one.trace:
+    for repeat in listed:
+        lines.append([(f"repeat {repeat.repeat}: {repeat.figures}", FAINT if repeat.exclusion else "bold")])
+        if repeat.trace:
             canvas = Canvas(width, HEIGHT, plain=plain)
-            canvas.bins(one.trace, scale)
+            canvas.bins(repeat.trace, scale)
             labels = {0: f"{scale.high:.2f}", HEIGHT - 1: f"{scale.low:.2f}"}
             lines += [[(f"{labels.get(at, ''):>6} ", FAINT), drawn] for at, drawn in enumerate(canvas.lines())]
     return rows(lines)

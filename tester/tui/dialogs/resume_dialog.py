@@ -23,9 +23,9 @@ Listed = Mapping[str, JsonValue]
 def resumable(answer: JsonValue) -> list[Listed]:
     """Return the runs in a list of runs (tester.service.commands.ListRuns) that can be resumed, the newest first."""
     runs = answer.get("runs") if isinstance(answer, dict) else None
-    listed = [cast("Listed", one) for one in runs if isinstance(one, dict)] if isinstance(runs, list) else []
-    found = [one for one in listed if one.get("can_resume") is True]
-    return sorted(found, key=lambda one: str(one.get("started_utc")), reverse=True)
+    listed = [cast("Listed", run) for run in runs if isinstance(run, dict)] if isinstance(runs, list) else []
+    resumables = [run for run in listed if run.get("can_resume") is True]
+    return sorted(resumables, key=lambda run: str(run.get("started_utc")), reverse=True)
 
 
 def run_line(run: Listed) -> str:

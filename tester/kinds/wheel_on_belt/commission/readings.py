@@ -68,9 +68,9 @@ def of_armed(*tables: Table) -> Callable[[ArmedSeat], Sequence[StepReading]]:
     """Return part of the process image."""
 
     def readings(seat: ArmedSeat) -> Sequence[StepReading]:
-        found = seat.ctx.readings
+        image = seat.ctx.readings
         return tuple(
-            StepReading(label, float(getattr(found, name)), unit, decimals)
+            StepReading(label, float(getattr(image, name)), unit, decimals)
             for table in tables
             for label, name, unit, decimals in table
         )

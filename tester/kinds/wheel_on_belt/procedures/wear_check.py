@@ -159,8 +159,8 @@ MORE_THAN_NEW_MM: Final = 2.0
 
 def measured_mm(answer: str) -> float | None:
     """Return the number of an answer such as ``89.62 mm`` or ``89,62``; None where there is none."""
-    found = re.fullmatch(r"\s*(\d{1,4}(?:[.,]\d{1,6})?)\s*(?:mm)?\s*", answer, re.ASCII)
-    return float(found[1].replace(",", ".")) if found is not None else None
+    match = re.fullmatch(r"\s*(\d{1,4}(?:[.,]\d{1,6})?)\s*(?:mm)?\s*", answer, re.ASCII)
+    return float(match[1].replace(",", ".")) if match is not None else None
 
 
 class Taken(NamedTuple):

@@ -131,13 +131,13 @@ class _Limits:
             return [Given(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
         quantity = Quantity(unit)
         places = [((*at, index), one) for index, one in enumerate(node)] if isinstance(node, list) else [(at, node)]
-        found: list[Given] = []
+        quantities: list[Given] = []
         for place, value in places:
             try:
-                found.append(Given(quantity.read(value), place))
+                quantities.append(Given(quantity.read(value), place))
             except UnitError:
                 continue
-        return found
+        return quantities
 
     def _limit(self, key: str, value: float, unit: str) -> str:
         return f'(limit {show(value, unit)}: {key} of rig "{self.rig.name}")'

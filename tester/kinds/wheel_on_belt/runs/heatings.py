@@ -59,20 +59,20 @@ def known_from(ratios: Sequence[float], rig: RigConfig) -> KnownRatio:
 def _evidence(folder: Path, rig: RigConfig) -> list[float]:
     """Return the ratios of a run's heatings, where they are evidence."""
     with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
-        found = ratios_of(reader.event_data(KIND), rig)
-        if found and _IN_HEAT.isdisjoint(one.interlock for one in reader.trips()) and under_way(folder) is None:
-            return found
+        ratios = ratios_of(reader.event_data(KIND), rig)
+        if ratios and _IN_HEAT.isdisjoint(one.interlock for one in reader.trips()) and under_way(folder) is None:
+            return ratios
     return []
 
 
 def ratios_of(data: Iterable[str], rig: RigConfig) -> list[float]:
     """Return the ratios in the data of events, in their order: those of this rig that are good evidence."""
     identity = (rig.name, beliefs_of(rig))
-    found: list[float] = []
+    ratios: list[float] = []
     for text in data:
         with suppress(ValueError, KeyError, TypeError):
             read = cast("dict[str, object]", json.loads(text))
             put_j, shown_j, rise_k = (float(cast("float", read[key])) for key in ("put_j", "shown_j", "rise_k"))
             if (read["rig"], read["beliefs"]) == identity and shown_j >= LEAST_J and rise_k >= LEAST_RISE_K:
-                found.append(put_j / shown_j)
-    return found
+                ratios.append(put_j / shown_j)
+    return ratios

@@ -33,8 +33,8 @@ class WheelLeft:
 
     def usable(self, rig: Rig) -> bool:
         """Return whether the wheel is not worn below the rig's ``least_diameter``: a smaller one is not used."""
-        own = RigConfig.of(rig)
-        return self.wheel is not None and self.wheel.diameter_mm >= own.interlocks.least_diameter_mm
+        wheel_rig = RigConfig.of(rig)
+        return self.wheel is not None and self.wheel.diameter_mm >= wheel_rig.interlocks.least_diameter_mm
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +45,13 @@ class HeatHistory:
 
     def checks(self, rig: Rig, left: object, now_utc: str) -> tuple[Check, ...]:
         """Return the lines of the pre-flight list that are this kind's. ``now_utc``: the wall clock."""
-        found = left if isinstance(left, WheelLeft) else None
-        return wheel_check(found), zero_check(found, now_utc), heat_check(self.ratio, RigConfig.of(rig))
+        wheel_left = left if isinstance(left, WheelLeft) else None
+        return wheel_check(wheel_left), zero_check(wheel_left, now_utc), heat_check(self.ratio, RigConfig.of(rig))
 
 
 def left_by(reader: RunReader, name: str) -> WheelLeft:
     """Return what a run of this name left on its rig. Raises StoreError."""
-    wheel = max(reader.pieces(), key=lambda one: (one.installed_s, one.piece), default=None)
+    wheel = max(reader.pieces(), key=lambda piece: (piece.installed_s, piece.piece), default=None)
     return WheelLeft(name, wheel, _tare_utc(reader))
 
 

@@ -83,7 +83,7 @@ class WheelPanel(RunPanel):
         demand, target, gates = ctx.demand, ctx.gates.target, self._gates
         slip_band_m_s = max(0.01 * gates.slip_percent * target.slip_m_s, 1e-3 * gates.slip_floor_mm_s)
         wheel_m_s = out.wheel_rad_s * 0.5e-3 * ctx.readings.diameter_mm
-        found = {
+        setpoints = {
             "surface": Wanted(demand.surface_c if isfinite(demand.surface_c) else None),
             "hub": Wanted(out.hub_c if out.heat else None),
             **{name: Wanted(position) for name, position in out.positions.items()},
@@ -91,11 +91,11 @@ class WheelPanel(RunPanel):
             "belt_speed": Wanted(out.belt_m_s, abs(0.01 * gates.speed_percent * out.belt_m_s)),
         }
         if demand.press is Press.LOAD:
-            found["load"] = Wanted(demand.load_n, 0.01 * gates.load_percent * demand.load_n)
+            setpoints["load"] = Wanted(demand.load_n, 0.01 * gates.load_percent * demand.load_n)
         if ctx.burst > 0:
-            found["slip"] = Wanted(1000.0 * target.slip_m_s, 1000.0 * slip_band_m_s)
-            found["surface"] = Wanted(target.temperature_c, target.band_k)
-        return found
+            setpoints["slip"] = Wanted(1000.0 * target.slip_m_s, 1000.0 * slip_band_m_s)
+            setpoints["surface"] = Wanted(target.temperature_c, target.band_k)
+        return setpoints
 
     def soak(self, now: float) -> SoakView | None:
         """Return the soak under way, None where there is none."""
