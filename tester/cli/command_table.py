@@ -50,13 +50,13 @@ SECTIONS: Mapping[str, Mapping[str, Listed]] = {
     },
     "Test": {
         "run": CommandEntry("run_command", "run", "Run a recipe on a rig, by default the simulated one."),
-        "resume": CommandEntry("resume_command", "resume", "Resume an interrupted run."),
+        "resume": CommandEntry("run_command", "resume", "Resume an interrupted run."),
         "tui": CommandEntry("tui_command", "tui", "Open the operator's screen."),
     },
     "Look at runs": {
         "runs": CommandEntry("runs_command", "runs", "List the stored runs."),
         "show": CommandEntry("result_commands", "show", "Show a run's results."),
-        "replay": CommandEntry("replay_command", "replay", "Replay a stored run on the operator's screen."),
+        "replay": CommandEntry("tui_command", "replay", "Replay a stored run on the operator's screen."),
         "verify": CommandEntry("verify_command", "verify", "Check a run's files against its record."),
         "results": RESULTS,
     },

@@ -74,7 +74,7 @@ MUTANTS: Mapping[str, Mutant] = {
         (REPORT,),
     ),
     "overview: points are the coefficient as measured": Mutant(
-        "tester.report.overview", "tuple(one.measured.result.mu for one in own)",
+        "tester.report.overview", "tuple(condition.measured.result.mu for condition in of_compound)",
         "tuple(one.measured.result.mu_resultant for one in own)",
         (REPORT,),
     ),
@@ -92,7 +92,7 @@ MUTANTS: Mapping[str, Mutant] = {
         (SCREENS,),
     ),
     "screen of repeats: the coefficient is that of the first repeat": Mutant(
-        "tester.tui.stored", "{mu.heading} {mu.text(one)}", "{mu.heading} {mu.text(repeats.rows[0])}",
+        "tester.tui.stored", "{mu.heading} {mu.text(measured)}", "{mu.heading} {mu.text(repeats.rows[0])}",
         (SCREENS,),
     ),
     "replay: the time left is a minute too long": Mutant(

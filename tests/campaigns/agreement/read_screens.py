@@ -121,7 +121,7 @@ def _heading(lines: Sequence[str]) -> str:
     begin = next((at for at, line in enumerate(lines) if re.search(r"  mu [\d.–]", line)), len(lines))
     whole = [*lines[begin : begin + 1]]
     for line in lines[begin + 1 :]:
-        if not line or _REPEAT.match(line) or line.partition(" (")[0] in FLAGS:
+        if not line or _REPEAT.match(line) or any(line.startswith(f"{word} (") for word in FLAGS):
             break
         whole.append(line)
     return " ".join(whole)
