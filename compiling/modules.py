@@ -78,7 +78,7 @@ HOT = (
     "tester/kinds/wheel_on_belt/procedures/thermal_steps.py",
     "tester/kinds/wheel_on_belt/procedures/wheel_life.py",
     "tester/kinds/wheel_on_belt/procedures/wheel_steps.py",
-    "tester/kinds/wheel_on_belt/image/process.py",
+    "tester/kinds/wheel_on_belt/image/process_image.py",
     "tester/machine/condition.py",
     "tester/machine/context.py",
     "tester/machine/control.py",

@@ -11,7 +11,7 @@ from drivers.canopen.dictionary import PRODUCT_CODE, VENDOR_ID
 from drivers.canopen.messages import register_text
 from drivers.canopen.objects import emergency_text
 from drivers.digital_io import USUAL_WIRING, DigitalWiring
-from drivers.drives.model import DriveProfile
+from drivers.drives.drive_model import DriveProfile
 from drivers.drives.reader import GENERIC, drive_profile
 from drivers.profiles.model import ProfileError
 from drivers.screw import Screw

@@ -18,7 +18,7 @@ from drivers.canopen.dictionary import DICTIONARY, describe
 from drivers.canopen.heartbeat import consumer_entry
 from drivers.canopen.objects import DataType, OperationMode
 from drivers.canopen.pdo import PdoMap
-from drivers.drives.model import Key, Substitute
+from drivers.drives.drive_model import Key, Substitute
 
 ABORT_CONNECTION_QUICK_STOP: Final = 3     # 0x6007: heartbeat lost -> quick stop
 NO_STATE_CHANGE: Final = 1                 # 0x1029:01: a communication error leaves the NMT state alone
@@ -60,7 +60,8 @@ USED: Final = frozenset({*LOST, _DEADLINE, (o.MAX_TORQUE, 0)})
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One write; ``mask``: the bits that have to read back. ``per_mille_of``: see drivers.drives.model.Substitute."""
+    """One write; ``mask``: the bits that have to read back. ``per_mille_of``: see
+    drivers.drives.drive_model.Substitute."""
 
     index: int
     sub: int

@@ -31,7 +31,7 @@ from drivers.canopen.objects import NmtCommand
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX, TIMED_OUT
 from drivers.cia402 import State
 from drivers.drive_settings import NO_STATE_CHANGE, RATED_TORQUE_SHARE, DrivePlan, PdoSetting, mode_of, plan, tried
-from drivers.drives.model import Key
+from drivers.drives.drive_model import Key
 from drivers.servo_axis import ServoAxis
 from drivers.servo_talk import (
     POLL_S,

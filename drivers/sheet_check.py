@@ -12,7 +12,7 @@ from drivers.canopen.data_sheet import DataSheet, SheetEntry
 from drivers.canopen.dictionary import DICTIONARY, describe
 from drivers.canopen.objects import BITS, DataType
 from drivers.drive_settings import USED, DrivePlan, PdoSetting, Setting, mode_of, plan, tried
-from drivers.drives.model import Key
+from drivers.drives.drive_model import Key
 
 _READ: Final = ((o.DEVICE_TYPE, 0), (o.IDENTITY, 1), (o.SUPPORTED_MODES, 0), (o.STATUSWORD, 0), (o.MODE_DISPLAY, 0),
                 (o.ERROR_CODE, 0), (o.ERROR_REGISTER, 0))

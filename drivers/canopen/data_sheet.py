@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from drivers.canopen.objects import BITS, DataType
-from drivers.drives.model import Key
+from drivers.drives.drive_model import Key
 
 _SECTION: Final = re.compile(r"([0-9a-f]{4})(?:sub([0-9a-f]{1,2}))?", re.IGNORECASE)
 _VARIABLE: Final = 7

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from drivers.canopen.objects import DataType
-from drivers.drives.model import DriveProfile, FurtherObject, Key, PdoLimits, Substitute, Units
+from drivers.drives.drive_model import DriveProfile, FurtherObject, Key, PdoLimits, Substitute, Units
 from drivers.profiles.model import ProfileError
 from drivers.profiles.table import ProfileTable, read_table
 

@@ -10,7 +10,7 @@ from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY, Entry
 from drivers.canopen.objects import OperationMode
 from drivers.cia402 import State
-from drivers.drives.model import Substitute
+from drivers.drives.drive_model import Substitute
 from drivers.drives.reader import GENERIC
 from sim.nodes import sdo_server as sdo
 from sim.nodes.motion import PositionAxis, VelocityAxis

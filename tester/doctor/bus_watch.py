@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import inf
 
-from drivers.modbus.scan import LineScan, RegisterQuestion
+from drivers.modbus.register_scan import LineScan, RegisterQuestion
 from drivers.ports import BusLost, CanPort, LinePort, TellingCanPort
 from tester.doctor.can_survey import Heard
 from tester.doctor.line_survey import LineSurvey

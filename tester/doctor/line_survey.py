@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from drivers.modbus.line import Parity
-from drivers.modbus.scan import LineAnswer, LineScan, RegisterQuestion
+from drivers.modbus.register_scan import LineAnswer, LineScan, RegisterQuestion
 from drivers.ports import BusLost, LinePort
 from drivers.profiles.model import DeviceProfile
 from tester.doctor.open_wires import Wires

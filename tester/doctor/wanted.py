@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.canopen.scan import Key
-from drivers.modbus.scan import RegisterQuestion
+from drivers.modbus.register_scan import RegisterQuestion
 from drivers.profiles.model import DeviceProfile
 from tester.run.kept import IDENTITY, KEPT
 from tester.run.set_up import mapped, written

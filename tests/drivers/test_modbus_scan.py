@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from drivers.crc16 import with_crc
-from drivers.modbus.scan import LineScan, RegisterQuestion
+from drivers.modbus.register_scan import LineScan, RegisterQuestion
 from drivers.ports import WatchedLine
 
 

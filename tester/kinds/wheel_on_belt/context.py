@@ -9,7 +9,7 @@ from typing import Final, Protocol
 from tester.base.quantities import Quantities
 from tester.kinds.wheel_on_belt.control.loops import LoadLoop
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
-from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.procedures.gates import Gates

@@ -8,7 +8,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 
 if TYPE_CHECKING:
     from tests.campaigns.faults.stage import Stage

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tester.analysis.blocks import Block, BlockCounter, blocks_from_samples, resultant
 from tester.analysis.trace import Trace
-from tester.kinds.wheel_on_belt.image.process import GATE_LOAD, GATE_TEMPERATURE
+from tester.kinds.wheel_on_belt.image.process_image import GATE_LOAD, GATE_TEMPERATURE
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tests.tester.analysis.series import sample
 

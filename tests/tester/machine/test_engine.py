@@ -11,7 +11,7 @@ import pytest
 from drivers.cia402 import State
 from drivers.temperature_controller import JACKET_LEASE_S
 from tester.kinds.wheel_on_belt.image.devices import Devices
-from tester.kinds.wheel_on_belt.image.process import Press, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Press, Setpoints
 from tester.machine.engine import Engine
 from tester.machine.motions import Power
 from tester.machine.state import Mode

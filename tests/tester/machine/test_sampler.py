@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Press, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Press, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.machine.sampler import IDLE_PERIOD_S, Sampler, values_at
 from tests.tester.kinds.wheel_on_belt.bench import Bench, make_bench

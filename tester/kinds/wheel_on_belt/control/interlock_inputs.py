@@ -10,7 +10,7 @@ from tester.inputs.rig.config import values_of
 from tester.inputs.rig.parameter import Values
 from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
-from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance

@@ -13,7 +13,7 @@ from typing import Final
 
 from tester.inputs.rig.parameter import Values
 from tester.kinds.wheel_on_belt.control.loops import WheelState
-from tester.kinds.wheel_on_belt.image.process import Demand, Readings
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Readings
 from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
 from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
 from tester.kinds.wheel_on_belt.interlocks.load import STALE_CELL_S

@@ -7,7 +7,7 @@ from math import inf, isfinite
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s
-from tester.kinds.wheel_on_belt.image.process import Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
 from tester.kinds.wheel_on_belt.interlocks.known import contactor_open, standing, unloaded

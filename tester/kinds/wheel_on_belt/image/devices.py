@@ -15,7 +15,7 @@ from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import TemperatureController
 from tester.kinds.wheel_on_belt.image.cell_skew import CellSkew
-from tester.kinds.wheel_on_belt.image.process import NEVER, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch
 from tester.machine.devices import DeviceList
 from tester.machine.rig_drivers import RigDrivers

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import nan
 from typing import Final
 
-from tester.kinds.wheel_on_belt.image.process import Readings
+from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, depth_mm
 
 WINDOW_S: Final = 0.1

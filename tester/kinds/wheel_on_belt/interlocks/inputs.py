@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from math import inf, nan
 from typing import TypeAlias
 
-from tester.kinds.wheel_on_belt.image.process import Demand, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact import Contact
 from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance

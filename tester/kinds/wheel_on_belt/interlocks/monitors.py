@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, isfinite, nan
 
-from tester.kinds.wheel_on_belt.image.process import Readings
+from tester.kinds.wheel_on_belt.image.process_image import Readings
 
 
 @dataclass(slots=True)

@@ -11,7 +11,7 @@ from math import isfinite
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Final
 
-from tester.kinds.wheel_on_belt.image.process import (
+from tester.kinds.wheel_on_belt.image.process_image import (
     GATE_LOAD,
     GATE_SETTLING,
     GATE_SLIP,

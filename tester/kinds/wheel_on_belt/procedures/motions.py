@@ -11,7 +11,7 @@ from math import isfinite
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import CELL, Press, Readings
+from tester.kinds.wheel_on_belt.image.process_image import CELL, Press, Readings
 from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
 from tester.machine.motions import Move
 from tester.machine.zero import ZeroOfCell

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import NAN
+from tester.kinds.wheel_on_belt.image.process_image import NAN
 from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown

@@ -9,7 +9,7 @@ from tester.analysis.wear_rate import NO_CONDITION
 from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import Plan, PromptStep, Step
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
 from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tester.inputs.recipe.plan import Stand
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import CELL
+from tester.kinds.wheel_on_belt.image.process_image import CELL
 from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife

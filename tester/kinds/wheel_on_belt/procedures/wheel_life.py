@@ -13,7 +13,7 @@ from math import inf, nan, pi
 from typing import Final
 
 from tester.analysis.wear_rate import WearCheck
-from tester.kinds.wheel_on_belt.image.process import Readings
+from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.rig import WearConfig
 
 _INF: Final = inf

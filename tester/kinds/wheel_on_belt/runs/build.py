@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.control.step import WheelControl
 from tester.kinds.wheel_on_belt.image.axes import held_by, straight
 from tester.kinds.wheel_on_belt.image.devices import CELL_CHANNELS, SURFACE_CHANNELS, Devices, WheelDrives
-from tester.kinds.wheel_on_belt.image.process import Demand, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.procedures.gates import Gates

@@ -8,7 +8,7 @@ from typing import ClassVar, Final
 
 from tester.base.screen import Check, MachineView, PlotView, SoakView, axis_views, trend_columns
 from tester.kinds.wheel_on_belt.image.axes import AXES, POSITIONED
-from tester.kinds.wheel_on_belt.image.process import (
+from tester.kinds.wheel_on_belt.image.process_image import (
     GATE_LOAD,
     GATE_SETTLING,
     GATE_SLIP,

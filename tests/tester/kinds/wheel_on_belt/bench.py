@@ -13,7 +13,7 @@ from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.loops import LoadLoop
-from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.gates import Gates
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife

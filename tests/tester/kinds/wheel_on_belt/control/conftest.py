@@ -10,7 +10,7 @@ import pytest
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.control.loops import HeatLoop, LoadLoop, WheelState
 from tester.kinds.wheel_on_belt.control.step import WheelControl
-from tester.kinds.wheel_on_belt.image.process import Demand, Press, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.state import ControlEvent, Mode
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, TABLE
 from tester.machine.row import Reaction

@@ -6,7 +6,7 @@ from math import nan
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.machine.state import Mode
 from tests.tester.kinds.wheel_on_belt.control.conftest import Bench
 from tests.tester.kinds.wheel_on_belt.control.test_stop_modes import cool, lift, stand

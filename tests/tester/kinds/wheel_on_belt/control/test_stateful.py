@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.machine.state import Mode
 from tests.tester.kinds.wheel_on_belt.control.conftest import Bench, make_bench

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Press, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Press, Setpoints
 from tester.machine.state import Mode
 from tests.tester.kinds.wheel_on_belt.control.conftest import Bench
 

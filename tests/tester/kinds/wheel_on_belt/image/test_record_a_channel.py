@@ -11,7 +11,7 @@ import pytest
 from tester.base import clock
 from tester.base.quantities import LAST, Channel, Figure, Means, Quantities, Screen
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.image.process import Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.machine.sampler import Sampler
 from tester.store.run_reader import RunReader

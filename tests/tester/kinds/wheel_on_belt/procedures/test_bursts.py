@@ -10,7 +10,7 @@ from statistics import fmean
 import pytest
 
 from tester.analysis.blocks import blocks_from_samples
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.burst_state import Phase
 from tester.kinds.wheel_on_belt.procedures.bursts import TARE_FRESH_S, MeasureRepeat

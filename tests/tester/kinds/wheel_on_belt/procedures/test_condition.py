@@ -8,7 +8,7 @@ import pytest
 
 from tester.analysis.results import RepeatStatus
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
 from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults

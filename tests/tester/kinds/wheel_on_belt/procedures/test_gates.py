@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import (
+from tester.kinds.wheel_on_belt.image.process_image import (
     GATE_LOAD,
     GATE_SETTLING,
     GATE_SLIP,

@@ -7,7 +7,7 @@ from math import nan
 import pytest
 
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Ask, Power, Sequence, Wait

@@ -6,7 +6,7 @@ from math import isnan
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.machine.activity import MoveFailedError

@@ -9,7 +9,7 @@ import pytest
 
 from tester.inputs.recipe.plan import Plan, PromptStep
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.first_contact import OFF
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures, title
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition

@@ -7,7 +7,7 @@ from math import isnan, nan
 import pytest
 
 from tester.inputs.recipe.plan import Soak
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.procedures.motions import Load, Turn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import (

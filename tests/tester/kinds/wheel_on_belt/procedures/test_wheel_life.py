@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Readings
+from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
 from tests.tester.inputs.recipe.texts import rig
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation

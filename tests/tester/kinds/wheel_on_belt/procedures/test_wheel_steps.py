@@ -7,7 +7,7 @@ from math import isnan
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Turn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import Grind, InstallWheel, PreGrindStep

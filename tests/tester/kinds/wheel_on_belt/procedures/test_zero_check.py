@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process import Press
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import PreGrindStep
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, contact_s, is_due
