@@ -103,7 +103,7 @@ MUTANTS: Mapping[str, Mutant] = {
 """By what they do wrong."""
 
 
-class _Patched(importlib.abc.MetaPathFinder, SourceFileLoader):
+class Patched(importlib.abc.MetaPathFinder, SourceFileLoader):
     """Imports one module with its source changed."""
 
     def __init__(self, mutant: Mutant) -> None:
@@ -153,7 +153,7 @@ def _noticed(name: str, made: Made, folder: Path) -> Set[Key]:
 
 def _main(name: str, chosen: Path) -> None:
     mutant = MUTANTS[name]
-    sys.meta_path.insert(0, _Patched(mutant))
+    sys.meta_path.insert(0, Patched(mutant))
     made: Made = pickle.loads(chosen.read_bytes())  # noqa: S301 - the campaign's own
     with TemporaryDirectory() as reports:
         read = [*facts_of(made, Path(reports), (TABLES, *mutant.parts))]

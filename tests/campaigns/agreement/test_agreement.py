@@ -8,7 +8,7 @@ import pytest
 
 from tests.campaigns.agreement.compare import contradictions
 from tests.campaigns.agreement.facts import Fact, printed, seconds_of
-from tests.campaigns.agreement.mutants import MUTANTS
+from tests.campaigns.agreement.mutants import MUTANTS, Patched
 from tests.campaigns.agreement.names import MU, MU_MEASURED, U_THIS, quantity_of
 from tests.campaigns.agreement.read_text import read_ending
 from tests.campaigns.agreement.record import Record, RecordedAxis, RecordedCondition
@@ -96,3 +96,8 @@ def test_a_row_of_the_terminal_is_found_by_its_setpoint_and_its_remarks_are_flag
 
 def test_there_are_mutants_of_every_way_in_which_a_run_is_shown() -> None:
     assert len(MUTANTS) >= 12
+
+
+@pytest.mark.parametrize("name", MUTANTS)
+def test_the_text_that_a_mutant_changes_is_in_its_module_once(name: str) -> None:
+    assert MUTANTS[name].new in Patched(MUTANTS[name]).text
