@@ -29,7 +29,7 @@ class PageError(Exception):
 
 def page(text: str) -> Element:
     """Return the root of a page; raises PageError for the first thing that is not as HTML wants it."""
-    import html5lib  # here: the other outputs are read without it
+    import html5lib  # not an extra of the package: .ci/run installs it, and the other outputs are read without it
 
     parser = html5lib.HTMLParser(strict=True)
     try:

@@ -186,7 +186,7 @@ def test_a_run_that_is_not_as_it_was_left_is_said_to_be_so_on_the_first_page(pla
 
 @pytest.mark.parametrize("made", ["text", "hostile"])
 def test_a_page_is_html_to_a_strict_parser(made: str, request: pytest.FixtureRequest) -> None:
-    html5lib = pytest.importorskip("html5lib", reason="needs html5lib, of the extra `test`")
+    html5lib = pytest.importorskip("html5lib", reason="needs html5lib, which .ci/run installs")
     parser = html5lib.HTMLParser()
     parser.parse(request.getfixturevalue(made))
     assert parser.errors == []
