@@ -10,7 +10,8 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from tester.inputs.rig.parameter import Parameter
-from tester.machine.row import ACK, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, at_most, condition
+from tester.machine.row import ACK, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock
+from tester.machine.watches import at_most, condition
 from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
 
 Tells = Callable[[Any], bool]

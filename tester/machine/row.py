@@ -1,28 +1,22 @@
 """A row of the interlock table: one object with what is watched, for how long, and what follows.
 
-``at_most``, ``at_least`` and ``within`` hold a number against its limits: the condition of the row, what a trip records
-and the sentence on the safety page come from the same value and limit. ``condition`` watches a state. Their functions
-take the kind's inputs and run in every scan in which the row can apply (``When``); they change nothing and may run more
-than once in a scan. A number that is NaN is beyond its limit, so missing data trip.
+``tester.machine.watches`` makes what a row watches. This module is not compiled: mypyc makes no dataclass of a generic
+class. A scan calls the functions of the rows, which are.
 """
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from math import nan
-from operator import attrgetter
-from typing import Any, Final, Generic, TypeAlias, TypeVar
+from typing import Any, Final, Generic, TypeVar
 
-from tester.base.config_reader import SUFFIXES
 from tester.inputs.rig.parameter import Parameter, Values
 
 V = TypeVar("V", contravariant=True)
 """What the kind's rows look at: a class that inherits from ``ScanInputs``."""
-Limit: TypeAlias = Parameter | str | float | Callable[[V], float]
-"""A parameter; the rig's own number by its place in the inputs ("limits.load_n"); a constant; or a function."""
+
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,70 +93,6 @@ class Watch(Generic[V]):
     form: Form = Form.STATE
     parts: tuple[Callable[[V], Any], ...] = ()
     """What ``holds`` is made of: number and limit, or the span. The table compares them without a call of ``holds``."""
-
-
-def at_most(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
-    """Return the watch of a number that may not exceed its limit.
-
-    ``level``: the sentence for the safety page, with ``{}`` for the limit's name. ``unit``: of value and limit; a
-    parameter brings its own, and so does a place in the inputs, whose name ends with it.
-    """
-    return _one_sided(Form.AT_MOST, level, value, limit, unit)
-
-
-def at_least(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
-    """Return the watch of a number that may not fall below its limit; arguments as of ``at_most``."""
-    return _one_sided(Form.AT_LEAST, level, value, limit, unit)
-
-
-def within(level: str, span: Callable[[V], tuple[float, float, float]], unit: str) -> Watch[V]:
-    """Return the watch of a number between two limits that may move; ``span``: lower limit, number, upper limit.
-
-    It also serves a row that watches several numbers: ``span`` returns the first that is beyond its limits.
-    """
-
-    def holds(v: V) -> bool:
-        low, value, high = span(v)
-        return not (low <= value <= high)
-
-    def compared(v: V) -> Compared:
-        low, value, high = span(v)
-        return Compared(value, low if value < low else high, unit)
-
-    return Watch(level, holds, compared, (), Form.WITHIN, (span,))
-
-
-def condition(
-    level: str, holds: Callable[[V], bool], compared: Callable[[V], Compared] = lambda _: NOTHING_COMPARED
-) -> Watch[V]:
-    """Return the watch of a state. Write it so that missing data trip: ``not (x <= limit)``, never ``x > limit``."""
-    return Watch(level, holds, compared)
-
-
-def _one_sided(form: Form, level: str, value: Callable[[V], float], limit: Limit[V], unit: str) -> Watch[V]:
-    inside = operator.le if form is Form.AT_MOST else operator.ge
-    parameters = (limit,) if isinstance(limit, Parameter) else ()
-    read, name, unit = _limit(limit, unit)
-    return Watch(
-        level.format(name),
-        lambda v: not inside(value(v), read(v)),
-        lambda v: Compared(value(v), read(v), unit),
-        parameters,
-        form,
-        (value, read),
-    )
-
-
-def _limit(limit: Limit[Any], unit: str) -> tuple[Callable[[Any], float], str, str]:
-    """Return how a limit is read from the inputs, its name and its unit."""
-    if isinstance(limit, Parameter):
-        return lambda v: v.parameters[limit], limit.key, limit.unit
-    if isinstance(limit, str):
-        unit, suffix = max(SUFFIXES.items(), key=lambda one: len(one[1]) * limit.endswith(one[1]))
-        return attrgetter(limit), limit.removesuffix(suffix), unit
-    if isinstance(limit, int | float):
-        return lambda _: limit, f"{limit:g}", unit
-    return limit, "", unit
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ from typing import Any, Final, Protocol, TypeAlias
 
 from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter, Values
 from tester.machine.image import BaseDemand, BaseReadings
-from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Interlock, at_least, at_most, condition
+from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Interlock
+from tester.machine.watches import at_least, at_most, condition
 
 
 class Limits(Protocol):

@@ -18,8 +18,9 @@ from tester.machine.drive_rows import (
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.image import PlainDemand, PlainReadings
-from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Interlock, at_most, condition
+from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Interlock
 from tester.machine.state import ControlState
+from tester.machine.watches import at_most, condition
 from tester.machine.wires import DEVICE_REFUSED, INPUTS_STALE, LINE_NOISY, WARNINGS
 from tester.machine.wires import ROWS as WIRE_ROWS
 

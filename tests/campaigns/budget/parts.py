@@ -46,7 +46,8 @@ _OTHERS: Final = (
     ("the share has the film's error as it is", "-mu_f / mu_d**2, 1.0 / mu_d)", "-mu_f / mu_d**2, 1.0)"),
     ("the share is of adhesion", "share=combined(mu_f / mu_d,",
      "share=combined(1.0 - mu_f / mu_d,"),
-    ("weights of a mean are 1 / u", "weights = [1.0 / value_of_rig.standard**2 for", "weights = [1.0 / value_of_rig.standard for"),
+    ("weights of a mean are 1 / u", "weights = [1.0 / value_of_rig.standard**2 for",
+     "weights = [1.0 / value_of_rig.standard for"),
     ("a mean is not weighted", "weights = [1.0 / value_of_rig.standard**2 for", "weights = [1.0 for"),
     ("common errors average out in a mean", "common[name] = so_far + share * u, min(least, df)",
      "common[name] = hypot(so_far, share * u), min(least, df)"),
@@ -59,7 +60,8 @@ _OF_RUNS: Final = (
     ("a film is held against another specimen",
      "return measured.info.specimen, measured.info.replicate, setpoint.compound, values",
      "return 0, measured.info.replicate, setpoint.compound, values"),
-    ("a film is held against another replicate", "return measured.info.specimen, measured.info.replicate, setpoint.compound, values",
+    ("a film is held against another replicate",
+     "return measured.info.specimen, measured.info.replicate, setpoint.compound, values",
      "return measured.info.specimen, 0, setpoint.compound, values"),
     ("a film is held against another condition", "if axis.name != without)",
      "if axis.name == AXIS and without != AXIS)"),
@@ -135,11 +137,11 @@ _FIT_OTHERS: Final = (
     (_POINTS, "a thermometer is right", "standard_of(terms, Acts.TEMPERATURE), temperature)", "0.0, temperature)"),
     (_POINTS, "a doubt is no reason", 'return ", ".join(result.doubts)', 'return ""'),
 )  # fmt: skip
-_COLLAPSE, _VERDICT = "tester/analysis/master_curve/collapse.py",
- "tester/analysis/master_curve/verdict.py"
+_COLLAPSE, _VERDICT = "tester/analysis/master_curve/collapse.py", "tester/analysis/master_curve/verdict.py"
 _OF_COLLAPSE, _OF_VERDICT = tests_of("analysis/master_curve/collapse"), tests_of("analysis/master_curve/verdict")
 _MASTER_SCALED: Final = (
-    (_COLLAPSE, "residuals of resamples", "spread = point_estimate.residual * sqrt(", "spread = {} * point_estimate.residual * sqrt("),
+    (_COLLAPSE, "residuals of resamples", "spread = point_estimate.residual * sqrt(",
+     "spread = {} * point_estimate.residual * sqrt("),
     (_COLLAPSE, "the thermometer in the interval", "thermometer_k = of.thermometer_k *",
      "thermometer_k = {} * of.thermometer_k *"),
     (_COLLAPSE, "what a temperature has in common", "in_common = _between(", "in_common = {} * _between("),

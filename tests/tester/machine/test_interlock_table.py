@@ -12,7 +12,8 @@ import pytest
 from tester.inputs.rig.parameter import Parameter
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import Group, InterlockTable, parameters_of
-from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always, at_most, condition
+from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always
+from tester.machine.watches import at_most, condition
 
 DELAY = Parameter("toy_delay_s", "s", "30 ms", "for this long")
 LEVEL = Parameter("toy_level_n", "N", "3 N", "more than this")

@@ -8,7 +8,8 @@ from math import inf, isnan, nan
 import pytest
 
 from tester.inputs.rig.parameter import Parameter, Values
-from tester.machine.row import FAST, Compared, Interlock, Watch, at_least, at_most, condition, within
+from tester.machine.row import FAST, Compared, Interlock, Watch
+from tester.machine.watches import at_least, at_most, condition, within
 
 MOST_N = Parameter("most_n", "N", "3 N", "no more than this")
 OTHER = Parameter("other", "1", "2", "a row's other number")

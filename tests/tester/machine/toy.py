@@ -13,8 +13,9 @@ from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.prompts import Prompts
-from tester.machine.row import CONTROLLED, FAST, POWER_OFF, WARN, Interlock, at_most, condition
+from tester.machine.row import CONTROLLED, FAST, POWER_OFF, WARN, Interlock
 from tester.machine.state import ControlState
+from tester.machine.watches import at_most, condition
 from tester.store.recorder import NullRecorder
 from tests.tester.inputs.recipe.texts import rig
 

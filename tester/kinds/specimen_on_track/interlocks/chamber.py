@@ -7,7 +7,8 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
-from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock, at_most, condition, within
+from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
+from tester.machine.watches import at_most, condition, within
 from tester.machine.wires import answered_s
 
 STALE_AIR_S: Final = Parameter(

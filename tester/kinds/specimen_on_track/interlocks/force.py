@@ -6,7 +6,8 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
-from tester.machine.row import ACK, CONTROLLED, FAST, LOADED, REPAIR, Interlock, at_least, at_most, condition
+from tester.machine.row import ACK, CONTROLLED, FAST, LOADED, REPAIR, Interlock
+from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
 STALE_CELL_S: Final = Parameter(

@@ -9,7 +9,8 @@ from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
 from tester.kinds.specimen_on_track.interlocks.known import STANDING_SHARE, standing_m_s
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
-from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock, at_most, condition, within
+from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
+from tester.machine.watches import at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.track_at_s, r.lift_at_s))

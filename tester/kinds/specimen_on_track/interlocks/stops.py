@@ -9,7 +9,8 @@ from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
 from tester.kinds.specimen_on_track.interlocks.known import SPEEDS_OLD_S, STANDING_SHARE, standing
 from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
-from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock, condition
+from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock
+from tester.machine.watches import condition
 
 STOP_MARGIN_S: Final = Parameter(
     "stop_margin_s", "s", "600 ms", "the track may stand this much later than its ramp says [A]; seen late, too",

@@ -6,7 +6,8 @@ from typing import Final
 
 from tester.inputs.rig.parameter import Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Row
-from tester.machine.row import CONTROLLED, Interlock, at_least
+from tester.machine.row import CONTROLLED, Interlock
+from tester.machine.watches import at_least
 from tester.machine.wires import DEVICE_REFUSED, LINE_NOISY
 
 LEAST_DIAMETER_MM: Final = Parameter(

@@ -8,7 +8,8 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.machine.row import FAST, LOADED, REPAIR, Interlock, at_most, condition, within
+from tester.machine.row import FAST, LOADED, REPAIR, Interlock
+from tester.machine.watches import at_most, condition, within
 
 _RADIANS: Final = pi / 180.0
 

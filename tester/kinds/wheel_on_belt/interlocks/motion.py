@@ -9,7 +9,8 @@ from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
-from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock, at_least, at_most, condition, within
+from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.watches import at_least, at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
 
 DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.wheel_at_s, r.belt_at_s, r.press_at_s, r.positions_at_s))

@@ -8,7 +8,8 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, STANDING_M_S, standing, unloaded
 from tester.kinds.wheel_on_belt.interlocks.motion import DROPPED_DELAY_S
 from tester.kinds.wheel_on_belt.interlocks.stops import PUSHED_MM
-from tester.machine.row import ENDING, POWER_OFF, REFUSE, REPAIR, Interlock, condition
+from tester.machine.row import ENDING, POWER_OFF, REFUSE, REPAIR, Interlock
+from tester.machine.watches import condition
 
 
 def _moving(v: Inputs) -> bool:

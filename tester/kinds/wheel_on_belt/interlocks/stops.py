@@ -8,18 +8,8 @@ from tester.inputs.rig.parameter import POSITIVE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, contactor_open, standing, unloaded
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
-from tester.machine.row import (
-    CONTROLLED,
-    ENDING,
-    FAST,
-    POWER_OFF,
-    REPAIR,
-    Compared,
-    Interlock,
-    always,
-    at_most,
-    condition,
-)
+from tester.machine.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
+from tester.machine.watches import at_most, condition
 
 LIFT_LATE_S: Final = Parameter(
     "lift_late_s", "s", "1 s", "after a stop: unloaded by then, else both drives stop fast [A]",

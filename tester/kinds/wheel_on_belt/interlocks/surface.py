@@ -8,7 +8,8 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
-from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock, at_most, condition
+from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock
+from tester.machine.watches import at_most, condition
 from tester.machine.wires import answered_s
 
 _INF: Final = inf

@@ -6,7 +6,8 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.machine.row import FAST, LOADED, REPAIR, Interlock, at_most, within
+from tester.machine.row import FAST, LOADED, REPAIR, Interlock
+from tester.machine.watches import at_most, within
 
 FORCE_STEP_N: Final = Parameter(
     "force_step_n", "N", "14 N",

@@ -13,7 +13,8 @@ from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.kinds.wheel_on_belt.rig.wheel_rig import RigConfig
 from tester.machine.interlock_sheet import SECTION, InterlockSheet
 from tester.machine.interlock_table import InterlockTable
-from tester.machine.row import ACK, CONTROLLED, Interlock, at_most
+from tester.machine.row import ACK, CONTROLLED, Interlock
+from tester.machine.watches import at_most
 
 FAULT = "thermometer drift 2 K/s"
 """Trips it first: a line of a fault script, behind the time at which it begins."""

@@ -10,8 +10,9 @@ import pytest
 from tester.machine.plain.control import PlainControl
 from tester.machine.plain.image import PlainDemand
 from tester.machine.plain.rows import OPERATION, ROWS, SENSOR_SILENT, plain_table
-from tester.machine.row import Interlock, Reaction, condition
+from tester.machine.row import Interlock, Reaction
 from tester.machine.state import Mode
+from tester.machine.watches import condition
 from tests.tester.machine.plain.bench import TABLE, BenchReadings, bench_rig
 
 SCAN_S = 0.05

@@ -13,7 +13,8 @@ from tester.inputs.rig.config import OwnDevice, section_of
 from tester.inputs.rig.parameter import SECTION, Parameter
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.plain.rows import PlainInputs, plain_table
-from tester.machine.row import FAST, LOADED, REPAIR, Interlock, at_most
+from tester.machine.row import FAST, LOADED, REPAIR, Interlock
+from tester.machine.watches import at_most
 
 SPRING_N = Parameter(
     "spring_n", "N", "40 N", "the spring pulls at most this: a sledge that slides needs half of it [A]",

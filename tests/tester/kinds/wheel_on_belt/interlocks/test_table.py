@@ -18,7 +18,7 @@ from tester.kinds.wheel_on_belt.rig import interlock_values
 from tester.machine.row import Interlock
 
 OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester.machine.drive_rows",
-        "tester.machine.row")  # fmt: skip
+        "tester.machine.row", "tester.machine.watches")  # fmt: skip
 
 
 def compared(condition: Callable[[Inputs], object], known: set[FunctionType] | None = None) -> set[Parameter]:
