@@ -189,7 +189,7 @@ def test_of_two_values_none_is_far() -> None:
 
 
 def test_flags_of_repeats_are_those_of_the_condition() -> None:
-    flagged = [repeat(flags="rolling"), repeat(flags="rolling extended"), repeat(flags="drift not shown; truncated")]
+    flagged = [repeat(flags="rolling"), repeat(flags="rolling; extended"), repeat(flags="drift not shown; truncated")]
     assert combine(*flagged, *FIVE[:2]).flags == "drift not shown; extended; rolling; truncated"
 
 

@@ -171,11 +171,6 @@ def test_checks_around_a_condition_are_its_own(tmp_path: Path) -> None:
     assert first == pytest.approx(hypot(0.5 * 0.01, 0.5 * 0.01, 0.5 * 0.1), rel=1e-3)
 
 
-def test_a_record_that_says_no_terms_has_those_of_its_kind(tmp_path: Path) -> None:
-    (row,) = results(written(tmp_path, terms=0)).rows
-    assert {one.name for one in TERMS} <= {one.name for one in row.result.compound_budget.contributions}
-
-
 def test_terms_come_back_as_they_were_recorded(tmp_path: Path) -> None:
     known = (KnownSlope("1#", 25.0, 2.0, 0.3, "a file"),)
     with RunReader(written(tmp_path, known=known, terms=4)) as reader:

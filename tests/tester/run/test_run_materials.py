@@ -118,7 +118,7 @@ def test_a_long_file_that_was_changed_stops_a_resumed_run(again: Path) -> None:
         database.execute("UPDATE material SET text = NULL WHERE role = 'data'")
         database.commit()
     (again / "compounds" / "dma.csv").write_text("other\n", encoding="utf-8")
-    with pytest.raises(CannotStartError, match=r"compounds/dma\.csv: not what the run was made with"):
+    with pytest.raises(CannotStartError, match=r"compounds/dma\.csv: changed since the run began"):
         Session(SessionOptions(), Screen()).resume(again)
 
 

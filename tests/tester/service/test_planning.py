@@ -31,7 +31,7 @@ def test_it_is_what_this_process_would_have_planned(tmp_path: Path) -> None:
 
 def test_what_is_wrong_with_a_recipe_is_said(tmp_path: Path) -> None:
     (tmp_path / "bad.yaml").write_text("recipe: [")
-    with pytest.raises(CannotStartError, match=r"bad\.yaml:1"):
+    with pytest.raises(CannotStartError, match=r"bad\.yaml:2:1: not YAML"):
         planned(Task(str(tmp_path / "bad.yaml"), "sim"), lambda: "")
 
 

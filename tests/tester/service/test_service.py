@@ -314,7 +314,7 @@ def test_a_second_run_is_refused_while_one_is_under_way(tmp_path: Path) -> None:
         (Arm(on=False), "manual mode is not armed"),
         (ResumeRun("none"), "no run none"),
         (RunRecipe("no-such-recipe"), "no recipe"),
-        (RunRecipe("bad", text="recipe: [", speed=None), ".yaml:1"),
+        (RunRecipe("bad", text="recipe: [", speed=None), ".yaml:2:1: not YAML"),
         (RunRecipe("quickstart", rig="no-such-rig.yaml"), "no-such-rig.yaml"),
     ],
     ids=lambda value: value if isinstance(value, str) else value.command,

@@ -83,7 +83,7 @@ def test_after_a_stop_the_runs_that_are_not_over_are_listed_and_the_chosen_one_g
         await on.until(lambda: "2024-first  stopped, 3 of 6 repeats committed" in on.text(), "the list is shown")
         assert "2024-over" not in on.text() and on.text().index("2024-last") < on.text().index("2024-first")
         await on.pilot.press("down", "enter")
-        await on.until(lambda: "2024-first goes on" in on.text(), "the pre-flight list is shown")
+        await on.until(lambda: "2024-first resumes" in on.text(), "the pre-flight list is shown")
         await on.pilot.press("enter")
         assert (await on.ordered(ResumeRun)).run == "2024-first"  # type: ignore[union-attr]
         on.queries.stored = []

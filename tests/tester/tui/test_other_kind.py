@@ -68,10 +68,10 @@ def test_what_may_be_moved_by_hand_is_what_the_machine_has(tmp_path: Path) -> No
     play(scene, tmp_path, (120, 40))
 
 
-def test_when_its_service_dies_the_screen_says_what_must_stand(tmp_path: Path) -> None:
+def test_when_its_service_dies_the_screen_names_what_must_not_move(tmp_path: Path) -> None:
     async def scene(on: Stage) -> None:
         await shown(on)
         text = death_text(on.app.scene)
-        assert "the track must stand" in text and "2. Switch the chamber off." in text and "4. 2024" in text
+        assert "the track must not move" in text and "2. Switch the chamber off." in text and "4. 2024" in text
 
     play(scene, tmp_path)

@@ -63,7 +63,7 @@ def test_one_that_cannot_be_is_refused(mu: float, compound: str) -> None:
 
 def test_another_name_is_held_against_what_rubber_has() -> None:
     notes, told, ran = measured(0.9, 'tread "A", 60 phr')
-    assert notes.values["expected_mu"] is None and "nothing is known" in told[0]
+    assert notes.values["expected_mu"] is None and "is unknown" in told[0]
     assert yaml.safe_load(ran[0])["specimens"][0]["compound"] == 'tread "A", 60 phr'
     with pytest.raises(StepRefused, match="rubber on an abrasive"):
         measured(0.01, "mine")
