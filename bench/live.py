@@ -14,7 +14,7 @@ from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.prompts import Prompts
 from tester.machine.tickers import next_tick
 from tester.run.folder import Job, beginning_of, work_of

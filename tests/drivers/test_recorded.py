@@ -9,7 +9,7 @@ import pytest
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_devices
+from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.rig_ports import Ports
 from tests.drivers.recorded import RecordedCan, RecordedLine

@@ -40,7 +40,7 @@ def _recipe() -> RecipePart:
 
 
 def _runs() -> KindRun:
-    from tester.kinds.wheel_on_belt.runs.runs import RUNS
+    from tester.kinds.wheel_on_belt.run.runs import RUNS
 
     return RUNS
 
@@ -76,7 +76,7 @@ def _commissions() -> CommissionPart:
 
 
 def _ring() -> RingPart:
-    from tester.kinds.wheel_on_belt.runs.ring_record import RING
+    from tester.kinds.wheel_on_belt.run.ring_record import RING
 
     return RING
 

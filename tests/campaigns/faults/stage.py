@@ -22,8 +22,8 @@ from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRa
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_run
-from tester.kinds.wheel_on_belt.runs.heatings import KIND as HEATING
+from tester.kinds.wheel_on_belt.run.build import build_run
+from tester.kinds.wheel_on_belt.run.heatings import KIND as HEATING
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import next_tick

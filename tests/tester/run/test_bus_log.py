@@ -14,7 +14,7 @@ import pytest
 
 from drivers.ports import FrameByFrame
 from drivers.transports.tcp_line import open_tcp_line
-from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.prompts import Prompts
 from tester.machine.tickers import run_simulated
 from tester.run.bus_log import BusLog, CanLog, LineLog

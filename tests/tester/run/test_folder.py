@@ -10,7 +10,7 @@ from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.run.folder import work_of
 from tester.run.kind_lookup import recipe_part
-from tests.tester.kinds.wheel_on_belt.runs.test_runs import THREE
+from tests.tester.kinds.wheel_on_belt.run.test_runs import THREE
 
 
 @pytest.mark.parametrize(("simulated", "parts"), [(True, 3), (False, 1)])

@@ -15,7 +15,7 @@ from tester.base import clock
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_devices
+from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.tickers import TickStatistics, run_real_time
 from tester.run.bus_log import BusLog

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.kinds.wheel_on_belt.runs.runs import split
+from tester.kinds.wheel_on_belt.run.runs import split
 from tester.machine.context import Progress
 from tester.machine.run import Outcome
 from tester.machine.time_left import RunPosition
@@ -21,7 +21,7 @@ from tester.run.pool import say, stop_level
 from tester.run.workers import Sight, longest_first, side_by_side
 from tests.tester.inputs.recipe.texts import rig
 from tests.tester.kinds.wheel_on_belt.bench import plan_of
-from tests.tester.kinds.wheel_on_belt.runs.test_runs import PREPARED, THREE, WORN
+from tests.tester.kinds.wheel_on_belt.run.test_runs import PREPARED, THREE, WORN
 
 Result = PartEnd | BaseException | None
 

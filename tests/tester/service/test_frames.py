@@ -22,7 +22,7 @@ from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.sensor_slave import CellSlave, IrSlave
 from tester.kinds import hardware_text, load_rig
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.machine.attendant import NoAttendant
 from tester.machine.prompts import Prompts

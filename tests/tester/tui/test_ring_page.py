@@ -12,7 +12,7 @@ from tester.analysis.ring_runs import RingRun
 from tester.tui.pages.ring_page import RingPage
 from tester.tui.rings import KeptRings
 from tester.tui.widgets.ring_panel import columns
-from tests.tester.kinds.wheel_on_belt.runs.test_slip_ring import ring_run
+from tests.tester.kinds.wheel_on_belt.run.test_slip_ring import ring_run
 from tests.tester.service.views import HOSTILE
 from tests.tester.service.views import state as a_state
 from tests.tester.tui.stage import Stage, play

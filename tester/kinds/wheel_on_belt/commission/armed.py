@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import rig_bounds
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.activity import Activity
 from tester.machine.commission.person import Dialogue, Waits
 from tester.machine.prompts import Prompts

@@ -12,7 +12,7 @@ from sim.physics.friction import KNOWN
 from sim.physics.slip import predict
 from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import loss_ratios
+from tester.kinds.wheel_on_belt.run.build import loss_ratios
 from tester.machine.commission.commission_step import Alone, Notes
 from tester.machine.commission.person import StepRefused
 

@@ -19,7 +19,7 @@ from drivers.servo import ServoDrive
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_devices
+from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 from tester.machine.proof import ENABLE_S

@@ -14,7 +14,7 @@ from typing import Final
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.commission.settling import MEAN_S, SettlingFit
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
-from tester.kinds.wheel_on_belt.runs.build import loss_ratios
+from tester.kinds.wheel_on_belt.run.build import loss_ratios
 from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, StepRefused, Waits, wait
 from tester.machine.motions import Power, Sequence

@@ -20,7 +20,7 @@ from tester.kinds.wheel_on_belt.procedures.motions import TakeTare
 from tester.kinds.wheel_on_belt.recipe.limits import least_load_n
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
 from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.prompts import Prompts

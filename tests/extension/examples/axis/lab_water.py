@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.recipe.part import WheelPart
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED
-from tester.kinds.wheel_on_belt.runs.runs import WheelRuns
+from tester.kinds.wheel_on_belt.run.runs import WheelRuns
 from tester.kinds.wheel_on_belt.served.screen import MACHINE
 from tester.kinds.wheel_on_belt.served.served import WheelOnBelt
 from tester.machine.executor import Unforeseen

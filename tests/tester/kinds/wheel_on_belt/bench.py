@@ -21,7 +21,7 @@ from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.runs.build import build_run
+from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.activity import Activity
 from tester.machine.attendant import NoAttendant
 from tester.machine.prompts import Prompts

@@ -9,7 +9,7 @@ import pytest
 from drivers.cia402 import Goal, State
 from tester.kinds.wheel_on_belt.image.devices import OUTPUT_CONTACTOR, Devices
 from tester.kinds.wheel_on_belt.image.process_image import Readings, Setpoints
-from tester.kinds.wheel_on_belt.runs.build import build_devices
+from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.rig_ports import Ports
 from tester.run.simulated import simulated_ports
 from tests.tester.inputs.recipe.texts import rig

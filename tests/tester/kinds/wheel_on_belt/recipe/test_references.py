@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
-from tester.kinds.wheel_on_belt.runs.runs import split
+from tester.kinds.wheel_on_belt.run.runs import split
 from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig
 
 EVERY_2 = "reference: {every: 2}\n"

@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
-from tester.kinds.wheel_on_belt.runs.build import plan_bounds
+from tester.kinds.wheel_on_belt.run.build import plan_bounds
 from tests.tester.inputs.recipe.texts import recipe as read
 from tests.tester.inputs.recipe.texts import rig
 

@@ -6,7 +6,7 @@ import pytest
 
 from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Install, WheelCondition
-from tester.kinds.wheel_on_belt.runs.runs import split
+from tester.kinds.wheel_on_belt.run.runs import split
 from tester.machine.run_parts import Part
 from tests.tester.inputs.recipe.texts import PREPARED
 from tests.tester.kinds.wheel_on_belt.bench import plan_of
