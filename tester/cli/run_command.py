@@ -187,7 +187,7 @@ def resume(
     accept_risk: str,
     as_json: bool,
 ) -> int:
-    """Go on with RUN (its folder, its name under runs, or latest) at the first repeat that is not committed.
+    """Resume RUN (its folder, its name under runs, or latest) at the first repeat that is not committed.
 
     The wheel is heated again first. Prints the run's folder as the last line; a run that is complete stays as it is.
     """

@@ -55,7 +55,7 @@ def serve(
     allowed: tuple[str, ...],
     notify: str,
 ) -> int:
-    """Own the rig, run what clients ask for, and go on when they disconnect.
+    """Own the rig and run what clients ask for. Runs continue when they disconnect.
 
     Nothing moves by starting it. TERM or Ctrl+C stops a run in a controlled way and leaves at standstill.
     """
@@ -103,7 +103,7 @@ def hold(address: str, take: bool) -> int:
 @connect_option
 @take_option
 def release(address: str, take: bool) -> int:
-    """Go on after `tester hold`."""
+    """Resume a run that `tester hold` holds."""
     from tester.service.commands import Release
 
     return _command(address, Release(), take)

@@ -86,7 +86,7 @@ class Run:
         return refused
 
     def request_release(self, why: str = "released by the operator") -> str:
-        """Go on after a hold."""
+        """Resume after a hold."""
         engine = self.engine
         refused = engine.control.request_release(engine.ctx.now, why)
         if not refused:
