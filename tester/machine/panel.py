@@ -11,6 +11,7 @@ from tester.base.screen import Check, Gate, SoakView
 from tester.inputs.rig import Rig
 from tester.machine.engine import Engine
 from tester.machine.served import News, Wanted
+from tester.machine.state import Mode
 
 
 class RunPanel:
@@ -32,7 +33,9 @@ class RunPanel:
         return {}
 
     def gates(self) -> tuple[Gate, ...]:
-        """Return the gates as of the last scan."""
+        """Return the gates as of the last scan; none outside a RUN, where they are not evaluated."""
+        if self.engine.control.state.mode is not Mode.RUN:
+            return ()
         closed = self.engine.ctx.gate
         return tuple(Gate(key, not closed & bit) for key, bit in self.gates_of.items())
 
