@@ -76,7 +76,7 @@ def _commissions() -> CommissionPart:
 
 
 def _ring() -> RingPart:
-    from tester.kinds.wheel_on_belt.run.ring_record import RING
+    from tester.kinds.wheel_on_belt.run.past_runs import RING
 
     return RING
 

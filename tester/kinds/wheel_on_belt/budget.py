@@ -10,7 +10,7 @@ from tester.analysis.measurand import expected_budget
 from tester.analysis.terms import Acts, BudgetPoint, Size, Term
 from tester.analysis.uncertainty import Budget
 from tester.kinds.wheel_on_belt.image.axes import Held
-from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 _WEAR = "believed wear rate 0.08 mm3/(N m) of a range of 0.02 to 0.3 [A]"

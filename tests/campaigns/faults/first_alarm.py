@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import nan
 
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tests.campaigns.faults.moments import Twins
 from tests.campaigns.faults.recipes import language_of, setting_of
 from tests.campaigns.faults.stage import Stage

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TypeVar
 
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tests.campaigns.faults.apart import FORKS, Post, apart
 from tests.campaigns.faults.recipes import TRACKS, setting_of
 from tests.campaigns.faults.stage import STANDING, Place, Stage

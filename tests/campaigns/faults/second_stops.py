@@ -5,7 +5,7 @@ from __future__ import annotations
 from sim.faults import Injection
 from sim.faults.language import FaultTime
 from sim.machines.wheel_on_belt.faults import CATALOGUE
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tests.campaigns.faults.campaign import Tally
 from tests.campaigns.faults.judge import Case, Judge, Verdict
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit

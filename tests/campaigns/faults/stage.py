@@ -18,12 +18,12 @@ from tester.analysis.results import Burst, RepeatResult, RepeatStatus
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
-from tester.kinds.wheel_on_belt.run.heatings import KIND as HEATING
+from tester.kinds.wheel_on_belt.run.past_runs import KIND as HEATING
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import next_tick

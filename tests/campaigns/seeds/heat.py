@@ -14,11 +14,11 @@ from typing import Final
 import recipes as shipped
 from tester.inputs.recipe.loader import load_recipe
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.run.build import build_run
-from tester.kinds.wheel_on_belt.run.heatings import KIND, known_from, ratios_of
+from tester.kinds.wheel_on_belt.run.past_runs import KIND, known_from, ratios_of
 from tester.machine.prompts import Prompts
 from tester.machine.tickers import run_simulated
 from tester.run.simulated import simulated_ports

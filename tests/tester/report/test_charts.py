@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sim.physics.materials import Components
-from tester.kinds.wheel_on_belt.fit.setpoints import law_at, law_caveats, published_values
+from tester.kinds.wheel_on_belt.fit.data import law_at, law_caveats, published_values
 from tester.report.chart import Chart, ChartSurface, Figure, Series
 from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
 from tester.report.law_charts import components_chart

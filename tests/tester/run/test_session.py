@@ -21,7 +21,7 @@ from tester.cli.ending import ending_lines
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.run.heatings import heating_data
+from tester.kinds.wheel_on_belt.run.past_runs import heating_data
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports

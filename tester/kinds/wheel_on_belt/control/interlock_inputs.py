@@ -11,10 +11,8 @@ from tester.inputs.rig.parameter import Values
 from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings
-from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
-from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver
-from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, ForceObserver
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance, KnownRatio
 from tester.kinds.wheel_on_belt.interlocks.hub import (
     HEAT_LEAK_W,
     HEAT_SHARE,
@@ -26,11 +24,10 @@ from tester.kinds.wheel_on_belt.interlocks.hub import (
     RATE_SETTLE_S,
     RATE_WINDOW_S,
 )
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, PressBand, RigLimits
-from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
+from tester.kinds.wheel_on_belt.interlocks.inputs import STANDING_M_S, Inputs, PressBand, RigLimits
 from tester.kinds.wheel_on_belt.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
 from tester.kinds.wheel_on_belt.interlocks.motion import RAMP_SHARE
-from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S
+from tester.kinds.wheel_on_belt.interlocks.surface import BLIND_S
 from tester.kinds.wheel_on_belt.interlocks.witness import (
     FORCE_STEP_CROSS_SHARE,
     FORCE_STEP_SEEN_SHARE,

@@ -13,7 +13,7 @@ from math import exp, inf, isfinite, nan, pi, sqrt
 from typing import Final
 
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
-from tester.kinds.wheel_on_belt.interlocks.contact import STIFFNESS_EXPONENT, UNLOADED_N, Contact
+from tester.kinds.wheel_on_belt.interlocks.contact_force import STIFFNESS_EXPONENT, UNLOADED_N, Contact
 from tester.kinds.wheel_on_belt.interlocks.inputs import StopStart
 from tester.kinds.wheel_on_belt.rig import HeatLoopConfig, LoadLoopConfig
 from tester.machine.state import ControlState

@@ -15,7 +15,7 @@ from tester.inputs.rig.parameter import Values
 from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Readings
 from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
-from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
+from tester.kinds.wheel_on_belt.interlocks.inputs import STANDING_M_S
 from tester.kinds.wheel_on_belt.interlocks.load import STALE_CELL_S
 from tester.kinds.wheel_on_belt.interlocks.operation import MAX_SLIP_M_S, TURNING_CONFIRMED_S
 from tester.kinds.wheel_on_belt.interlocks.surface import STALE_IR_S

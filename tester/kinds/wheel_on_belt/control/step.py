@@ -20,7 +20,7 @@ from tester.kinds.wheel_on_belt.control.stop_modes import (
     stop_outputs,
 )
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings
-from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
+from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import RUNAWAY_WINDOW_S
 from tester.kinds.wheel_on_belt.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
 from tester.kinds.wheel_on_belt.rig import RigConfig

@@ -8,9 +8,9 @@ from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s
 from tester.kinds.wheel_on_belt.image.process_image import Setpoints
-from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
+from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
-from tester.kinds.wheel_on_belt.interlocks.known import contactor_open, standing, unloaded
+from tester.kinds.wheel_on_belt.interlocks.inputs import contactor_open, standing, unloaded
 from tester.kinds.wheel_on_belt.interlocks.operation import COOLDOWN_AT_MOST_S, COOLDOWN_HUB_C, COOLDOWN_SPEED_M_S
 from tester.kinds.wheel_on_belt.interlocks.stops import HEAT_OFF_S, LIFTED_MM, PRESS_LAG_S, SLIP_OUT_S, STOP_TIMEOUT_S
 from tester.kinds.wheel_on_belt.rig import RigConfig

@@ -39,7 +39,7 @@ class WheelFits:
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
         """Return the readable rows of the appendices."""
-        from tester.kinds.wheel_on_belt.fit.setpoints import published_values
+        from tester.kinds.wheel_on_belt.fit.data import published_values
 
         return published_values()
 
@@ -47,13 +47,13 @@ class WheelFits:
 
     def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
         """Return where a setpoint is outside the paper's data."""
-        from tester.kinds.wheel_on_belt.fit.setpoints import law_caveats
+        from tester.kinds.wheel_on_belt.fit.data import law_caveats
 
         return law_caveats(setpoint)
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
         """Return a law of the paper's compounds; raises KeyError."""
-        from tester.kinds.wheel_on_belt.fit.setpoints import law_at
+        from tester.kinds.wheel_on_belt.fit.data import law_at
 
         return law_at(name)
 

@@ -14,11 +14,25 @@ from drivers.joined_cell import JoinedCell, LoadCell, links_of
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import TemperatureController
-from tester.kinds.wheel_on_belt.image.cell_skew import CellSkew
 from tester.kinds.wheel_on_belt.image.process_image import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch
 from tester.machine.devices import DeviceList
 from tester.machine.rig_drivers import RigDrivers
+from tester.store.recorder import Recorder
+
+
+@dataclass(frozen=True, slots=True)
+class CellSkew:
+    """Stored with the counters of the buses when a run, or a part of one, ends."""
+
+    cell: JoinedCell
+
+    def store(self, recorder: Recorder, now_s: float) -> None:
+        """Store the greatest skew of a whole reading (ms), and how often parts lay too far apart for one."""
+        cell = self.cell
+        recorder.bus_statistic(now_s, "load cell", "", "greatest skew ms", 1e3 * cell.greatest_skew_s)
+        recorder.bus_statistic(now_s, "load cell", "", "parts too far apart", cell.apart)
+
 
 CELL_CHANNELS: Final = ("fx", "fy", "fz", "mz")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame."""

@@ -7,7 +7,7 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
+from tester.kinds.wheel_on_belt.interlocks.surface import BLIND_S, JUMP_K, STALE_DELAY_S
 from tester.machine.row import ACK, CONTROLLED, REPAIR, Interlock, always
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
-from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N, depth_mm
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.kinds.wheel_on_belt.interlocks.known import SPEEDS_OLD_S
+from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, depth_mm
+from tester.kinds.wheel_on_belt.interlocks.inputs import SPEEDS_OLD_S, Inputs, Row
 from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
-from tester.kinds.wheel_on_belt.interlocks.contact import UNLOADED_N
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.kinds.wheel_on_belt.interlocks.known import STANDING_M_S
+from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
+from tester.kinds.wheel_on_belt.interlocks.inputs import STANDING_M_S, Inputs, Row
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
 from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
 from tester.machine.watches import at_least, at_most, condition, within

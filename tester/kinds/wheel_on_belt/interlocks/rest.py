@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, STANDING_M_S, standing, unloaded
+from tester.kinds.wheel_on_belt.interlocks.inputs import (
+    CLEAR_MM,
+    SPEEDS_OLD_S,
+    STANDING_M_S,
+    Inputs,
+    Row,
+    standing,
+    unloaded,
+)
 from tester.kinds.wheel_on_belt.interlocks.motion import DROPPED_DELAY_S
 from tester.kinds.wheel_on_belt.interlocks.stops import PUSHED_MM
 from tester.machine.row import ENDING, POWER_OFF, REFUSE, REPAIR, Interlock

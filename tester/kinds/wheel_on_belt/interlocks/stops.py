@@ -5,8 +5,15 @@ from __future__ import annotations
 from typing import Final
 
 from tester.inputs.rig.parameter import POSITIVE, Parameter
-from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.kinds.wheel_on_belt.interlocks.known import CLEAR_MM, SPEEDS_OLD_S, contactor_open, standing, unloaded
+from tester.kinds.wheel_on_belt.interlocks.inputs import (
+    CLEAR_MM,
+    SPEEDS_OLD_S,
+    Inputs,
+    Row,
+    contactor_open,
+    standing,
+    unloaded,
+)
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
 from tester.machine.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
 from tester.machine.watches import at_most, condition

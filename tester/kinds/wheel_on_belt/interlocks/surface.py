@@ -1,18 +1,31 @@
-"""The rubber's surface and its thermometer."""
+"""The rubber's surface, its thermometer, and how worn the wheel is."""
 
 from __future__ import annotations
 
 from math import inf
 from typing import Final
 
-from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
+from tester.inputs.rig.parameter import NOT_NEGATIVE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.kinds.wheel_on_belt.interlocks.temperatures import BLIND_S, JUMP_K, STALE_DELAY_S
 from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock
-from tester.machine.watches import at_most, condition
+from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
 _INF: Final = inf
+
+JUMP_K: Final = Parameter(
+    "jump_k", "K", "5 K", "from one reading to the next, surface or hub",
+    hardest="10 K",
+    because="full output moves the hub by 0.1 K from reading to reading: more than 10 K is no temperature",
+)  # fmt: skip
+BLIND_S: Final = Parameter(
+    "blind_s", "s", "1 s", "after a change of wheel readings are not compared for this long [A]",
+    hardest="5 s", because="25 readings: what was on its way has long come",
+)  # fmt: skip
+STALE_DELAY_S: Final = Parameter(
+    "stale_delay_s", "s", "200 ms", "for both [A]", NOT_NEGATIVE,
+    hardest="1 s", because="with an age of 1 s ten readings are missing by then",
+)  # fmt: skip
 
 SURFACE_DELAY_S: Final = Parameter(
     "surface_delay_s", "s", "500 ms", "rubber above limits.surface [A]", NOT_NEGATIVE,
@@ -154,6 +167,20 @@ SURFACE_NOT_VALID: Final[Row] = Interlock(
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
     reset=ACK,
+)
+
+LEAST_DIAMETER_MM: Final = Parameter(
+    "least_diameter_mm", "mm", "78 mm", "a wheel worn below this: 2 mm of rubber are left [A]",
+    direction=Direction.HIGHER, hardest="76 mm",
+    because="the rubber is 8 mm on a hub of 74 mm: 1 mm is left, the depth of a contact of 100 N",
+)  # fmt: skip
+
+WHEEL_WORN: Final[Row] = Interlock(
+    name="wheel worn",
+    cause="wheel diameter below its least",
+    watch=at_least("cold diameter < {}", lambda v: v.readings.cold_mm, LEAST_DIAMETER_MM),
+    reaction=CONTROLLED,
+    reset="new wheel, acknowledged",
 )
 
 ROWS: Final[tuple[Row, ...]] = (

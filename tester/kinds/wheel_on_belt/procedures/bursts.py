@@ -21,9 +21,8 @@ from tester.base.quantities import Quantities
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.procedures.burst_state import BurstNotes, Phase
+from tester.kinds.wheel_on_belt.procedures.burst_state import BurstNotes, Phase, RunIn
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
-from tester.kinds.wheel_on_belt.procedures.run_in import RunIn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.machine.measured import Ending

@@ -6,10 +6,9 @@ from math import isfinite
 
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.axes import held_by
+from tester.kinds.wheel_on_belt.procedures.burst_state import run_in_m, slides_reversed
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
-from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
-from tester.kinds.wheel_on_belt.procedures.run_in import run_in_m, slides_reversed
-from tester.kinds.wheel_on_belt.procedures.soak_check import soak_check
+from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults, soak_check
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import SoakTo, roll, soak_within_k
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByRolling
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due

@@ -1,8 +1,19 @@
-"""Records the wheel's state after a repeat, and predicts the wear of a condition."""
+"""What a condition puts on record beside its samples: the wheel's state after a repeat, the check after a soak.
+
+Rolling without slip, the surface is colder than the hub by what the air takes. The thermal observer works that out
+from the hub's sensor alone (``control.observer``), so that the check compares thermometer and hub. They may differ by
+the sum of three beliefs: the thermometer's bias as in the budget, that of the hub's sensor, and a share of the drop
+from hub to surface by which the observer may be off.
+"""
 
 from __future__ import annotations
 
+from math import isfinite
+from typing import Final
+
+from tester.analysis.results import SoakCheck
 from tester.inputs.recipe.plan import ConditionStep
+from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.recipe.estimate import predicted_loss_mm
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
@@ -44,3 +55,28 @@ class WheelResults(StoredResults[Context]):
     def predicted_loss_mm(self, step: WheelCondition, rig: RigConfig) -> float:
         """Return the loss of diameter that a condition is expected to cost, mm."""
         return predicted_loss_mm(step, rig)
+
+
+THERMOMETER_K: Final = next(one.bound for one in TERMS if one.name == "thermometer")
+"""Bias of the thermometer, K, at most."""
+HUB_K: Final = 0.5
+"""Error of the hub's sensor, K, at most [A]: Pt100 class B at 60 degC is 0.6 K, and the line through the slip ring is
+watched by itself."""
+MODEL_SHARE: Final = 0.15
+"""Tolerance of the observer's drop from hub to surface, a share [A]: a fifth more film of air makes 12 %."""
+
+
+def allowed_k(hub_c: float, model_c: float) -> float:
+    """Return by how much thermometer and model may differ, K, at a hub and a modelled surface of these degC."""
+    return THERMOMETER_K + HUB_K + MODEL_SHARE * abs(hub_c - model_c)
+
+
+def soak_check(ctx: Context, condition: int) -> SoakCheck | None:
+    """Return thermometer and model at the end of a condition's soak; None where one of them is not known."""
+    r, observer = ctx.readings, ctx.observer
+    if observer is None or not r.jacket_valid or not isfinite(observer.surface_c):
+        return None
+    surface_c, model_c = ctx.gates.surface.slow_c, observer.surface_c
+    if not isfinite(surface_c):
+        return None
+    return SoakCheck(condition, ctx.now, surface_c, model_c, r.hub_c, allowed_k(r.hub_c, model_c))

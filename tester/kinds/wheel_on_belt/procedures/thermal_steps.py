@@ -9,7 +9,7 @@ from tester.inputs.recipe.plan import Soak
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, Turn, Yaw, near, straight
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Rest
-from tester.kinds.wheel_on_belt.run.heatings import KIND, LEAST_J, LEAST_RISE_K, heating_data
+from tester.kinds.wheel_on_belt.run.past_runs import KIND, LEAST_J, LEAST_RISE_K, heating_data
 from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Power, Sequence
 
@@ -120,7 +120,7 @@ class HeatUp:
         """Record what this heating says of ``observer.thermal``: heat put in over heat shown, where there was enough.
 
         After a hold, or with a person at the wheel, it is not comparable and not reported. With its data it is evidence
-        for runs to come (tester.kinds.wheel_on_belt.run.heatings).
+        for runs to come (tester.kinds.wheel_on_belt.run.past_runs).
         """
         start, end = self.start, _heat(ctx)
         if start is None or end is None or start.begun != end.begun:

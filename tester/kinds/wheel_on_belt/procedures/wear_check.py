@@ -18,7 +18,7 @@ from tester.analysis.wear_rate import NO_CONDITION, WearCheck
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N, ROLL_CHECK_TURNS, roll_check_u_mm
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import NAN
-from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten

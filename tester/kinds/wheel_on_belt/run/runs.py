@@ -10,13 +10,13 @@ from typing import ClassVar, Final
 from tester.inputs.recipe.plan import ConditionStep, Plan, Step
 from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.context import Attendant
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tester.kinds.wheel_on_belt.procedures.on_record import record_state
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Install, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
-from tester.kinds.wheel_on_belt.run.heatings import known_heat
+from tester.kinds.wheel_on_belt.run.past_runs import known_heat
 from tester.kinds.wheel_on_belt.served.left_on_rig import HeatHistory
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports

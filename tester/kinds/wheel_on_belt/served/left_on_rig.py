@@ -9,7 +9,7 @@ from typing import Final
 
 from tester.base.screen import Check
 from tester.inputs.rig import Rig
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.store.records import PieceInfo
 from tester.store.run_reader import RunReader

@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.control.loops import UNLOADED_N as STANDING_LOAD
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, straight
 from tester.kinds.wheel_on_belt.image.process_image import Press
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
 from tester.kinds.wheel_on_belt.procedures.motions import TakeTare
 from tester.kinds.wheel_on_belt.recipe.limits import least_load_n
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan

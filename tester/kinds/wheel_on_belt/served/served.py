@@ -12,7 +12,7 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tester.kinds.wheel_on_belt.procedures.steps import title
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.served import manual

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from tester.kinds.wheel_on_belt.image.process_image import Press
-from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, TABLE
 from tester.machine.row import Reaction
 from tester.machine.state import Mode

@@ -8,7 +8,7 @@ import pytest
 
 from tester.kinds.wheel_on_belt.control.loops import HeatLoop, LoadLoop
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings
-from tester.kinds.wheel_on_belt.interlocks.contact import STIFFNESS_EXPONENT, depth_mm
+from tester.kinds.wheel_on_belt.interlocks.contact_force import STIFFNESS_EXPONENT, depth_mm
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 GAP_MM = 10.0

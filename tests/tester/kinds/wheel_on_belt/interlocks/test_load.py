@@ -7,7 +7,7 @@ import pytest
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.control.loops import LoadLoop
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings
-from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.interlocks.load import TOUCH_MARGIN_MM
 
 HARM_N = 500.0

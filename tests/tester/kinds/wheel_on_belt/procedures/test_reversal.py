@@ -8,8 +8,8 @@ import pytest
 
 from tester.analysis.blocks import blocks_from_samples
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.procedures.burst_state import run_in_m, slides_reversed
 from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
-from tester.kinds.wheel_on_belt.procedures.run_in import run_in_m, slides_reversed
 from tester.machine.measured import Ending
 from tests.tester.kinds.wheel_on_belt.bench import COLUMN, SHORT, Bench, condition_of, make_bench
 

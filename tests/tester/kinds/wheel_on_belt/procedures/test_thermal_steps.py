@@ -20,7 +20,7 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import (
     soak_within_k,
 )
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Rest
-from tester.kinds.wheel_on_belt.run.heatings import ratios_of
+from tester.kinds.wheel_on_belt.run.past_runs import ratios_of
 from tester.machine.motions import Power, Sequence
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, make_bench
 

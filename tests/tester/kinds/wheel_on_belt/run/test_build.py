@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
 from tester.kinds.wheel_on_belt.run.build import build_run, loss_ratios
 from tester.machine.prompts import Prompts
 from tester.machine.state import Mode

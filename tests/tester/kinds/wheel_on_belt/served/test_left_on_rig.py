@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY, KnownRatio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft, age_words, heat_check, wheel_check, zero_check
 from tester.kinds.wheel_on_belt.served.manual import taken_for
 from tester.store.records import PieceInfo

@@ -6,7 +6,7 @@ import pytest
 
 from tester.analysis.results import SoakCheck
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
-from tester.kinds.wheel_on_belt.procedures.soak_check import HUB_K, MODEL_SHARE, THERMOMETER_K, allowed_k, soak_check
+from tester.kinds.wheel_on_belt.procedures.on_record import HUB_K, MODEL_SHARE, THERMOMETER_K, allowed_k, soak_check
 from tests.tester.kinds.wheel_on_belt.bench import Bench, make_bench
 
 

@@ -10,9 +10,9 @@ import pytest
 
 from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import NO_HISTORY
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.run.heatings import KIND, beliefs_of, heating_data, known_heat, ratios_of
+from tester.kinds.wheel_on_belt.run.past_runs import KIND, beliefs_of, heating_data, known_heat, ratios_of
 from tests.tester.store.build import RUN, SPECIMENS, open_writer
 
 

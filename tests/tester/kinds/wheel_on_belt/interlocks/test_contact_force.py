@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import pytest
 
 from tester.kinds.wheel_on_belt.image.process_image import Readings
-from tester.kinds.wheel_on_belt.interlocks.contact import depth_mm
-from tester.kinds.wheel_on_belt.interlocks.force_observer import ForceObserver, force_n
+from tester.kinds.wheel_on_belt.interlocks.contact_force import ForceObserver, depth_mm, force_n
 from tester.kinds.wheel_on_belt.interlocks.witness import (
     FORCE_STEP_CROSS_SHARE,
     FORCE_STEP_DELAY_S,

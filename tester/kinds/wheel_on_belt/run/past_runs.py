@@ -1,7 +1,7 @@
-"""Heatings as evidence: what a run's record keeps of them, and what later runs on the rig read there.
+"""What later runs and pages read in the records of past runs: heatings as evidence, and requests over the slip ring.
 
-They are events of the kind ``heat`` whose data is JSON: the rig, the assumptions behind its ratio, and the numbers. A
-rig file with other assumptions counts as another rig for its heat, and starts without evidence.
+Heatings are events of the kind ``heat`` whose data is JSON: the rig, the assumptions behind its ratio, and the numbers.
+A rig file with other assumptions counts as another rig for its heat, and starts without evidence.
 """
 
 from __future__ import annotations
@@ -15,9 +15,13 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final, cast
 
+from tester.analysis.ring_errors import RingSegment
+from tester.analysis.ring_runs import RingRun
+from tester.kinds.wheel_on_belt.image.ring_watch import BUS
 from tester.kinds.wheel_on_belt.interlocks import hub, surface
-from tester.kinds.wheel_on_belt.interlocks.heat_ratio import KnownRatio, known_ratio
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio, known_ratio
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.results.ring_part import RingPart
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import run_folders, under_way
 from tester.store.run_reader import RunReader
@@ -76,3 +80,31 @@ def ratios_of(data: Iterable[str], rig: RigConfig) -> list[float]:
             if (read["rig"], read["beliefs"]) == identity and shown_j >= LEAST_J and rise_k >= LEAST_RISE_K:
                 ratios.append(put_j / shown_j)
     return ratios
+
+
+def ring_of(reader: RunReader, name: str) -> RingRun:
+    """Return a run's record of its ring. Raises StoreError if it is unreadable."""
+    found = RingRun(name, reader.run().info.started_utc)
+    for counter, value in reader.bus_statistics(BUS):
+        if counter == "wheel":
+            found.segments.append(RingSegment())
+            continue
+        segment = found.segments[-1]
+        what, _, place = counter.partition(" ")
+        if counter == "turns":
+            segment.turns = value
+        elif counter == "error at":
+            segment.at_rev.append(value)
+        elif what == "requests":
+            segment.requests[int(place)] = round(value)
+        elif what == "errors":
+            segment.errors[int(place)] = round(value)
+    return found
+
+
+RING: Final = RingPart(
+    "Slip ring",
+    "requests to the jacket over the wheel's slip ring",
+    "the wheel",
+    ring_of,
+)
