@@ -210,12 +210,12 @@ def compare(rig_name: str, other: str, out: str, as_json: bool) -> int:
 def _dump(rig_name: str) -> ParameterDump:
     from tester.doctor.device_parameters import dumped
     from tester.doctor.examination import Examination
-    from tester.doctor.system import ThisComputer
+    from tester.doctor.system import Computer
     from tester.kinds import load_rig
 
     rig = load_rig(rig_name, (), "what devices are set to, not a run")
     with rig_alone(rig, "tester bus params") as wires:
-        found = dumped(Examination(rig, ThisComputer(), wires, everybody=False))
+        found = dumped(Examination(rig, Computer(), wires, everybody=False))
     if not found.devices:
         raise RigBusyError(f"no device of {rig.name} answers: `tester doctor --rig {rig_name}` says why")
     return found

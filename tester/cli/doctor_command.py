@@ -1,4 +1,4 @@
-"""`tester doctor`: a look at a rig that moves nothing."""
+"""`tester doctor`: examine a rig without moving anything."""
 
 from __future__ import annotations
 
@@ -36,43 +36,39 @@ def doctor(
     bundle: str | None,
     as_json: bool,
 ) -> int:
-    """Look at a rig and say what is wrong and what to do; exit code 1 where there is a fault.
+    """Look at a rig and report what is wrong and what to do; exit code 1 if there is a fault.
 
-    It moves nothing, enables no drive and writes nothing to a device: objects and registers are read, the CAN bus is
-    listened to. While a run or the service uses the rig it is refused.
+    It moves nothing, enables no drive and writes nothing to a device: it reads objects and registers, and listens to
+    the CAN bus. It is refused while a run or the service uses the rig.
     """
     from tester.cli.device_commands import rig_alone
     from tester.doctor.examination import Examination
-    from tester.doctor.finding import Severity, worst
+    from tester.doctor.finding import Severity
     from tester.doctor.probe_table import examined, written_bundle
-    from tester.doctor.system import ThisComputer
+    from tester.doctor.system import Computer
     from tester.kinds import load_rig, packaged_keys
 
     rig = load_rig(rig_name, overrides, "a look at the rig, not a run")
-    found: list[TableEntry] = []
+    entries: list[TableEntry] = []
     with rig_alone(rig, "tester doctor", seed) as wires:
         examination = Examination(
-            rig, ThisComputer(), wires, Path(out), seconds, packaged_keys(rig_name, overrides), everybody=not quick,
+            rig, Computer(), wires, Path(out), seconds, packaged_keys(rig_name, overrides), everybody=not quick,
             say=lambda text: click.echo(f"... {text}", err=True),
         )  # fmt: skip
         for entry in examined(examination):
-            found.append(entry)
+            entries.append(entry)
             if not as_json:
-                _show(entry)
+                click.echo(str(entry.finding))
+                if entry.finding.todo:
+                    click.echo(f"        {entry.finding.todo}")
         if bundle is not None:
-            written_bundle(Path(bundle), examination, found)
-    findings = [entry.finding for entry in found]
+            written_bundle(Path(bundle), examination, entries)
+    severities = [entry.finding.severity for entry in entries]
     if as_json:
-        print_json({"rig": rig.name, "findings": [{"heading": one.heading, **one.finding.as_data} for one in found]})
+        print_json({"rig": rig.name, "findings": [entry.as_data for entry in entries]})
     else:
-        counts = {severity: sum(one.severity is severity for one in findings) for severity in reversed(Severity)}
-        click.echo(", ".join(f"{count} {severity.word}" for severity, count in counts.items()), err=True)
+        counts = [f"{severities.count(severity)} {severity.word}" for severity in reversed(Severity)]
+        click.echo(", ".join(counts), err=True)
     if bundle is not None:
         click.echo(bundle, err=True)
-    return EXIT_FAILED if worst(findings) is Severity.FAULT else EXIT_DONE
-
-
-def _show(entry: TableEntry) -> None:
-    click.echo(str(entry.finding))
-    if entry.finding.todo:
-        click.echo(f"        {entry.finding.todo}")
+    return EXIT_FAILED if Severity.FAULT in severities else EXIT_DONE

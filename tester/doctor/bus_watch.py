@@ -33,7 +33,7 @@ class UnitWatch:
     oldest_s: float = 0.0
     """The greatest age that a reading had when the next came, s."""
     values: list[bytes] = field(default_factory=list[bytes])
-    """Registers of the first block, the last some."""
+    """Registers of the first block, of the last readings."""
     last_s: float = -inf
 
     @property
@@ -165,10 +165,7 @@ def _open(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], result: RigWatch
             continue
         for key, unit in there.items():
             result.units[key] = UnitWatch()
-            block = unit.profile.blocks[0]
-            line.add(
-                key, RegisterQuestion(unit.config.unit_id, block.function, block.address, block.count), block.period_s
-            )
+            line.add(key, unit.question(), unit.profile.blocks[0].period_s)
         opened.append(line)
     return opened
 

@@ -25,6 +25,7 @@ BEAT_OFF = 0.2
 MISSED = 3
 BUS = "CAN bus"
 WIRING = "drives' supply, the plug, CAN high and low, 120 ohm terminators at both ends, can.bitrate"
+NODE_WIRING = "its supply, its plug, its node number, its bit rate"
 
 
 def bus(e: Examination) -> Iterator[Finding]:
@@ -68,10 +69,8 @@ def load(e: Examination) -> Iterator[Finding]:
     per_scan = frame_bits(0) + sum(frame_bits(6) + frame_bits(8) for _ in e.rig.drives())
     run = now + per_scan * e.rig.scan.sliding_hz / e.rig.can.bitrate
     text = f"load {100 * now:.1f} % now, up to {100 * run:.0f} % while a run is sliding"
-    if run > LOAD_MOST:
-        yield warning(BUS, text, "a higher bit rate, a lower scan.sliding, or nodes taken off the bus")
-    else:
-        yield ok(BUS, text)
+    remedy = "a higher bit rate, a lower scan.sliding, or nodes taken off the bus"
+    yield warning(BUS, text, remedy) if run > LOAD_MOST else ok(BUS, text)
 
 
 def axes(e: Examination) -> Iterator[Finding]:
@@ -85,16 +84,19 @@ def axes(e: Examination) -> Iterator[Finding]:
             yield _not_there(e, name, config)
             continue
         yield from _identity(e, name, config, serials)
-        yield from _twice(e, name, config)
+        if config.node_id in e.can.surplus:
+            times = e.can.surplus[config.node_id]
+            yield fault(
+                name, f"node {config.node_id} answered {times} question more than once: two nodes have one node number",
+                "unplug one drive after the other and see which still answers; give one drive another number",
+            )  # fmt: skip
         yield from _drive_state(e, name, config)
         yield from _objects(e, name, config)
 
 
 def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
-    known = {other.node_id for other in e.rig.drives().values()} | {n.node_id for n in e.rig.can.nodes.values()}
-    for node in e.can.present:
-        if node in known:
-            continue
+    known = {other.node_id for other in (*e.rig.drives().values(), *e.rig.can.nodes.values())}
+    for node in sorted({*e.can.present} - known):
         serial = e.can.number(node, (o.IDENTITY, 4))
         same = serial == config.serial_number if config.serial_number else _same_type(e, node, config)
         if same:
@@ -108,9 +110,7 @@ def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
             name, f"node {config.node_id} sends heartbeats ({state_name(state)}) and answers no SDO request",
             "switch the drive off and on",
         )  # fmt: skip
-    return fault(
-        name, f"nothing answers at node {config.node_id}", "its supply, its plug, its node number, its bit rate"
-    )
+    return fault(name, f"nothing answers at node {config.node_id}", NODE_WIRING)
 
 
 def _same_type(e: Examination, node: int, config: AxisConfig) -> bool:
@@ -154,15 +154,6 @@ def _identity(e: Examination, name: str, config: AxisConfig, serials: Mapping[in
         yield ok(name, f"{seen}, serial number {serial}")
 
 
-def _twice(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
-    times = e.can.surplus.get(config.node_id, 0)
-    if times:
-        yield fault(
-            name, f"node {config.node_id} answered {times} question more than once: two nodes have one node number",
-            "unplug one drive after the other and see which still answers; give one drive another number",
-        )  # fmt: skip
-
-
 def _drive_state(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
     can, node = e.can, config.node_id
     statusword = can.number(node, (o.STATUSWORD, 0))
@@ -177,20 +168,16 @@ def _drive_state(e: Examination, name: str, config: AxisConfig) -> Iterator[Find
     if inputs is not None:
         io, shown = config.io, config.io.from_drive(inputs)
         word = f"0x60FD = 0x{inputs & 0xFFFFFFFF:08X}"
-        yield from _input(
-            name, shown & INPUT_SAFETY_CHAIN != 0, "safety chain", "healthy", "open", io.safety_chain, word
-        )
-        yield from _input(name, shown & INPUT_GUARD != 0, "guard", "closed", "open", io.guard, word)
-
-
-def _input(name: str, good: bool, what: str, yes: str, no: str, bit: int, word: str) -> Iterator[Finding]:
-    if good:
-        yield ok(name, f"{what} {yes} (bit {bit}, {word}): look whether it is")
-    else:
-        yield warning(
-            name, f"{what} {no} (bit {bit} = 0, {word})",
-            f"if the {what} is {yes} as you read this, the input's polarity or its wire is wrong: 1 is {yes}",
-        )  # fmt: skip
+        for mask, what, closed, bit in (
+            (INPUT_SAFETY_CHAIN, "safety chain", "healthy", io.safety_chain), (INPUT_GUARD, "guard", "closed", io.guard)
+        ):  # fmt: skip
+            if shown & mask:
+                yield ok(name, f"{what} {closed} (bit {bit}, {word}): look whether it is")
+                continue
+            yield warning(
+                name, f"{what} open (bit {bit} = 0, {word})",
+                f"if the {what} is {closed} as you read this, the input's polarity or its wire is wrong: 1 is {closed}",
+            )  # fmt: skip
 
 
 def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
@@ -221,15 +208,15 @@ def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]
 def heartbeats(e: Examination) -> Iterator[Finding]:
     """Compare every node's heartbeat with its object 0x1017."""
     seconds = e.watch.can.seconds
-    periods = {name: (config.node_id, config.heartbeat_s) for name, config in e.rig.drives().items()}
-    for name, (node, expected_s) in periods.items():
-        asked_ms = e.can.number(node, (o.PRODUCER_HEARTBEAT, 0))
+    for name, config in e.rig.drives().items():
+        asked_ms = e.can.number(config.node_id, (o.PRODUCER_HEARTBEAT, 0))
         if asked_ms is None:
             continue
         if asked_ms == 0:
-            yield note(name, f"sends no heartbeat yet (0x1017 = 0); every connect writes {1e3 * expected_s:g} ms")
+            written_ms = 1e3 * config.heartbeat_s
+            yield note(name, f"sends no heartbeat yet (0x1017 = 0); every connect writes {written_ms:g} ms")
             continue
-        beats, period_s = e.watch.can.beats.get(node, []), asked_ms / 1000.0
+        beats, period_s = e.watch.can.beats.get(config.node_id, []), asked_ms / 1000.0
         if len(beats) < 2 and seconds > MISSED * period_s:
             yield fault(
                 name, f"no heartbeat arrives, though 0x1017 asks for one every {asked_ms} ms",
@@ -255,12 +242,10 @@ def strangers(e: Examination) -> Iterator[Finding]:
     further = {config.node_id: name for name, config in e.rig.can.nodes.items()}
     for node, name in further.items():
         if not e.can.lost and node not in e.can.present:
-            yield fault(name, f"nothing answers at node {node}", "its supply, its plug, its node number, its bit rate")
+            yield fault(name, f"nothing answers at node {node}", NODE_WIRING)
         elif node in e.can.present:
             yield ok(name, f"node {node}: {e.can.text(node, (o.DEVICE_NAME, 0)) or 'no name'}")
-    for node in e.can.present:
-        if node in known or node in further:
-            continue
+    for node in sorted({*e.can.present} - known - {*further}):
         name = e.can.text(node, (o.DEVICE_NAME, 0)) or "no name"
         serial = e.can.number(node, (o.IDENTITY, 4))
         yield warning(

@@ -6,13 +6,14 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.canopen.scan import ANSWER_S, PATIENCE_S, Key, ObjectAnswer, SdoScan
 from drivers.ports import BusLost, CanFrame, CanPort
 from tester.doctor.open_wires import Wires
-from tester.doctor.wanted import objects_of
 from tester.inputs.rig import Rig
-from tester.run.kept import IDENTITY
+from tester.run.kept import IDENTITY, KEPT
+from tester.run.set_up import mapped, written
 
 LISTEN_S = 1.0
 """Time of listening only, s: twenty heartbeats of 50 ms."""
@@ -22,6 +23,15 @@ MOST_S = 30.0
 """Longest scan of a bus, s: 126 silent nodes, four at a time, take 3.2 s."""
 PRESENCE: Key = (o.DEVICE_TYPE, 0)
 """The object that every CANopen node has."""
+STATE: tuple[Key, ...] = (
+    (o.ERROR_REGISTER, 0),
+    (o.STATUSWORD, 0),
+    (o.ERROR_CODE, 0),
+    (o.DIGITAL_INPUTS, 0),
+    (o.POSITION_ACTUAL, 0),
+    (o.VELOCITY_ACTUAL, 0),
+)
+"""Present state of a drive."""
 
 _FUNCTION, _NODE = 0x780, 0x07F
 _OF_A_MASTER = {o.NMT_ID: "NMT", o.SYNC_ID: "SYNC"}
@@ -106,14 +116,14 @@ def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
         port = wires.can(rig.can.bitrate)
         survey.heard = listen(port, wires, LISTEN_S, rig.can.node)
         others = [node for node in range(1, 128) if node != rig.can.node]
-        scan = _scanned(port, wires, {node: [PRESENCE] for node in others})
+        scan = scanned(port, wires, {node: [PRESENCE] for node in others})
         configs = {config.node_id: config for config in rig.drives().values()}
         awaited = [*configs, *(node.node_id for node in rig.can.nodes.values())]
         missing = [node for node in awaited if node not in scan.answers]
-        late = _scanned(port, wires, {node: [PRESENCE] for node in missing}, PATIENCE_S)
+        late = scanned(port, wires, {node: [PRESENCE] for node in missing}, PATIENCE_S)
         survey.present, survey.surplus = tuple(sorted({*scan.answers, *late.answers})), scan.surplus
         wanted = {node: objects_of(configs[node]) if node in configs else list(IDENTITY) for node in survey.present}
-        survey.objects = _scanned(port, wires, wanted, PATIENCE_S).answers
+        survey.objects = scanned(port, wires, wanted, PATIENCE_S).answers
     except BusLost as lost:
         survey.lost = str(lost)
     if not survey.present and not survey.heard.frames:
@@ -134,7 +144,13 @@ def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Heard:
     return frames
 
 
-def _scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> SdoScan:
+def objects_of(config: AxisConfig) -> list[Key]:
+    """Return every object to read from an axis' drive, each once: its identity and everything that a set-up writes."""
+    return list(dict.fromkeys((*IDENTITY, *STATE, *KEPT, *written(config), *mapped(config))))
+
+
+def scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> SdoScan:
+    """Return the scan of some objects, by node, once it is done; raises BusLost."""
     scan, until_s = SdoScan(wanted, timeout_s), wires.now() + MOST_S
     while not scan.done and wires.now() < until_s:
         scan.feed(port.receive(wires.now()), port, wires.now())
@@ -152,7 +168,7 @@ def _other_bitrate(rig: Rig, wires: Wires) -> int:
             continue
         try:
             port = wires.can(bitrate)
-            if _scanned(port, wires, {node: [PRESENCE] for node in nodes}).answers:
+            if scanned(port, wires, {node: [PRESENCE] for node in nodes}).answers:
                 return bitrate
         except BusLost:
             continue

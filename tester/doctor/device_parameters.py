@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import cast
+
+from pydantic import TypeAdapter
 
 from tester.base import clock
 from tester.doctor.examination import Examination
@@ -16,7 +17,7 @@ from tester.run.set_up import DeviceParameter, Parameters, mapped, stored, writt
 from tester.store.run_reader import RunReader
 
 FORMAT = 1
-"""Version of the file; another one is refused."""
+"""Version of the file; any other is refused."""
 
 
 class DumpError(ValueError):
@@ -36,15 +37,7 @@ class ParameterDump:
     @property
     def text(self) -> str:
         """The dump as a file."""
-        devices = {
-            device: {
-                key: {"value": one.value, "name": one.name, "written": one.written} for key, one in parameters.items()
-            }
-            for device, parameters in self.devices.items()
-        }
-        data = {"format": FORMAT, "rig": self.rig, "taken_utc": self.taken_utc, "devices": devices,
-                "silent": list(self.silent)}  # fmt: skip
-        return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+        return json.dumps({"format": FORMAT, **asdict(self)}, indent=1, ensure_ascii=False) + "\n"
 
 
 def dumped(e: Examination) -> ParameterDump:
@@ -80,24 +73,14 @@ def dumped(e: Examination) -> ParameterDump:
 def read_dump(path: Path) -> ParameterDump:
     """Return the dump of a file; raises DumpError, OSError."""
     try:
-        data = cast("dict[str, object]", json.loads(path.read_text(encoding="utf-8")))
-        if data["format"] != FORMAT:
-            raise DumpError(f"{path}: format {data['format']} is not known (expected {FORMAT})")
-        devices = cast("dict[str, dict[str, dict[str, object]]]", data["devices"])
-        parameters = {
-            device: {
-                key: DeviceParameter(str(parameter["value"]), str(parameter["name"]), bool(parameter["written"]))
-                for key, parameter in found.items()
-            }
-            for device, found in devices.items()
-        }
-        silent = cast("list[str]", data["silent"])
-        return ParameterDump(str(data["rig"]), str(data["taken_utc"]), parameters, tuple(map(str, silent)))
-    except DumpError:
-        raise
+        data = json.loads(path.read_text(encoding="utf-8"))
+        version = data.pop("format")
+        if version == FORMAT:
+            return TypeAdapter(ParameterDump).validate_python(data)
     except (ValueError, LookupError, TypeError, AttributeError) as error:
-        expected = "expected what `tester bus params dump` writes"
+        expected = "expected the output of `tester bus params dump`"
         raise DumpError(f"{path} is no dump of parameters ({expected}): {error}") from error
+    raise DumpError(f"{path}: format {version} is not known (expected {FORMAT})")
 
 
 def stored_in(rig: Rig, folder: Path) -> Parameters:

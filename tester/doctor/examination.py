@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -11,12 +11,8 @@ from tester.doctor.bus_watch import RigWatch, watched
 from tester.doctor.can_survey import CanSurvey, survey_can
 from tester.doctor.line_survey import LineSurvey, survey_line
 from tester.doctor.open_wires import Wires
-from tester.doctor.system import ComputerDoor
+from tester.doctor.system import Computer
 from tester.inputs.rig import Rig
-
-
-def nobody(_: str) -> None:
-    """Default for ``say``: drop the progress message."""
 
 
 @dataclass
@@ -25,7 +21,7 @@ class Examination:
 
     rig: Rig
     """The rig according to its file."""
-    computer: ComputerDoor
+    computer: Computer
     wires: Wires
     runs: Path = Path("runs")
     """The folder that runs are written to."""
@@ -35,8 +31,8 @@ class Examination:
     """Keys missing in the rig file, for which the packaged value counts."""
     everybody: bool = True
     """Ask every unit number of a Modbus line, not only those of the rig file."""
-    say: Callable[[str], None] = field(default=nobody)
-    """Shows what is being examined."""
+    say: Callable[[str], object] = str
+    """Shows what is being examined; by default the text is dropped."""
 
     @property
     def in_memory(self) -> bool:
@@ -54,8 +50,8 @@ class Examination:
         """The surveys of the Modbus lines, by name."""
         surveys: dict[str, LineSurvey] = {}
         for name in self.rig.lines:
-            whom = "every unit number" if self.everybody else "its devices"
-            self.say(f"Modbus line {name}: asking {whom}")
+            units = "every unit number" if self.everybody else "its devices"
+            self.say(f"Modbus line {name}: asking {units}")
             surveys[name] = survey_line(self.rig, name, self.wires, everybody=self.everybody)
         return surveys
 
@@ -69,8 +65,5 @@ class Examination:
     def limit(self, *names: str) -> float | None:
         """Return the first of these interlock parameters that the rig has, None without any."""
         section = getattr(self.rig, "interlocks", None)
-        for name in names:
-            value = getattr(section, name, None)
-            if isinstance(value, float | int):
-                return float(value)
-        return None
+        values = (getattr(section, name, None) for name in names)
+        return next((float(value) for value in values if isinstance(value, float | int)), None)

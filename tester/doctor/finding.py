@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -29,7 +28,7 @@ class Finding:
 
     severity: Severity
     subject: str
-    """Its subject: an axis or a device by name, a bus, the computer."""
+    """An axis or a device by name, a bus, the computer."""
     found: str
     todo: str = ""
     """What a person can do about it; "" if nothing is needed."""
@@ -37,11 +36,6 @@ class Finding:
     def __str__(self) -> str:
         """Return the printed line."""
         return f"{self.severity.word:7} {self.subject}: {self.found}"
-
-    @property
-    def as_data(self) -> dict[str, str]:
-        """The finding for programs."""
-        return {"severity": self.severity.word, "subject": self.subject, "found": self.found, "todo": self.todo}
 
 
 def ok(subject: str, found: str) -> Finding:
@@ -62,8 +56,3 @@ def warning(subject: str, found: str, todo: str) -> Finding:
 def fault(subject: str, found: str, todo: str) -> Finding:
     """Return a finding with which a run will not start, or not last."""
     return Finding(Severity.FAULT, subject, found, todo)
-
-
-def worst(findings: Iterable[Finding]) -> Severity:
-    """Return the highest severity, OK without findings."""
-    return max((finding.severity for finding in findings), default=Severity.OK)

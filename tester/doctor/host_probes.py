@@ -13,11 +13,11 @@ from tester.inputs.rig.rig_files import risks_of
 from tester.store.disk import CONTACT_ROWS_S, FIXED_BYTES, MARGIN, ROW_BYTES
 
 DAY_S = 8 * 3600.0
-"""A working day of contact is to fit on the disk, s [A]."""
+"""Length of a working day of contact, which must fit on the disk, s [A]."""
 LATENCY_MS = 2
-"""From here on an adapter's latency timer costs readings, ms: 1 is the least that FTDI's driver takes."""
+"""A latency timer this long or longer costs readings, ms: 1 is the least that FTDI's driver accepts."""
 OFTEN = 0.999
-"""Share of the scans that the second figure of the punctuality is for."""
+"""Share of the scans that the second figure of the punctuality covers."""
 
 
 def serial_ports(e: Examination) -> Iterator[Finding]:
@@ -46,7 +46,11 @@ def serial_ports(e: Examination) -> Iterator[Finding]:
         else:
             port = present.get(real)
             yield ok(subject, f"serial port {line.port}" + (f" ({port.description})" if port is not None else ""))
-            yield from _by_name(subject, line.port, name)
+            if line.port.startswith(("/dev/ttyUSB", "/dev/ttyACM")):
+                yield note(
+                    subject, f"{line.port} is numbered in the order in which adapters are plugged in",
+                    f"name it by its serial number: lines.{name}.port: /dev/serial/by-id/...",
+                )  # fmt: skip
     spare = [port for real, port in present.items() if real not in used]
     if spare:
         named = ", ".join(f"{port.device} ({port.description})" for port in spare)
@@ -58,14 +62,6 @@ def _serial_lines(e: Examination) -> dict[str, LineConfig]:
     if e.in_memory:
         return {}
     return {name: line for name, line in e.rig.lines.items() if line.framing == "rtu"}
-
-
-def _by_name(subject: str, port: str, line: str) -> Iterator[Finding]:
-    if port.startswith(("/dev/ttyUSB", "/dev/ttyACM")):
-        yield note(
-            subject, f"{port} is numbered in the order in which adapters are plugged in",
-            f"name it by its serial number: lines.{line}.port: /dev/serial/by-id/...",
-        )  # fmt: skip
 
 
 def latency_timers(e: Examination) -> Iterator[Finding]:
@@ -99,7 +95,7 @@ def can_adapter(e: Examination) -> Iterator[Finding]:
     can = e.rig.can
     if can.interface != "socketcan":
         if not e.in_memory:
-            yield note("CAN adapter", f"{can.interface} {can.channel}: what the adapter is set to cannot be looked at")
+            yield note("CAN adapter", f"{can.interface} {can.channel}: the adapter's settings cannot be read")
         return
     folder = f"/sys/class/net/{can.channel}"
     if not e.computer.exists(folder):
@@ -123,7 +119,7 @@ def can_adapter(e: Examination) -> Iterator[Finding]:
     elif bitrate is not None:
         yield ok("CAN adapter", f"{can.channel} at {bitrate} bit/s, {str(details.get('state', 'up')).lower()}")
     elif state != "down":
-        yield note("CAN adapter", f"{can.channel} tells no bit rate (a virtual bus has none)")
+        yield note("CAN adapter", f"{can.channel} reports no bit rate (a virtual bus has none)")
     if details.get("state") in ("BUS-OFF", "ERROR-PASSIVE"):
         yield fault(
             "CAN adapter", f"{can.channel} is {details['state'].lower()}",

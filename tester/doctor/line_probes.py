@@ -16,7 +16,7 @@ from tester.inputs.rig.further_sensors import title_of
 READINGS_S = 40.0
 """Least rate of a device that is read in every scan, readings a second."""
 LATE_S = 0.008
-"""The adapter is to blame for an answer later than the profile's longest time by this much, s [A]."""
+"""An answer this much later than the profile's longest time is delayed by the adapter, s [A]."""
 FAILED_MOST = 0.01
 """Greatest acceptable share of failed questions on a line [A]."""
 STALE_LIMITS = {
@@ -269,8 +269,7 @@ def _reply_time(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -
             f" {1e3 * (usual_s - timing.turnaround_s):.0f} ms, as by the latency timer of a USB adapter (16 ms)",
             "set the adapter's latency timer to 1 ms, or its low-latency flag; or take an adapter without a timer",
         )  # fmt: skip
-    slow = unit.profile.blocks[0].period_s == 0.0 and rate < READINGS_S
-    if slow:
+    if unit.profile.blocks[0].period_s == 0.0 and rate < READINGS_S:
         yield warning(
             name, f"{text}: less than {READINGS_S:g} readings/s",
             "a higher baud rate, a line of its own, the adapter's latency timer at 1 ms",
@@ -283,7 +282,7 @@ def _age(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -> Itera
     if limit_s is not None and watch.oldest_s > limit_s:
         yield warning(
             name, f"{text}: the rig file allows {1e3 * limit_s:g} ms",
-            "what delays answers or loses them, as above; the limit stays the rig file's",
+            "remove the causes of late or lost answers, as above; the limit stays the rig file's",
         )  # fmt: skip
     else:
         allowed = f" (the rig file allows {1e3 * limit_s:g} ms)" if limit_s is not None else ""

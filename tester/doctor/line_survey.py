@@ -10,21 +10,20 @@ from drivers.modbus.register_scan import LineAnswer, LineScan, RegisterQuestion
 from drivers.ports import BusLost, LinePort
 from drivers.profiles.model import DeviceProfile
 from tester.doctor.open_wires import Wires
-from tester.doctor.wanted import configuration
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 
 PATIENCE_S = 0.25
-"""A device of the rig file is waited for so long, s: beyond every profile's reply time, and adapters that are late."""
+"""Patience for a device of the rig file, s: beyond every profile's reply time, and late adapters."""
 SCAN_S = 0.06
-"""Any other unit number, s: the slowest profile's turnaround is 20 ms, an adapter's usual latency 16 ms [A]."""
+"""Patience for any other unit number, s [A]: the slowest profile's turnaround is 20 ms, an adapter's latency 16 ms."""
 UNITS = range(1, 248)
 """Addresses of devices (Modbus over serial line V1.02, 2.2)."""
 STEP_S = 0.002
 BAUDS = (115_200, 57_600, 38_400, 19_200, 9_600)
 PARITIES: tuple[Parity, ...] = ("N", "E", "O")
 TRIES = 3
-"""A question that was not answered well is asked so often."""
+"""Number of times to ask until a device answers."""
 
 
 @dataclass(slots=True)
@@ -47,6 +46,27 @@ class UnitSurvey:
     def noise(self) -> bytes:
         """Received bytes that are no answer."""
         return b"".join(answer.noise for answer in (*self.blocks, *self.configuration.values()))
+
+    def question(self, block: int = 0, number: int | None = None) -> RegisterQuestion:
+        """Return the question for a block of registers; ``number``: of another unit."""
+        asked = self.profile.blocks[block]
+        unit_id = self.config.unit_id if number is None else number
+        return RegisterQuestion(unit_id, asked.function, asked.address, asked.count)
+
+    def settings(self) -> Iterator[tuple[str, RegisterQuestion]]:
+        """Yield name and question of every configuration register: identity, set-up, parameters.
+
+        Setpoint and lease are commands, and are left out.
+        """
+        profile, unit_id = self.profile, self.config.unit_id
+        reads = 3 if 3 in profile.functions else 4
+        if profile.identity is not None:
+            yield "device type", RegisterQuestion(unit_id, profile.identity.function, profile.identity.address, 1)
+        for write in profile.setup:
+            yield write.name, RegisterQuestion(unit_id, reads, write.address, 1)
+        for name, signal in profile.writes.items():
+            if name not in ("setpoint", "lease"):
+                yield name, RegisterQuestion(unit_id, reads, signal.address, signal.size)
 
 
 @dataclass(slots=True)
@@ -105,22 +125,21 @@ def asked(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuesti
 
 def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) -> None:
     """Read all registers in a device's profile; skip the rest if the first gets no answer."""
-    number = unit.config.unit_id
-    for block in unit.profile.blocks:
-        answer = _patiently(scan, port, wires, RegisterQuestion(number, block.function, block.address, block.count))
+    for block in range(len(unit.profile.blocks)):
+        answer = _patiently(scan, port, wires, unit.question(block))
         unit.blocks.append(answer)
         if not answer.there and len(unit.blocks) == 1:
             return
-    for name, question in configuration(unit.profile, number):
+    for name, question in unit.settings():
         unit.configuration[name] = _patiently(scan, port, wires, question)
 
 
 def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuestion) -> LineAnswer:
-    answer = asked(scan, port, wires, question, PATIENCE_S)
-    for _ in range(TRIES - 1):
+    answer = LineAnswer(question)
+    for _ in range(TRIES):
+        answer = asked(scan, port, wires, question, PATIENCE_S)
         if answer.there:
             break
-        answer = asked(scan, port, wires, question, PATIENCE_S)
     return answer
 
 
@@ -129,8 +148,7 @@ def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[RegisterQuestion, in
     identity = unit.profile.identity
     if identity is not None:
         yield RegisterQuestion(number, identity.function, identity.address, 1), identity.value
-    block = unit.profile.blocks[0]
-    yield RegisterQuestion(number, block.function, block.address, block.count), None
+    yield unit.question(number=number), None
 
 
 def _compare(scan: LineScan, port: LinePort, wires: Wires, survey: LineSurvey) -> None:
@@ -161,9 +179,6 @@ def _other_settings(config: LineConfig, name: str, wires: Wires, survey: LineSur
             except BusLost:
                 continue  # an adapter need not have every setting
             scan = LineScan(tried.framing, baud, parity)
-            for unit in survey.units.values():
-                block = unit.profile.blocks[0]
-                question = RegisterQuestion(unit.config.unit_id, block.function, block.address, block.count)
-                if asked(scan, port, wires, question, PATIENCE_S).there:
-                    return tried
+            if any(asked(scan, port, wires, unit.question(), PATIENCE_S).there for unit in survey.units.values()):
+                return tried
     return None

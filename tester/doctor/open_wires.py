@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 from drivers.ports import CanPort, LinePort
 from drivers.transports.can_bus import PythonCanPort, open_can
 from drivers.transports.serial_line import SerialLine, open_serial_line
@@ -20,44 +18,11 @@ OUTSIDE = ("socketcan", "socketcand")
 """Interfaces whose bit rate the system sets, not the program that opens them."""
 
 
-class Wires(Protocol):
-    """Wires, and the time on them."""
-
-    @property
-    def bitrates(self) -> tuple[int, ...]:
-        """Bit rates that ``can`` can open besides the rig file's; none if the system sets it."""
-        ...
-
-    @property
-    def real(self) -> bool:
-        """Whether time passes by itself, so that the computer's lateness can be measured."""
-        ...
-
-    def now(self) -> float:
-        """Return the seconds since the examination began."""
-        ...
-
-    def wait_until(self, due_s: float) -> None:
-        """Return at ``due_s`` (s)."""
-        ...
-
-    def can(self, bitrate: int) -> CanPort:
-        """Open the CAN bus at a bit rate (bit/s), reopening it if needed; raises BusLost."""
-        ...
-
-    def line(self, name: str, config: LineConfig) -> LinePort:
-        """Open a Modbus line, reopening it if needed; raises BusLost."""
-        ...
-
-    def close(self) -> None:
-        """Close every wire."""
-        ...
-
-
 class HardwareWires:
     """The wires of a rig file, over the computer's adapters."""
 
     real = True
+    """Time passes by itself, so that the computer's lateness can be measured."""
 
     def __init__(self, rig: Rig) -> None:
         """Open nothing yet."""
@@ -66,14 +31,18 @@ class HardwareWires:
         self._can: PythonCanPort | None = None
         self._lines: dict[str, SerialLine | TcpLine] = {}
         self.bitrates = () if rig.can.interface in OUTSIDE else BITRATES
+        """Bit rates that ``can`` can open besides the rig file's."""
 
     def now(self) -> float:
+        """Return the seconds since the examination began."""
         return self._pace.now()
 
     def wait_until(self, due_s: float) -> None:
+        """Return at ``due_s`` (s)."""
         self._pace.wait_until(due_s)
 
     def can(self, bitrate: int) -> CanPort:
+        """Open the CAN bus at a bit rate (bit/s), reopening it if needed; raises BusLost."""
         if self._can is not None:
             self._can.close()
             self._can = None
@@ -81,6 +50,7 @@ class HardwareWires:
         return self._can
 
     def line(self, name: str, config: LineConfig) -> LinePort:
+        """Open a Modbus line, reopening it if needed; raises BusLost."""
         before = self._lines.pop(name, None)
         if before is not None:
             before.close()
@@ -93,6 +63,7 @@ class HardwareWires:
         return line
 
     def close(self) -> None:
+        """Close every wire."""
         if self._can is not None:
             self._can.close()
         for line in self._lines.values():
@@ -117,6 +88,7 @@ class SimulatedWires:
         self._now_s = 0.0
 
     def now(self) -> float:
+        """Return the simulated seconds since the rig was switched on."""
         return self._now_s
 
     def wait_until(self, due_s: float) -> None:
@@ -137,6 +109,9 @@ class SimulatedWires:
 
     def close(self) -> None:
         """Do nothing: the rig is freed with its last reference."""
+
+
+Wires = HardwareWires | SimulatedWires
 
 
 def wires_of(rig: Rig, seed: int = 0) -> Wires:

@@ -1,9 +1,10 @@
-"""All probes of the doctor in order, and a file of their findings. A new probe is a function and a line here."""
+"""The doctor's probes in order, and a file of their findings. A new probe is a function and a line here."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Final, NamedTuple
 from zipfile import ZIP_DEFLATED, ZipFile
@@ -17,33 +18,26 @@ from tester.run.provenance import git_revision, library_versions
 Probe = Callable[[Examination], Iterator[Finding]]
 
 
-class ProbeEntry(NamedTuple):
-    """A probe, and the heading under which its findings stand."""
-
-    heading: str
-    probe: Probe
-
-
-PROBES: Final[tuple[ProbeEntry, ...]] = (
-    ProbeEntry("rig file", host_probes.rig_file),
-    ProbeEntry("computer", host_probes.disk),
-    ProbeEntry("computer", host_probes.clock),
-    ProbeEntry("adapters", host_probes.serial_ports),
-    ProbeEntry("adapters", host_probes.latency_timers),
-    ProbeEntry("adapters", host_probes.can_adapter),
-    ProbeEntry("CAN", can_probes.bus),
-    ProbeEntry("CAN", can_probes.axes),
-    ProbeEntry("CAN", can_probes.strangers),
-    ProbeEntry("Modbus", line_probes.lines),
-    ProbeEntry("Modbus", line_probes.devices),
-    ProbeEntry("Modbus", line_probes.units),
-    ProbeEntry("watch", can_probes.masters),
-    ProbeEntry("watch", can_probes.heartbeats),
-    ProbeEntry("watch", can_probes.emergencies),
-    ProbeEntry("watch", can_probes.load),
-    ProbeEntry("watch", can_probes.errors),
-    ProbeEntry("watch", line_probes.ages),
-    ProbeEntry("watch", host_probes.punctuality),
+PROBES: Final[tuple[tuple[str, Probe], ...]] = (
+    ("rig file", host_probes.rig_file),
+    ("computer", host_probes.disk),
+    ("computer", host_probes.clock),
+    ("adapters", host_probes.serial_ports),
+    ("adapters", host_probes.latency_timers),
+    ("adapters", host_probes.can_adapter),
+    ("CAN", can_probes.bus),
+    ("CAN", can_probes.axes),
+    ("CAN", can_probes.strangers),
+    ("Modbus", line_probes.lines),
+    ("Modbus", line_probes.devices),
+    ("Modbus", line_probes.units),
+    ("watch", can_probes.masters),
+    ("watch", can_probes.heartbeats),
+    ("watch", can_probes.emergencies),
+    ("watch", can_probes.load),
+    ("watch", can_probes.errors),
+    ("watch", line_probes.ages),
+    ("watch", host_probes.punctuality),
 )
 
 
@@ -53,9 +47,14 @@ class TableEntry(NamedTuple):
     heading: str
     finding: Finding
 
+    @property
+    def as_data(self) -> dict[str, str]:
+        """The entry for programs."""
+        return {"heading": self.heading, **asdict(self.finding), "severity": self.finding.severity.word}
+
 
 def examined(examination: Examination) -> Iterator[TableEntry]:
-    """Yield what every probe finds, as it is found. Raises InvalidSource for a rig file whose profiles do not exist."""
+    """Yield every probe's findings as they are made. Raises InvalidSource if the rig file names unknown profiles."""
     for heading, probe in PROBES:
         for finding in probe(examination):
             yield TableEntry(heading, finding)
@@ -65,11 +64,11 @@ RUNS_NAMED = 3
 """Number of newest runs whose file names are included."""
 
 
-def written_bundle(path: Path, e: Examination, found: Sequence[TableEntry]) -> None:
+def written_bundle(path: Path, e: Examination, findings: Sequence[TableEntry]) -> None:
     """Write the bundle; raises OSError. Nothing of the environment, of users or of other files goes into it."""
     texts = {
-        "findings.txt": "".join(f"{one.finding}\n        {one.finding.todo}\n" for one in found),
-        "findings.json": _json([{"heading": one.heading, **one.finding.as_data} for one in found]),
+        "findings.txt": "".join(f"{entry.finding}\n        {entry.finding.todo}\n" for entry in findings),
+        "findings.json": _json([entry.as_data for entry in findings]),
         "rig.yaml": e.rig.text,
         "versions.json": _json({**library_versions(), "revision": git_revision()}),
         "parameters.json": dumped(e).text,
@@ -85,7 +84,7 @@ def _json(data: object) -> str:
 
 
 def _last_runs(folder: Path) -> list[str]:
-    """Return the names and sizes of the files of the last runs: what else can be asked for."""
+    """Return the names and sizes of the files of the last runs, so that they can be asked for."""
     runs = sorted((path for path in folder.glob("*") if path.is_dir()), key=lambda path: path.name)[-RUNS_NAMED:]
     return [
         f"{file.relative_to(folder).as_posix()} {file.stat().st_size} bytes"

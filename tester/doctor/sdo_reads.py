@@ -7,15 +7,15 @@ from typing import Final
 from drivers import cia402
 from drivers.canopen import objects as o
 from drivers.canopen.objects import DataType
-from drivers.canopen.scan import PATIENCE_S, Key, ObjectAnswer, SdoScan
+from drivers.canopen.scan import PATIENCE_S, Key, ObjectAnswer
 from drivers.canopen.sdo import SdoClient
 from drivers.cia402 import State
 from drivers.ports import CanPort
+from tester.doctor.can_survey import STEP_S, scanned
 from tester.doctor.open_wires import Wires
 
 BOOT_S = 0.5
-"""After the bus was opened it is listened to for so long, s: simulated drives boot in 0.2 s."""
-STEP_S = 0.002
+"""Time of listening after the bus is opened, s: simulated drives boot in 0.2 s."""
 COMMANDS: Final = frozenset(
     {(o.CONTROLWORD, 0), (o.DIGITAL_OUTPUTS, 1), (o.TARGET_VELOCITY, 0), (o.TARGET_POSITION, 0)}
 )
@@ -41,12 +41,7 @@ class NodeAccess:
 
     def read(self, key: Key) -> ObjectAnswer:
         """Upload an object."""
-        scan, wires = SdoScan({self._node: [key]}, PATIENCE_S), self._wires
-        scan.service(self._port, wires.now())
-        while not scan.done:
-            wires.wait_until(wires.now() + STEP_S)
-            scan.feed(self._port.receive(wires.now()), self._port, wires.now())
-            scan.service(self._port, wires.now())
+        scan = scanned(self._port, self._wires, {self._node: [key]}, PATIENCE_S)
         answer = scan.answers.get(self._node, {}).get(key)
         return answer or ObjectAnswer(key, error=f"nothing answers at node {self._node} within {PATIENCE_S:g} s")
 

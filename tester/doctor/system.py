@@ -1,8 +1,8 @@
-"""The computer, behind one door: its files, its programs, its serial ports, its disks. Tests hand in another.
+"""The doctor's access to the computer: its files, programs, serial ports and disks. Tests override it.
 
-Linux is what the doctor knows: sysfs, ``ip``, ``timedatectl``. Where a system has none of them the door says so, and
-the probes say that they could not look. Of Windows the latency timer is read from the registry, as FTDI's driver keeps
-it; that was not tried on a machine.
+It knows Linux: sysfs, ``ip``, ``timedatectl``. On other systems these reads return None, and the probes report that
+they could not look. On Windows the latency timer is read from the registry, where FTDI's driver keeps it; that was not
+tried on a machine.
 """
 
 from __future__ import annotations
@@ -11,96 +11,45 @@ import os
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import NamedTuple
 
 COMMAND_AT_MOST_S = 3.0
-"""A program that tells something about the computer has answered by then [A]."""
+"""Time limit for a program's answer, s [A]."""
 
 
-@dataclass(frozen=True, slots=True)
-class SerialPortInfo:
-    """A serial port of the computer."""
+class SerialPortInfo(NamedTuple):
+    """A serial port of the computer; ``device`` opens it: ``/dev/ttyUSB0``, ``COM3``."""
 
     device: str
-    """As it is opened: ``/dev/ttyUSB0``, ``COM3``."""
     description: str
-    serial_number: str = ""
 
 
-class ComputerDoor(Protocol):
-    """The doctor's access to the computer."""
+class Computer:
+    """This computer."""
 
-    @property
-    def platform(self) -> str:
-        """``sys.platform``."""
-        ...
+    platform: str = sys.platform
 
     def text(self, path: str) -> str | None:
         """Return the text of a small file without its last line end; None if it is unreadable."""
-        ...
-
-    def names(self, folder: str) -> list[str]:
-        """Return the names in a folder; empty if it is unreadable."""
-        ...
-
-    def exists(self, path: str) -> bool:
-        """Return whether a file of this name exists."""
-        ...
-
-    def real(self, path: str) -> str:
-        """Return a path without links, for example the port of a name in ``/dev/serial/by-id``."""
-        ...
-
-    def may_use(self, path: str) -> bool:
-        """Return whether this user may read and write a file, or make files in a folder."""
-        ...
-
-    def group_of(self, path: str) -> str:
-        """Return the group of a file; "" if unknown."""
-        ...
-
-    def free_bytes(self, folder: str) -> int | None:
-        """Return the free space on the disk of a folder, existing or not; None if unknown."""
-        ...
-
-    def output(self, *command: str) -> str | None:
-        """Return a program's output; None if it is missing or fails."""
-        ...
-
-    def serial_ports(self) -> list[SerialPortInfo]:
-        """Return the serial ports of the computer."""
-        ...
-
-    def latency_ms(self, port: str) -> int | None:
-        """Return the latency timer of a USB serial adapter, ms; None without one, or if unknown."""
-        ...
-
-
-class ThisComputer:
-    """This computer."""
-
-    @property
-    def platform(self) -> str:
-        return sys.platform
-
-    def text(self, path: str) -> str | None:
         try:
             return Path(path).read_text(encoding="utf-8", errors="replace").rstrip("\n")
         except OSError:
             return None
 
     def names(self, folder: str) -> list[str]:
+        """Return the names in a folder; empty if it is unreadable."""
         try:
             return sorted(path.name for path in Path(folder).iterdir())
         except OSError:
             return []
 
     def exists(self, path: str) -> bool:
+        """Return whether a file of this name exists."""
         return Path(path).exists()
 
     def real(self, path: str) -> str:
+        """Return a path without links, for example the port of a name in ``/dev/serial/by-id``."""
         return os.path.realpath(path)
 
     def may_use(self, path: str) -> bool:
@@ -108,18 +57,21 @@ class ThisComputer:
         return os.access(_nearest(path), os.R_OK | os.W_OK)
 
     def group_of(self, path: str) -> str:
+        """Return the group of a file; "" if unknown."""
         try:
             return Path(path).group()
         except (OSError, KeyError, NotImplementedError):
             return ""
 
     def free_bytes(self, folder: str) -> int | None:
+        """Return the free space on the disk of a folder, existing or not; None if unknown."""
         try:
             return shutil.disk_usage(_nearest(folder)).free
         except OSError:
             return None
 
     def output(self, *command: str) -> str | None:
+        """Return a program's output; None if it is missing or fails."""
         try:
             done = subprocess.run(
                 command, capture_output=True, text=True, timeout=COMMAND_AT_MOST_S, check=True, stdin=subprocess.DEVNULL
@@ -129,12 +81,14 @@ class ThisComputer:
         return done.stdout
 
     def serial_ports(self) -> list[SerialPortInfo]:
+        """Return the serial ports of the computer."""
         from serial.tools import list_ports
 
         ports = sorted(list_ports.comports(), key=lambda port: port.device)
-        return [SerialPortInfo(port.device, port.description or "", port.serial_number or "") for port in ports]
+        return [SerialPortInfo(port.device, port.description or "") for port in ports]
 
     def latency_ms(self, port: str) -> int | None:
+        """Return the latency timer of a USB serial adapter, ms; None without one, or if unknown."""
         if sys.platform == "win32":
             return _latency_on_windows(port)
         name = Path(self.real(port)).name

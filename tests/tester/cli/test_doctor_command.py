@@ -43,7 +43,7 @@ def test_findings_come_as_json(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_full_disk_ends_with_1(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr("tester.doctor.system.ThisComputer.free_bytes", lambda _self, _folder: 0)
+    monkeypatch.setattr("tester.doctor.system.Computer.free_bytes", lambda _self, _folder: 0)
     assert invoke(["doctor", *QUICK]) == 1
     assert "fault   run folder: the disk is full" in capsys.readouterr().out
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, field, replace
 
-from tester.doctor.system import SerialPortInfo
+from tester.doctor.system import Computer, SerialPortInfo
 from tester.inputs.rig import Rig
 
 CELL, HEAT = "/dev/serial/by-id/cell", "/dev/serial/by-id/heat"
@@ -17,8 +17,8 @@ def ip_link(bitrate: int = 500_000, state: str = "ERROR-ACTIVE") -> str:
 
 
 @dataclass
-class FakeComputer:
-    """A computer with two USB serial adapters and a CAN interface (a ``ComputerDoor``)."""
+class FakeComputer(Computer):
+    """A computer with two USB serial adapters and a CAN interface."""
 
     platform: str = "linux"
     ports: dict[str, SerialPortInfo] = field(

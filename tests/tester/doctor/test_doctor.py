@@ -100,5 +100,5 @@ def test_a_profile_that_lacks_an_object_of_the_set_up_is_told_all_at_once() -> N
 
 
 def test_the_probes_stand_in_the_table_once() -> None:
-    probes = [entry.probe for entry in PROBES]
+    probes = [probe for _, probe in PROBES]
     assert len(set(probes)) == len(probes)
