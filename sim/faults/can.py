@@ -7,7 +7,7 @@ from typing import Final
 
 from drivers.canopen import objects as o
 from drivers.canopen.messages import encode_emergency
-from sim.faults.scene import Effect, Scene
+from sim.faults.scene import Effect, Scene, switched
 from sim.wires.can_traffic import Listener, SyncFollower
 from sim.wires.can_wire import CanWire
 
@@ -132,98 +132,71 @@ def wire_of(scene: Scene) -> FaultyCanWire:
     return wire
 
 
-class AdapterGone(Effect):
+@switched
+def adapter_gone(scene: Scene, on: bool, now: float) -> None:
     """The computer's CAN adapter is unplugged: every call fails."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Unplug it."""
+    if on:
         scene.rig.can.disconnect()
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Plug it in again."""
+    else:
         scene.rig.can.reconnect()
 
 
-class BusSilent(Effect):
+@switched
+def bus_silent(scene: Scene, on: bool, now: float) -> None:
     """The bus is off, or cut at the computer: frames vanish and no call fails."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Lose everything from now on."""
-        wire = wire_of(scene)
-        wire.silent = True
-        wire.note_faults()
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Pass frames on again."""
-        wire = wire_of(scene)
-        wire.silent = False
-        wire.note_faults()
+    wire = wire_of(scene)
+    wire.silent = on
+    wire.note_faults()
 
 
-class FrameLoss(Effect):
-    """A share of all frames is lost."""
-
-    __slots__ = ("share",)
-
-    def __init__(self, percent: float) -> None:
-        """Lose ``percent`` of the frames."""
-        self.share = 0.01 * percent
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Begin to lose frames."""
-        wire = wire_of(scene)
-        wire.loss = self.share
-        wire.note_faults()
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Lose no more."""
-        wire = wire_of(scene)
-        wire.loss = 0.0
-        wire.note_faults()
+@switched
+def frame_loss(scene: Scene, on: bool, now: float, percent: float) -> None:
+    """``percent`` of all frames are lost."""
+    wire = wire_of(scene)
+    wire.loss = 0.01 * percent if on else 0.0
+    wire.note_faults()
 
 
-class FramesLate(Effect):
-    """The drives' process data reach the computer late."""
-
-    __slots__ = ("seconds",)
-
-    def __init__(self, seconds: float) -> None:
-        """Delay by this much."""
-        self.seconds = seconds
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Begin to delay."""
-        wire = wire_of(scene)
-        wire.late_s = self.seconds
-        wire.note_faults()
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Delay no more."""
-        wire = wire_of(scene)
-        wire.late_s = 0.0
-        wire.note_faults()
+@switched
+def frames_late(scene: Scene, on: bool, now: float, seconds: float) -> None:
+    """The drives' process data reach the computer so much later, s."""
+    wire = wire_of(scene)
+    wire.late_s = seconds if on else 0.0
+    wire.note_faults()
 
 
-class FramesRepeated(Effect):
+@switched
+def frames_repeated(scene: Scene, on: bool, now: float) -> None:
     """Every frame comes twice."""
+    wire = wire_of(scene)
+    wire.repeated = on
+    wire.note_faults()
 
-    __slots__ = ()
 
-    def begin(self, scene: Scene, now: float) -> None:
-        """Begin to repeat."""
-        wire = wire_of(scene)
-        wire.repeated = True
-        wire.note_faults()
+@switched
+def node_cut(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """One drive's bus plug is pulled: it neither receives nor reaches any other node."""
+    wire_of(scene).cut(scene.rig.axes[axis].node_id, on)
 
-    def end(self, scene: Scene, now: float) -> None:
-        """Repeat no more."""
-        wire = wire_of(scene)
-        wire.repeated = False
-        wire.note_faults()
+
+@switched
+def frames_lost(scene: Scene, on: bool, now: float, axis: str, *bases: int) -> None:
+    """Frames to or from one drive are lost: those with the identifiers base + node."""
+    wire = wire_of(scene)
+    lost = {base + scene.rig.axes[axis].node_id for base in bases}
+    wire.lost = wire.lost | lost if on else wire.lost - lost
+    wire.note_faults()
+
+
+@switched
+def feedback_frozen(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """A drive repeats its last process data for ever."""
+    wire, can_id = wire_of(scene), o.TPDO1_BASE + scene.rig.axes[axis].node_id
+    if on:
+        wire.frozen[can_id] = b""
+    else:
+        wire.frozen.pop(can_id, None)
+    wire.note_faults()
 
 
 class BusBusy(Effect):
@@ -249,73 +222,6 @@ class BusBusy(Effect):
             self._at_s = now
 
 
-class NodeCut(Effect):
-    """One drive's bus plug is pulled: it hears nobody and nobody hears it."""
-
-    __slots__ = ("axis",)
-
-    def __init__(self, axis: str) -> None:
-        """Of this axis."""
-        self.axis = axis
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Pull it."""
-        wire_of(scene).cut(scene.rig.axes[self.axis].node_id, True)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Plug it in again."""
-        wire_of(scene).cut(scene.rig.axes[self.axis].node_id, False)
-
-
-class FramesLost(Effect):
-    """Frames of one kind, to or from one drive, are lost."""
-
-    __slots__ = ("axis", "bases")
-
-    def __init__(self, axis: str, *bases: int) -> None:
-        """Lose the identifiers base + node."""
-        self.axis = axis
-        self.bases = bases
-
-    def _ids(self, scene: Scene) -> frozenset[int]:
-        node_id = scene.rig.axes[self.axis].node_id
-        return frozenset(base + node_id for base in self.bases)
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Begin to lose them."""
-        wire = wire_of(scene)
-        wire.lost |= self._ids(scene)
-        wire.note_faults()
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Lose no more."""
-        wire = wire_of(scene)
-        wire.lost -= self._ids(scene)
-        wire.note_faults()
-
-
-class FeedbackFrozen(Effect):
-    """A drive repeats its last process data for ever."""
-
-    __slots__ = ("axis",)
-
-    def __init__(self, axis: str) -> None:
-        """Of this axis."""
-        self.axis = axis
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Freeze what comes next."""
-        wire = wire_of(scene)
-        wire.frozen[o.TPDO1_BASE + scene.rig.axes[self.axis].node_id] = b""
-        wire.note_faults()
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Show what is."""
-        wire = wire_of(scene)
-        wire.frozen.pop(o.TPDO1_BASE + scene.rig.axes[self.axis].node_id, None)
-        wire.note_faults()
-
-
 class SecondMaster(Effect):
     """Another master on the bus sends the same frame again and again."""
 
@@ -326,10 +232,7 @@ class SecondMaster(Effect):
 
     def __init__(self, base: int, data: bytes, axis: str = "") -> None:
         """Send ``data`` with identifier ``base`` (plus the node of ``axis``)."""
-        self.base = base
-        self.data = data
-        self.axis = axis
-        self._at_s = 0.0
+        self.base, self.data, self.axis = base, data, axis
 
     def begin(self, scene: Scene, now: float) -> None:
         """Send at once."""
@@ -340,30 +243,24 @@ class SecondMaster(Effect):
         if now >= self._at_s and scene.rig.can.connected:
             self._at_s = now + self.PERIOD_S
             node_id = scene.rig.axes[self.axis].node_id if self.axis else 0
-            scene.rig.can.inject(self.base + node_id, self.data, now)
+            self.send(scene.rig.can, self.base + node_id, now)
+
+    def send(self, wire: CanWire, can_id: int, now: float) -> None:
+        """Put the frame on the wire."""
+        wire.inject(can_id, self.data, now)
 
 
-class EmergencyStorm(Effect):
+class EmergencyStorm(SecondMaster):
     """A drive sends the same emergency a hundred times a second."""
 
-    __slots__ = ("_at_s", "axis", "code")
+    __slots__ = ()
 
-    every_step = True
     PERIOD_S = 0.01
 
     def __init__(self, axis: str, code: int) -> None:
         """Send ``code`` from the drive of ``axis``."""
-        self.axis = axis
-        self.code = code
-        self._at_s = 0.0
+        super().__init__(o.EMERGENCY_BASE, encode_emergency(code, 1), axis)
 
-    def begin(self, scene: Scene, now: float) -> None:
-        """Send at once."""
-        self._at_s = now
-
-    def renew(self, scene: Scene, now: float) -> None:
-        """Send what has fallen due."""
-        node_id = scene.rig.axes[self.axis].node_id
-        if now >= self._at_s:
-            self._at_s = now + self.PERIOD_S
-            scene.rig.can.transmit(o.EMERGENCY_BASE + node_id, encode_emergency(self.code, 1), now, True)
+    def send(self, wire: CanWire, can_id: int, now: float) -> None:
+        """Put the frame on the wire as the drive's own."""
+        wire.transmit(can_id, self.data, now, True)

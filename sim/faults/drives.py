@@ -1,17 +1,96 @@
-"""Faults of the drives and of the mechanics they move."""
+"""Faults of the drives, of the mechanics they move, and of their service data (SDO)."""
 
 from __future__ import annotations
 
+from typing import Literal
+
 from drivers.canopen import objects as o
 from drivers.canopen.messages import encode_emergency
-from sim.faults.scene import Effect, Scene
+from sim.faults.scene import Effect, Scene, switched
+from sim.nodes import sdo_server as sdo
 from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.drive_power import ENERGISED
 from sim.nodes.motion import VelocityAxis
+from sim.nodes.sdo_server import ObjectAccess, SdoAbortError, SdoServer
 
 MOTOR_BLOCKED = 0x7121
 BLOCKED_S = 0.5
 """A drive calls its motor blocked after this long at its torque limit, s [A]."""
+SdoFault = Literal["abort", "toggle", "other object"]
+_INITIATES = (1, 2)
+"""Commands that begin a download and an upload: they carry an address (CiA 301, 7.2.4.3)."""
+_OTHER = 0x2000
+"""The object a confused server answers about: the first of the manufacturer's."""
+
+
+@switched
+def drive_fault(scene: Scene, on: bool, now: float, axis: str, code: int) -> None:
+    """The drive enters its fault reaction with this emergency code; the fault outlasts its cause until it is reset."""
+    drive = scene.rig.axes[axis]
+    if on:
+        drive.fault(code, persistent=True)
+    else:
+        drive.clear_cause(code)
+
+
+@switched
+def reported(scene: Scene, on: bool, now: float, axis: str, code: int) -> None:
+    """The drive reports an error with this emergency code and continues."""
+    drive = scene.rig.axes[axis]
+    if on:
+        drive.error(code, now)
+    else:
+        drive.recovered(code, now)
+
+
+@switched
+def short_emergency(scene: Scene, on: bool, now: float, axis: str, code: int, length: int) -> None:
+    """The drive reports an error, once, in a frame of its first ``length`` bytes; it keeps no record of it."""
+    drive = scene.rig.axes[axis]
+    if on:
+        drive.wire.transmit(o.EMERGENCY_BASE + drive.node_id, encode_emergency(code, 1)[:length], now, True)
+
+
+@switched
+def heartbeat_lost(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """The drive's heartbeat is not sent; everything else is."""
+    scene.rig.axes[axis].withhold_heartbeat(on)
+
+
+@switched
+def unpowered(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """The drive has lost its control supply; when it comes back the drive boots."""
+    scene.rig.axes[axis].power(not on)
+
+
+@switched
+def reboot(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """The drive restarts (a dip in its supply): one boot-up message in the middle of a run."""
+    if on:
+        scene.rig.axes[axis].power(False)
+        scene.rig.axes[axis].power(True)
+
+
+@switched
+def torque_off(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """The drive's safe-torque-off input opens: no supply for its power stage."""
+    scene.rig.axes[axis].set_torque_off(on)
+
+
+@switched
+def local(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """The drive is operated at its keypad: it stops by itself [A] and ignores the bus."""
+    drive = scene.rig.axes[axis]
+    drive.set_local(on)
+    if on and isinstance(drive.axis, VelocityAxis):
+        drive.axis.aim(0.0, deceleration=drive.config.deceleration)
+
+
+@switched
+def wrong_identity(scene: Scene, on: bool, now: float, axis: str) -> None:
+    """Another product answers at the drive's address: seen at the next connection."""
+    drive = scene.rig.axes[axis]
+    drive.store.values[(o.IDENTITY, 2)] = drive.config.product_code + on
 
 
 class _OnAxis(Effect):
@@ -20,161 +99,11 @@ class _OnAxis(Effect):
     __slots__ = ("axis",)
 
     def __init__(self, axis: str) -> None:
-        """Of this axis."""
         self.axis = axis
 
     def drive(self, scene: Scene) -> Cia402Slave:
         """Return the axis' drive."""
         return scene.rig.axes[self.axis]
-
-
-class DriveFault(_OnAxis):
-    """The drive enters its fault reaction, and its cause stays."""
-
-    __slots__ = ("code",)
-
-    def __init__(self, axis: str, code: int) -> None:
-        """With this emergency code."""
-        super().__init__(axis)
-        self.code = code
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Enter the fault reaction."""
-        self.drive(scene).fault(self.code, persistent=True)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Remove the cause; the fault stays until it is reset."""
-        self.drive(scene).clear_cause(self.code)
-
-
-class EmcyReport(_OnAxis):
-    """The drive reports an error and goes on."""
-
-    __slots__ = ("code",)
-
-    def __init__(self, axis: str, code: int) -> None:
-        """With this emergency code."""
-        super().__init__(axis)
-        self.code = code
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Report it."""
-        self.drive(scene).error(self.code, now)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Report that it has gone."""
-        self.drive(scene).recovered(self.code, now)
-
-
-class ShortEmergency(EmcyReport):
-    """The drive reports an error in a frame that is too short."""
-
-    __slots__ = ("length",)
-
-    def __init__(self, axis: str, code: int, length: int) -> None:
-        """With the first ``length`` bytes of the message for this emergency code."""
-        super().__init__(axis, code)
-        self.length = length
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Report it, once."""
-        drive = self.drive(scene)
-        drive.wire.transmit(o.EMERGENCY_BASE + drive.node_id, encode_emergency(self.code, 1)[: self.length], now, True)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Say nothing: the drive never took note of it."""
-
-
-class HeartbeatLost(_OnAxis):
-    """The drive's heartbeat is not sent; everything else is."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Send no heartbeat."""
-        self.drive(scene).withhold_heartbeat(True)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Send it again."""
-        self.drive(scene).withhold_heartbeat(False)
-
-
-class Unpowered(_OnAxis):
-    """The drive has lost its control supply; when it comes back the drive boots."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Switch it off."""
-        self.drive(scene).power(False)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Switch it on."""
-        self.drive(scene).power(True)
-
-
-class Reboot(_OnAxis):
-    """The drive restarts (a dip in its supply): one boot-up message in the middle of a run."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Restart."""
-        drive = self.drive(scene)
-        drive.power(False)
-        drive.power(True)
-
-
-class TorqueOff(_OnAxis):
-    """The drive's safe-torque-off input opens: no supply for its power stage."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Open it."""
-        self.drive(scene).set_torque_off(True)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Close it."""
-        self.drive(scene).set_torque_off(False)
-
-
-class Local(_OnAxis):
-    """Somebody takes the drive over at its keypad: it stops by itself [A] and ignores the bus."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Take it over."""
-        drive = self.drive(scene)
-        drive.set_local(True)
-        if isinstance(drive.axis, VelocityAxis):
-            drive.axis.aim(0.0, deceleration=drive.config.deceleration)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Give it back."""
-        self.drive(scene).set_local(False)
-
-
-class WrongIdentity(_OnAxis):
-    """Another product answers at the drive's address: seen at the next connection."""
-
-    __slots__ = ("_product",)
-
-    def __init__(self, axis: str) -> None:
-        """At this axis."""
-        super().__init__(axis)
-        self._product = 0
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Show another product code."""
-        values = self.drive(scene).store.values
-        self._product = values[(o.IDENTITY, 2)]
-        values[(o.IDENTITY, 2)] = self._product + 1
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Show the own one."""
-        self.drive(scene).store.values[(o.IDENTITY, 2)] = self._product
 
 
 class Jammed(_OnAxis):
@@ -183,11 +112,6 @@ class Jammed(_OnAxis):
     __slots__ = ("_since_s",)
 
     every_step = True
-
-    def __init__(self, axis: str) -> None:
-        """Of this axis."""
-        super().__init__(axis)
-        self._since_s = 0.0
 
     def begin(self, scene: Scene, now: float) -> None:
         """Hold the shaft."""
@@ -225,3 +149,64 @@ class Runaway(_OnAxis):
         drive = self.drive(scene)
         if drive.state in ENERGISED and isinstance(drive.axis, VelocityAxis):
             drive.axis.aim(self.speed)
+
+
+class SpoiledSdoServer(SdoServer):
+    """A server that refuses everything, forgets to toggle, or answers about another object."""
+
+    __slots__ = ("_kind",)
+
+    def __init__(self, objects: ObjectAccess, kind: SdoFault) -> None:
+        """Serve ``objects`` badly."""
+        super().__init__(objects)
+        self._kind: SdoFault = kind
+
+    def request(self, data: bytes) -> bytes | None:
+        """Return the reply to a request."""
+        initiates = len(data) == 8 and data[0] >> 5 in _INITIATES
+        if self._kind == "abort" and initiates:
+            return b"\x80" + data[1:4] + sdo.DEVICE_STATE.to_bytes(4, "little")
+        reply = super().request(data)
+        if reply is None or self._kind != "other object" or not initiates:
+            return reply
+        return reply[:1] + _OTHER.to_bytes(2, "little") + reply[3:]
+
+    def _start_upload(self, data: bytes) -> bytes:
+        """Begin an upload; one that will forget to toggle goes in segments, as every device may choose to."""
+        if self._kind != "toggle":
+            return super()._start_upload(data)
+        self.reset()
+        self._address(data)
+        return self._begin_segments(self._objects.upload(self._index, self._sub))
+
+    def _upload_segment(self, data: bytes) -> bytes:
+        """Return a segment, with the wrong toggle bit if so."""
+        reply = super()._upload_segment(data)
+        return bytes((reply[0] ^ 0x10,)) + reply[1:] if self._kind == "toggle" else reply
+
+
+@switched
+def sdo_spoiled(scene: Scene, on: bool, now: float, axis: str, kind: SdoFault) -> None:
+    """The drive's SDO server is out of order in this way."""
+    drive = scene.rig.axes[axis]
+    drive.serve_with(SpoiledSdoServer(drive.store, kind) if on else SdoServer(drive.store))
+
+
+class ModeRefused(_OnAxis):
+    """A drive refuses every mode of operation: a wrong firmware, or a drive that believes it moves."""
+
+    __slots__ = ("_guard",)
+
+    def refuse(self, sub: int, value: int) -> None:
+        """Refuse a write to 0x6060."""
+        raise SdoAbortError(sdo.DEVICE_STATE)
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Begin to refuse."""
+        guards = self.drive(scene).store.guards
+        self._guard = guards[o.MODE]
+        guards[o.MODE] = self.refuse
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Accept what the drive can do."""
+        self.drive(scene).store.guards[o.MODE] = self._guard

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.faults.scene import Effect, Scene
+from sim.faults.scene import Effect, Scene, switched
 from sim.nodes.modbus_slave import ENDURANCE, ModbusSlave
 from sim.wires.modbus_wire import Impairment, Kind, ModbusWire
 
@@ -50,60 +50,36 @@ class Impaired(Effect):
             self._impairment.count = 0
 
 
-class LateReply(Impaired):
-    """Every reply of a device comes late."""
-
-    __slots__ = ()
-
-    def __init__(self, device: str, seconds: float) -> None:
-        """By this much."""
-        super().__init__(device, "late", delay_s=seconds)
+def late_reply(device: str, seconds: float) -> Impaired:
+    """Every reply of a device comes so much later, s."""
+    return Impaired(device, "late", delay_s=seconds)
 
 
-class ExceptionReply(Impaired):
-    """A device answers every request with an exception."""
-
-    __slots__ = ()
-
-    def __init__(self, device: str, code: int) -> None:
-        """With this code."""
-        super().__init__(device, "exception", code=code)
+def exception_reply(device: str, code: float) -> Impaired:
+    """A device answers every request with the exception ``code`` (a whole number)."""
+    return Impaired(device, "exception", code=round(code))
 
 
-class LineGone(Effect):
+@switched
+def line_gone(scene: Scene, on: bool, now: float, device: str) -> None:
     """The computer's serial adapter of a device's line is unplugged: every call fails."""
-
-    __slots__ = ("device",)
-
-    def __init__(self, device: str) -> None:
-        """Of the line that this device is on."""
-        self.device = device
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Unplug it."""
-        line_of(scene, self.device).disconnect()
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Plug it in again."""
-        line_of(scene, self.device).reconnect()
+    line = line_of(scene, device)
+    if on:
+        line.disconnect()
+    else:
+        line.reconnect()
 
 
-class DeviceOff(Effect):
+@switched
+def device_off(scene: Scene, on: bool, now: float, device: str) -> None:
     """A device has lost its supply."""
+    slave_of(scene, device).power(not on)
 
-    __slots__ = ("device",)
 
-    def __init__(self, device: str) -> None:
-        """This device."""
-        self.device = device
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Switch it off."""
-        slave_of(scene, self.device).power(False)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Switch it on."""
-        slave_of(scene, self.device).power(True)
+@switched
+def memory_worn(scene: Scene, on: bool, now: float, device: str) -> None:
+    """A device's non-volatile memory is worn out: values kept there cannot be changed."""
+    slave_of(scene, device).endurance = 0 if on else ENDURANCE
 
 
 class DeviceReset(Effect):
@@ -127,21 +103,3 @@ class DeviceReset(Effect):
         """Have it start when it is time."""
         if now >= self._until_s and not slave_of(scene, self.device).powered:
             slave_of(scene, self.device).power(True)
-
-
-class MemoryWorn(Effect):
-    """A device's non-volatile memory has been written too often: what it keeps cannot be changed any more."""
-
-    __slots__ = ("device",)
-
-    def __init__(self, device: str) -> None:
-        """This device."""
-        self.device = device
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Wear it out."""
-        slave_of(scene, self.device).endurance = 0
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Put in a new one."""
-        slave_of(scene, self.device).endurance = ENDURANCE

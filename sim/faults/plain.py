@@ -38,7 +38,7 @@ def _of_sensor(device: str) -> Iterator[FaultKind]:
             f"{device} {what}", partial(modbus.Impaired, device, kind), _ENABLED, _TRIP, 0.3 + SCAN_S
         )
     yield FaultKind(
-        f"{device} without supply", partial(modbus.DeviceOff, device), _ENABLED, _TRIP, 0.3 + SCAN_S
+        f"{device} without supply", partial(modbus.device_off, device), _ENABLED, _TRIP, 0.3 + SCAN_S
     )
 
 

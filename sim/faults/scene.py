@@ -1,17 +1,19 @@
-"""What a fault acts on: the simulated rig, the controlling computer, and the person in front of it."""
+"""What a fault acts on (the simulated rig, its computer, the person in front of it), and what a fault is."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Concatenate, ParamSpec, Protocol, TypeVar
 
 from sim.rig import SimRig
 
 Machine = TypeVar("Machine", bound=SimRig)
+Arguments = ParamSpec("Arguments")
 
 
 class Computer(Protocol):
-    """The controlling process as a fault script sees it: what can happen to it, and what an operator can tell it."""
+    """The controlling process as a fault script sees it: what can happen to it, and what an operator can command."""
 
     def stall(self, seconds: float) -> None:
         """Do no scan for this long."""
@@ -26,11 +28,8 @@ class Computer(Protocol):
         ...
 
     def operate(self, action: str) -> None:
-        """Let the operator ask for something; see ``OPERATOR_ACTIONS``."""
+        """Let the operator ask for "hold", "release", "abort", "stop" or "fast stop"."""
         ...
-
-
-OPERATOR_ACTIONS = ("hold", "release", "abort", "stop", "fast stop")
 
 
 @dataclass(slots=True)
@@ -64,3 +63,30 @@ class Effect:
     def renew(self, scene: Scene, now: float) -> None:
         """Do what has to be done before the rig is advanced from ``now`` s."""
 
+
+class Switched(Effect):
+    """An effect without a state of its own: one function begins it (True) and ends it (False)."""
+
+    __slots__ = ("_switch",)
+
+    def __init__(self, switch: Callable[[Scene, bool, float], None]) -> None:
+        self._switch = switch
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Switch it on."""
+        self._switch(scene, True, now)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Switch it off."""
+        self._switch(scene, False, now)
+
+
+def switched(
+    switch: Callable[Concatenate[Scene, bool, float, Arguments], None]
+) -> Callable[Arguments, Effect]:
+    """Make a function ``switch(scene, on, now, ...)`` return its effect for the arguments after ``now`` (s)."""
+
+    def make(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Effect:
+        return Switched(lambda scene, on, now: switch(scene, on, now, *args, **kwargs))
+
+    return make

@@ -9,12 +9,11 @@ from collections import deque
 from math import expm1, nan
 from typing import Final, cast
 
-from sim.faults.scene import Effect, Scene
+from sim.faults.scene import Effect, Scene, switched
 from sim.nodes.controller_slave import ControllerSlave, TemperatureSource
 from sim.nodes.sensor_slave import FORCES, CellSlave, ForceSource, IrSlave, SensorSlave, SurfaceSource
 from sim.noise import NormalStream
 
-KINDS: Final = ("offset", "drift", "noise", "low", "gain", "lag", "delay", "open", "saturated", "frozen")
 SLOW: Final = ("lag", "delay")
 CROSSED: Final = ("exchanged x z", "reversed x", "reversed y", "reversed z")
 """Kinds of a load cell alone: its channels as they should not be."""
@@ -171,7 +170,7 @@ class SensorFault(Effect):
     __slots__ = ("_wrapped", "device", "force", "kind", "size")
 
     def __init__(self, device: str, kind: str, size: float = 0.0, force: str = "fz") -> None:
-        """``kind`` of KINDS (or CROSSED), of this size (unit of the sensor, or that a second, or percent, or s)."""
+        """``kind``: of ``spoiled``, SLOW or CROSSED, or "frozen"; ``size``: unit of the sensor, or a second, %, s."""
         self.device, self.kind, self.size, self.force = device, kind, size, force
         self._wrapped: SpoiledForces | SpoiledTemperature | None = None
 
@@ -200,24 +199,12 @@ class SensorFault(Effect):
             slave.frozen = False
 
 
-class ControllerOutput(Effect):
-    """A temperature controller's output is stuck, whatever its loop computes; its registers show it."""
+@switched
+def controller_output(scene: Scene, on: bool, now: float, device: str, percent: float) -> None:
+    """A temperature controller's output is stuck at ``percent`` (below 0 cooling), whatever its loop computes.
 
-    __slots__ = ("device", "percent")
-
-    def __init__(self, device: str, percent: float) -> None:
-        """At this output, % (below 0 cooling)."""
-        self.device, self.percent = device, percent
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Stick."""
-        self._stick(scene, self.percent)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Come loose."""
-        self._stick(scene, None)
-
-    def _stick(self, scene: Scene, percent: float | None) -> None:
-        slave = scene.rig.devices.get(self.device)
-        if isinstance(slave, ControllerSlave):
-            slave.stuck_output = percent
+    Its registers show it. Without the device the fault has nothing to act on.
+    """
+    slave = scene.rig.devices.get(device)
+    if isinstance(slave, ControllerSlave):
+        slave.stuck_output = percent if on else None

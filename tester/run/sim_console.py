@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import inf, isfinite
 
 from sim.faults import FaultLanguage, FaultScript, FaultTextError, Scene
-from sim.faults.operator_faults import ClockJump, Killed, Operator, Stall
+from sim.faults.operation import OfComputer
 from sim.machines import SimulatedMachine
 from sim.rig import SimRig
 from tester.base import clock
@@ -204,7 +204,7 @@ class SimConsole:
         when = injection.when
         if when.at_s == inf:
             return ("no fault: this console knows no scans or steps of the program; expected 't=TIME: ...' or no time",)
-        if isinstance(injection.kind.effect(injection.value), Stall | Killed | ClockJump | Operator):
+        if isinstance(injection.kind.effect(injection.value), OfComputer):
             return (f"no fault: {injection.kind.phrase!r} concerns the program at the rig, which is another process",)
         if timed and when.at_s < now:
             return (f"no fault: it is {now:.3f} s already",)

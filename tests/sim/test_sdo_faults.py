@@ -6,8 +6,8 @@ import pytest
 
 from drivers.canopen import objects as o
 from sim.faults import Injection
+from sim.faults.drives import SdoFault, SpoiledSdoServer
 from sim.faults.language import FaultTime
-from sim.faults.sdo import Kind, SpoiledSdoServer
 from sim.machines.wheel_on_belt.faults import CATALOGUE
 from tests.campaigns.faults.recipes import RECIPES
 from tests.campaigns.faults.stage import Stage
@@ -18,7 +18,7 @@ DEVICE_TYPE = "92010200"
 """0x00020192, little endian."""
 
 
-def bench(kind: Kind) -> DriveBench:
+def bench(kind: SdoFault) -> DriveBench:
     made = DriveBench().boot()
     made.drive.serve_with(SpoiledSdoServer(made.drive.store, kind))
     return made

@@ -11,12 +11,12 @@ from enum import Enum
 from functools import partial
 from typing import Final
 
-from sim.faults import actuators, can, drives, modbus
+from sim.faults import can, drives, modbus, operation
 from sim.faults.common import SCAN_S, bus_rows, computer_rows, connecting_rows, drive_rows, left_operation_rows
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.language import FaultLanguage
-from sim.faults.scene import Effect, Scene
-from sim.faults.sensors import ControllerOutput, SensorFault
+from sim.faults.scene import Scene, switched
+from sim.faults.sensors import SensorFault, controller_output
 from sim.machines.specimen_on_track.rig import TrackRig
 from sim.nodes.motion import VelocityAxis
 from sim.wires.modbus_wire import Kind
@@ -57,36 +57,16 @@ class TrackOverspeeds(drives.Runaway):
             axis.aim(1e-3 * self.speed / rig.metres)
 
 
-class TrackRubsOtherwise(Effect):
-    """The track rubs otherwise than at first: another place of it, dust."""
-
-    __slots__ = ("share",)
-
-    def __init__(self, percent: float) -> None:
-        """With ``percent`` of the friction."""
-        self.share = max(0.01 * percent, 0.0)
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Change."""
-        scene.machine(TrackRig).plant.grip = self.share
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Rub as at first."""
-        scene.machine(TrackRig).plant.grip = 1.0
+@switched
+def track_rubs_otherwise(scene: Scene, on: bool, now: float, percent: float) -> None:
+    """The track has ``percent`` of its first friction: another place of it, dust."""
+    scene.machine(TrackRig).plant.grip = max(0.01 * percent, 0.0) if on else 1.0
 
 
-class EndSwitchDead(Effect):
+@switched
+def end_switch_dead(scene: Scene, on: bool, now: float) -> None:
     """The end switches open nothing any more."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Die."""
-        scene.machine(TrackRig).switches_work = False
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Work again."""
-        scene.machine(TrackRig).switches_work = True
+    scene.machine(TrackRig).switches_work = not on
 
 
 def _drive_rows() -> Iterator[FaultKind]:
@@ -99,7 +79,7 @@ def _drive_rows() -> Iterator[FaultKind]:
     yield FaultKind("track overspeeds", TrackOverspeeds, Onset.ENABLED, trip, 1.2 + SCAN_S, "mm/s", 10.0)
     yield FaultKind("lift stuck", partial(drives.Jammed, "lift"), Onset.LIFTING, trip, 5.0,
                     note="a move that does not arrive within its time")
-    yield FaultKind("end switch dead", EndSwitchDead, Onset.NEAR_THE_END, Expected.MAY, 0.0,
+    yield FaultKind("end switch dead", end_switch_dead, Onset.NEAR_THE_END, Expected.MAY, 0.0,
                     note="a second line: the track turns back before it")
 
 
@@ -119,12 +99,12 @@ def _device_rows() -> Iterator[FaultKind]:
     for device, (when, budget_s) in _SILENT_S.items():
         for what, kind in _SPOILED:
             yield FaultKind(f"{device} {what}", partial(modbus.Impaired, device, kind), when, Expected.TRIP, budget_s)
-        yield FaultKind(f"{device} without supply", partial(modbus.DeviceOff, device), when, Expected.TRIP, budget_s)
+        yield FaultKind(f"{device} without supply", partial(modbus.device_off, device), when, Expected.TRIP, budget_s)
         yield FaultKind(f"{device} reset", partial(modbus.DeviceReset, device), when, Expected.TRIP, budget_s,
                         lasts_s=modbus.REBOOT_S)
-        yield FaultKind(f"{device} replies late", partial(modbus.LateReply, device), when, Expected.TRIP,
+        yield FaultKind(f"{device} replies late", partial(modbus.late_reply, device), when, Expected.TRIP,
                         budget_s + 0.5, "ms", 1.5)
-    yield FaultKind("chamber runs away", partial(ControllerOutput, "chamber"), Onset.TEMPERED, Expected.TRIP, 600.0,
+    yield FaultKind("chamber runs away", partial(controller_output, "chamber"), Onset.TEMPERED, Expected.TRIP, 600.0,
                     "%", 100.0, slow=True,
                     note="seen by its reading, 10 K from the setpoint after it was there, or at its range")
     yield FaultKind("chamber sensor open", partial(SensorFault, "chamber", "open"), Onset.TEMPERED, Expected.TRIP,
@@ -142,7 +122,7 @@ def _device_rows() -> Iterator[FaultKind]:
                     "N/s", 0.01, note="seen by the next tare")
     yield FaultKind("load cell gain", partial(_CELL, "gain"), Onset.SLIDING, Expected.MAY, 0.0,
                     "%", 70.0, note="one channel alone: nothing on the rig contradicts it")
-    yield FaultKind("friction", TrackRubsOtherwise, Onset.SLIDING, Expected.MAY, 0.0, "%", 115.0,
+    yield FaultKind("friction", track_rubs_otherwise, Onset.SLIDING, Expected.MAY, 0.0, "%", 115.0,
                     note="rubber and track, no fault of the machine: results carry a doubt")
     for name in ("pyrometer", "thermometer"):
         yield FaultKind(f"{name} silent", partial(modbus.Impaired, name, "silence"), Onset.ALWAYS, Expected.TRIP,
@@ -154,9 +134,9 @@ def _device_rows() -> Iterator[FaultKind]:
 def _rows() -> Iterator[FaultKind]:
     yield from _drive_rows()
     yield from bus_rows(Onset.DRIVES, Onset.ENABLED)
-    yield FaultKind("CAN frames repeated", can.FramesRepeated, Onset.ALWAYS, Expected.RIDE, 0.0)
-    yield FaultKind("emergency stop pressed", partial(actuators.EmergencyStop, ("track",)), Onset.DRIVES, Expected.TRIP,
-                    SCAN_S)
+    yield FaultKind("CAN frames repeated", can.frames_repeated, Onset.ALWAYS, Expected.RIDE, 0.0)
+    yield FaultKind("emergency stop pressed", partial(operation.emergency_stop, ("track",)), Onset.DRIVES,
+                    Expected.TRIP, SCAN_S)
     yield from _device_rows()
     yield from computer_rows(Onset.ALWAYS, Onset.DRIVES, Onset.ENABLED)
 

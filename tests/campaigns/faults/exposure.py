@@ -12,7 +12,7 @@ from drivers.canopen import objects as o
 from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import FaultKind
 from sim.faults.sensors import SpoiledForces, SpoiledTemperature
-from sim.machines.wheel_on_belt.faults.exposure import Exposure
+from sim.machines.wheel_on_belt.faults.catalogue import Exposure
 from sim.machines.wheel_on_belt.harm import Truth
 from sim.nodes.safety_io import SafetyIo
 from sim.physics.contact import ContactModel

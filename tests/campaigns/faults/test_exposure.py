@@ -9,7 +9,7 @@ import pytest
 from drivers.canopen import objects as o
 from sim.faults.kinds import Expected, FaultKind
 from sim.machines.wheel_on_belt.faults import CATALOGUE, parse
-from sim.machines.wheel_on_belt.faults.exposure import Exposure
+from sim.machines.wheel_on_belt.faults.catalogue import Exposure
 from tester.kinds.wheel_on_belt.image.process_image import Press
 from tests.campaigns.faults.exposure import Exposed
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit

@@ -8,35 +8,57 @@ and says why nothing can be asked of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from enum import Enum
 from functools import partial
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand
-from sim.faults import actuators as a
 from sim.faults import can as c
 from sim.faults import drives as d
 from sim.faults import modbus as m
-from sim.faults import operator_faults as p
-from sim.faults import sdo
+from sim.faults import operation as p
 from sim.faults.common import SCAN_S, bus_rows, connecting_rows, drive_rows, left_operation_rows
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.scene import Effect
-from sim.faults.sensors import CROSSED, ControllerOutput, SensorFault
+from sim.faults.sensors import CROSSED, SensorFault, controller_output
 from sim.machines.wheel_on_belt.faults import heat as h
 from sim.machines.wheel_on_belt.faults import mechanics as k
-from sim.machines.wheel_on_belt.faults.exposure import Exposure
 from sim.machines.wheel_on_belt.rig import FORCES
 
-AXES = ("wheel", "belt", "press", "sideslip", "camber")
+
+class Exposure(Enum):
+    """When a fault can be noticed at all: its budget counts from then on."""
+
+    ALWAYS = "at once, once the run has begun"
+    RUNNING = "at once, where it begins in a run and no wheel was just changed"
+    DRIVES = "at once, once every drive is configured"
+    CONNECTING = "at the next connection"
+    ENABLED = "while the drives are on"
+    TURNING = "while the wheel turns"
+    LOADED = "in contact"
+    PRESSING = "while a load is held"
+    SLIDING = "in contact, with slip"
+    RUBBING = "while a load is held, with slip"
+    ASTRAY = "while a drive shows another speed than it was told"
+    HEATING = "while the jacket heats"
+    MISWEIGHED = "while the press is further than the load shown can need"
+    MISREAD = "while the thermometer is off by more than the model allows, turning"
+    STARVED = "while full heat is asked for and the hub stays cold"
+    UNASKED = "while heat flows that the controller does not give"
+    HIDDEN = "while full heat is given and the hub is far hotter than shown"
+    OVERHEATED = "while the hub is hotter than it was ever told to be"
+    HOT = "while the hub is far hotter than any recipe needs"
+    WELDED = "while the contactor is closed without request"
+
+
 VELOCITY_AXES = ("wheel", "belt", "press")
-STOPPED_BY_THE_CHAIN = ("wheel", "belt", "press")
-"""Drives whose torque an emergency stop takes away at once (stop category 0 [A])."""
-MODBUS_DEVICES = ("load cell", "thermometer", "jacket")
+"""Of these drives an emergency stop takes the torque away at once (stop category 0 [A])."""
+AXES = (*VELOCITY_AXES, "sideslip", "camber")
 STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
 """Names of steps that a fault can wait for."""
-OVERHEATING, FOLLOWING_ERROR, ENCODER, CAN_OVERRUN = 0x4310, 0x8611, 0x7305, 0x8110
-CELL, SURFACE, HUB = (partial(SensorFault, device) for device in MODBUS_DEVICES)
-OUTPUT = partial(ControllerOutput, "jacket")
+OVERHEATING, FOLLOWING_ERROR, CAN_OVERRUN = 0x4310, 0x8611, 0x8110
+CELL, SURFACE, HUB = (partial(SensorFault, device) for device in ("load cell", "thermometer", "jacket"))
+OUTPUT = partial(controller_output, "jacket")
 
 POLL_S = 0.2 + SCAN_S
 """A temperature is polled at 5 Hz and judged by the next scan, s."""
@@ -49,17 +71,11 @@ SHOWS_S = 40.0
 NOISY_S = 2.0 + 3.0 + 1.0
 """A line counts its failures over two seconds, may fail for three, and a slow device is asked once a second [A], s."""
 
-ALWAYS, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, HEATING = (
-    Exposure.ALWAYS, Exposure.DRIVES, Exposure.CONNECTING, Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED,
-    Exposure.PRESSING, Exposure.SLIDING, Exposure.HEATING,
-)  # fmt: skip
-RUNNING, RUBBING, ASTRAY, MISWEIGHED, MISREAD, STARVED, HIDDEN, UNASKED, OVERHEATED, HOT, WELDED = (
-    Exposure.RUNNING, Exposure.RUBBING, Exposure.ASTRAY, Exposure.MISWEIGHED, Exposure.MISREAD, Exposure.STARVED,
-    Exposure.HIDDEN, Exposure.UNASKED, Exposure.OVERHEATED, Exposure.HOT, Exposure.WELDED,
-)  # fmt: skip
-TRIP, STOP, HOLD, RIDE, MAY, DEVICES = (
-    Expected.TRIP, Expected.STOP, Expected.HOLD, Expected.RIDE, Expected.MAY, Expected.DEVICES
-)  # fmt: skip
+(
+    ALWAYS, RUNNING, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, RUBBING, ASTRAY, HEATING,
+    MISWEIGHED, MISREAD, STARVED, UNASKED, HIDDEN, OVERHEATED, HOT, WELDED,
+) = Exposure  # fmt: skip
+TRIP, STOP, HOLD, RIDE, MAY, DEVICES = Expected
 
 _NMT_STOP_ALL = bytes((NmtCommand.STOP, 0))
 _ENABLE_AND_GO = b"\x0f\x00" + (50_000).to_bytes(4, "little", signed=True)
@@ -70,31 +86,31 @@ def _drive_rows() -> Iterator[FaultKind]:
     for axis in AXES:
         yield from drive_rows(axis, DRIVES, ENABLED)
         yield from connecting_rows(axis, CONNECTING)
-        yield FaultKind(f"{axis} drive mode refused", partial(sdo.ModeRefused, axis), CONNECTING, TRIP, 5.0)
-        yield FaultKind(f"{axis} drive SDO toggle error", partial(sdo.SdoSpoiled, axis, "toggle"), CONNECTING, TRIP,
+        yield FaultKind(f"{axis} drive mode refused", partial(d.ModeRefused, axis), CONNECTING, TRIP, 5.0)
+        yield FaultKind(f"{axis} drive SDO toggle error", partial(d.sdo_spoiled, axis, "toggle"), CONNECTING, TRIP,
                         10.0, note="in segmented uploads, which a device may choose for any object")
-        yield FaultKind(f"{axis} drive SDO of another object", partial(sdo.SdoSpoiled, axis, "other object"),
+        yield FaultKind(f"{axis} drive SDO of another object", partial(d.sdo_spoiled, axis, "other object"),
                         CONNECTING, TRIP, 10.0, note="a reply that is not believed counts as none: tried again")
-        yield FaultKind(f"{axis} drive SDO silent", partial(c.FramesLost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
+        yield FaultKind(f"{axis} drive SDO silent", partial(c.frames_lost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
                         10.0, note="every request is tried again before a drive is given up")
     for axis in VELOCITY_AXES:
-        yield FaultKind(f"{axis} drive following error", partial(d.DriveFault, axis, FOLLOWING_ERROR), DRIVES, TRIP,
+        yield FaultKind(f"{axis} drive following error", partial(d.drive_fault, axis, FOLLOWING_ERROR), DRIVES, TRIP,
                         0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive reports overheating", partial(d.EmcyReport, axis, OVERHEATING), RUNNING, TRIP,
+        yield FaultKind(f"{axis} drive reports overheating", partial(d.reported, axis, OVERHEATING), RUNNING, TRIP,
                         0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive setpoints lost", partial(c.FramesLost, axis, o.RPDO1_BASE), ENABLED, TRIP,
+        yield FaultKind(f"{axis} drive setpoints lost", partial(c.frames_lost, axis, o.RPDO1_BASE), ENABLED, TRIP,
                         0.2 + SCAN_S, note="the drive's own deadline (0x1400:05), or sooner a speed or load error")
         yield _frozen_feedback(axis)
         yield from left_operation_rows(axis, ENABLED)
-    yield FaultKind("press drive inputs lost", partial(c.FramesLost, "press", o.TPDO2_BASE), DRIVES, TRIP,
+    yield FaultKind("press drive inputs lost", partial(c.frames_lost, "press", o.TPDO2_BASE), DRIVES, TRIP,
                     0.25 + 2.0 * SCAN_S, note="safety chain, guard and contactor are not known any more; idle at 10 Hz")
-    yield FaultKind("press drive outputs lost shortly", partial(c.FramesLost, "press", o.RPDO2_BASE), ALWAYS, RIDE, 0.0,
-                    lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
+    yield FaultKind("press drive outputs lost shortly", partial(c.frames_lost, "press", o.RPDO2_BASE), ALWAYS, RIDE,
+                    0.0, lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
 
 
 def _frozen_feedback(axis: str) -> FaultKind:
     """Return the row of a drive that repeats its last speed, or its last position."""
-    name, make = f"{axis} drive feedback frozen", partial(c.FeedbackFrozen, axis)
+    name, make = f"{axis} drive feedback frozen", partial(c.feedback_frozen, axis)
     if axis == "press":
         return FaultKind(name, make, ENABLED, MAY, 0.0,
                          note="its position tells only where to slow down: the force ends pressing and lifting")
@@ -104,11 +120,11 @@ def _frozen_feedback(axis: str) -> FaultKind:
 
 def _bus_rows() -> Iterator[FaultKind]:
     yield from bus_rows(DRIVES, ENABLED)
-    yield FaultKind("CAN frames lost", c.FrameLoss, ENABLED, TRIP, 10.0, "%", 20.0,
+    yield FaultKind("CAN frames lost", c.frame_loss, ENABLED, TRIP, 10.0, "%", 20.0,
                     note="by chance: three frames of a drive in a row at 20 Hz")
-    yield FaultKind("CAN frames late", c.FramesLate, ENABLED, MAY, 0.0, "ms", 0.1,
+    yield FaultKind("CAN frames late", c.frames_late, ENABLED, MAY, 0.0, "ms", 0.1,
                     note="all are late alike and count as fresh: a drive does not say when it measured")
-    yield FaultKind("CAN frames repeated", c.FramesRepeated, ALWAYS, RIDE, 0.0)
+    yield FaultKind("CAN frames repeated", c.frames_repeated, ALWAYS, RIDE, 0.0)
     yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.0, "%", 95.0,
                     note="the higher-ranking frames of the drives still get through at the slower scans")
     yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), DRIVES, TRIP, 0.1 + SCAN_S)
@@ -116,23 +132,24 @@ def _bus_rows() -> Iterator[FaultKind]:
                     TRIP, 0.1 + SCAN_S)
     yield FaultKind("second master stops nodes", partial(c.SecondMaster, o.NMT_ID, _NMT_STOP_ALL), DRIVES, TRIP,
                     0.2 + SCAN_S)
-    yield FaultKind("belt drive short emergency", partial(d.ShortEmergency, "belt", OVERHEATING, 3), ALWAYS, TRIP,
+    yield FaultKind("belt drive short emergency", partial(d.short_emergency, "belt", OVERHEATING, 3), ALWAYS, TRIP,
                     0.02 + SCAN_S, lasts_s=0.3, note="what is missing of it counts as an unknown error")
     yield FaultKind("belt drive emergency storm", partial(c.EmergencyStorm, "belt", CAN_OVERRUN), ALWAYS, TRIP,
                     0.02 + SCAN_S)
 
 
-_SILENT_S = {"load cell": 0.1 + SCAN_S, "thermometer": 1.2 + SCAN_S, "jacket": 1.2 + SCAN_S}
-"""Age at which a reading is stale and the delay of its interlock, s."""
-_WATCHED = {"load cell": LOADED, "thermometer": HEATING, "jacket": ALWAYS}
-"""When the readings of a device are needed."""
+_WATCHED = {
+    "load cell": (LOADED, 0.1 + SCAN_S),
+    "thermometer": (HEATING, 1.2 + SCAN_S),
+    "jacket": (ALWAYS, 1.2 + SCAN_S),
+}
+"""When the readings of a device are needed; the age at which they are stale with the delay of the interlock, s."""
 
 
 def _modbus_rows() -> Iterator[FaultKind]:
-    for device in MODBUS_DEVICES:
-        when, budget_s = _WATCHED[device], _SILENT_S[device]
+    for device, (when, budget_s) in _WATCHED.items():
         yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s)
-        yield FaultKind(f"{device} without supply", partial(m.DeviceOff, device), when, TRIP, budget_s)
+        yield FaultKind(f"{device} without supply", partial(m.device_off, device), when, TRIP, budget_s)
         yield FaultKind(f"{device} reset", partial(m.DeviceReset, device), when, TRIP, budget_s,
                         lasts_s=m.REBOOT_S)
         yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s)
@@ -145,17 +162,17 @@ def _modbus_rows() -> Iterator[FaultKind]:
                         0.0, note="the second half comes 5 ms later, a gateway's way: a reply like any other")
         yield FaultKind(f"{device} replies merged", partial(m.Impaired, device, "merged"), when, TRIP, NOISY_S,
                         note="a gateway keeps every second reply and sends it with the next, in one piece")
-        yield FaultKind(f"{device} replies late", partial(m.LateReply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
+        yield FaultKind(f"{device} replies late", partial(m.late_reply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
         yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
                         ALWAYS, RIDE, 0.0)
         yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
-        yield FaultKind(f"{device} exception", partial(_exception, device), when, TRIP, budget_s, "", 4.0)
-        yield FaultKind(f"{device} line unplugged", partial(m.LineGone, device), DRIVES, TRIP, 0.2 + SCAN_S)
+        yield FaultKind(f"{device} exception", partial(m.exception_reply, device), when, TRIP, budget_s, "", 4.0)
+        yield FaultKind(f"{device} line unplugged", partial(m.line_gone, device), DRIVES, TRIP, 0.2 + SCAN_S)
     for force in FORCES:
-        device, when, budget_s = f"load cell {force}", _WATCHED["load cell"], _SILENT_S["load cell"]
+        device, (when, budget_s) = f"load cell {force}", _WATCHED["load cell"]
         note = "of the transmitter that measures it, which may measure all"
         yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s, note=note)
-        yield FaultKind(f"{device} without supply", partial(m.DeviceOff, device), when, TRIP, budget_s, note=note)
+        yield FaultKind(f"{device} without supply", partial(m.device_off, device), when, TRIP, budget_s, note=note)
         yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s, note=note)
     yield FaultKind("load cell words swapped", partial(m.Impaired, "load cell", "swapped"), LOADED, TRIP, 0.1 + SCAN_S,
                     note="the order of the words of its 32-bit values was changed at the device")
@@ -163,13 +180,9 @@ def _modbus_rows() -> Iterator[FaultKind]:
                     note="a value of 32 bits is read while the device writes it: off by 3277 N where its sign changes")
     yield FaultKind("slip ring worn", h.WornSector, ALWAYS, MAY, 0.0, "", 90.0,
                     note="requests fail within 20 degrees of this angle of the wheel: one in nine, asked for again")
-    yield FaultKind("jacket memory worn out", partial(m.MemoryWorn, "jacket"), ALWAYS, MAY, 0.0,
+    yield FaultKind("jacket memory worn out", partial(m.memory_worn, "jacket"), ALWAYS, MAY, 0.0,
                     note="what it keeps without supply, standby among it, cannot be changed any more (exception 04):"
                     " seen when that is written, at the end")
-
-
-def _exception(device: str, code: float) -> m.ExceptionReply:
-    return m.ExceptionReply(device, round(code))
 
 
 def _sensor_rows() -> Iterator[FaultKind]:
@@ -216,14 +229,14 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     slow=True, note="its sensor follows within a second")
     yield FaultKind("jacket output stuck off", partial(OUTPUT, 0.0), HEATING, MAY, 0.0,
                     note="the wheel gets colder than wanted: the recipe's waits notice, nothing is harmed")
-    yield FaultKind("jacket relay shorted", partial(h.HeaterElement, 100.0), UNASKED, TRIP, 16.0, slow=True,
+    yield FaultKind("jacket relay shorted", partial(h.heater_element, 100.0), UNASKED, TRIP, 16.0, slow=True,
                     note="the rate is known 3 s after the output has gone, over 4 to 8 s; 5 and 2 s of the row")
-    yield FaultKind("heater line open", partial(h.HeaterElement, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
-    yield FaultKind("jacket limiter dead", h.LimiterDead, ALWAYS, MAY, 0.0,
+    yield FaultKind("heater line open", partial(h.heater_element, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
+    yield FaultKind("jacket limiter dead", h.limiter_dead, ALWAYS, MAY, 0.0,
                     note="a second line: nothing shows that it is gone before it is needed")
-    yield FaultKind("contactor welded", a.ContactorWelded, WELDED, TRIP, 0.5 + 2.0 * SCAN_S,
+    yield FaultKind("contactor welded", p.contactor_welded, WELDED, TRIP, 0.5 + 2.0 * SCAN_S,
                     note="seen when it is to open")
-    yield FaultKind("contactor dead", a.ContactorDead, STARVED, TRIP, 61.0 + POLL_S, slow=True)
+    yield FaultKind("contactor dead", p.contactor_dead, STARVED, TRIP, 61.0 + POLL_S, slow=True)
     yield FaultKind("press runs away", partial(d.Runaway, "press"), LOADED, TRIP, 0.5, "mm/s", 5.0)
     yield FaultKind("wheel runs away", partial(d.Runaway, "wheel"), ASTRAY, TRIP, FOLLOW_S, "rad/s", 12.0,
                     axis="wheel", note="0.54 m/s; seen where that is not its command")
@@ -239,22 +252,22 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     note="there is no encoder on the belt itself: by the drive's torque, beyond elastic creep (2 %)")
     yield FaultKind("wheel slips on its shaft", k.WheelSlipsOnShaft, SLIDING, MAY, 0.0,
                     note="the shaft's encoder turns on, and friction does not vanish: held by the clamping")
-    yield FaultKind("emergency stop pressed", partial(a.EmergencyStop, STOPPED_BY_THE_CHAIN), DRIVES, TRIP, SCAN_S)
+    yield FaultKind("emergency stop pressed", partial(p.emergency_stop, VELOCITY_AXES), DRIVES, TRIP, SCAN_S)
 
 
 def _computer_rows() -> Iterator[FaultKind]:
-    yield FaultKind("scan stalled shortly", partial(p.Stall, 0.03), ALWAYS, RIDE, 0.0)
-    yield FaultKind("scan stalled", p.Stall, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
+    yield FaultKind("scan stalled shortly", partial(p.stalled, 0.03), ALWAYS, RIDE, 0.0)
+    yield FaultKind("scan stalled", p.stalled, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
                     note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
-    yield FaultKind("scan stalled while sliding", partial(p.Stall, 0.165), SLIDING, TRIP, 0.2 + SCAN_S, lasts_s=0.3,
+    yield FaultKind("scan stalled while sliding", partial(p.stalled, 0.165), SLIDING, TRIP, 0.2 + SCAN_S, lasts_s=0.3,
                     note="later than a scan may be, sooner than most drives stop by themselves")
-    yield FaultKind("process killed", p.Killed, ALWAYS, DEVICES, 0.25)
-    yield FaultKind("clock jump", p.ClockJump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
-    yield FaultKind("operator hold", partial(p.Operator, "hold"), ALWAYS, HOLD, SCAN_S)
-    yield FaultKind("operator release", partial(p.Operator, "release"), ALWAYS, RIDE, 0.0)
-    yield FaultKind("operator abort", partial(p.Operator, "abort"), DRIVES, STOP, SCAN_S)
-    yield FaultKind("operator stop", partial(p.Operator, "stop"), DRIVES, STOP, SCAN_S)
-    yield FaultKind("operator fast stop", partial(p.Operator, "fast stop"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("process killed", p.killed, ALWAYS, DEVICES, 0.25)
+    yield FaultKind("clock jump", p.clock_jump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
+    yield FaultKind("operator hold", partial(p.operator, "hold"), ALWAYS, HOLD, SCAN_S)
+    yield FaultKind("operator release", partial(p.operator, "release"), ALWAYS, RIDE, 0.0)
+    yield FaultKind("operator abort", partial(p.operator, "abort"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator stop", partial(p.operator, "stop"), DRIVES, STOP, SCAN_S)
+    yield FaultKind("operator fast stop", partial(p.operator, "fast stop"), DRIVES, STOP, SCAN_S)
 
 
 _UNASKED = "how much of it goes unnoticed, and what that does, python -m tests.campaigns.faults --magnitudes says"
@@ -278,9 +291,9 @@ def _misread_rows() -> Iterator[FaultKind]:
         named = " and ".join(f"F{one}" for one in which.split())
         yield _may(f"load cell {named} {what}", partial(CELL, channels))
     yield _hides("hub sensor gain", partial(HUB, "gain"), "%", 60.0)
-    yield _hides("hub sensor partly detached", h.HubDetached, "%", 60.0)
+    yield _hides("hub sensor partly detached", h.hub_detached, "%", 60.0)
     yield _may("thermometer gain", partial(SURFACE, "gain"), "%", 80.0, slow=True)
-    yield _hides("common supply of hub sensor and thermometer", h.CommonSupplyFault, "%", 60.0)
+    yield _hides("common supply of hub sensor and thermometer", h.common_supply_off, "%", 60.0)
     for name, lag_s in (("load cell", 1.0), ("thermometer", 1.5)):
         slow = name != "load cell"
         yield _may(f"{name} lag", partial(SensorFault, name, "lag"), "ms", lag_s, slow=slow)
@@ -299,14 +312,14 @@ ASSEMBLY = (
 def _machine_rows() -> Iterator[FaultKind]:
     """Yield faults of how the machine was put together, and of the rubber on its hub."""
     for axis in ("wheel", "belt"):
-        yield _may(f"{axis} drive reversed", partial(k.Reversed, axis), slow=True)
-        yield _may(f"{axis} speed scale", partial(k.SpeedScale, axis), "%", 110.0, slow=True)
-        yield _may(f"{axis} speed doubled", partial(k.SpeedScale, axis, 200.0), slow=True)
-    yield _may("wheel and belt drives swapped", k.DrivesSwapped, slow=True)
+        yield _may(f"{axis} drive reversed", partial(k.reversed_shaft, axis), slow=True)
+        yield _may(f"{axis} speed scale", partial(k.speed_scale, axis), "%", 110.0, slow=True)
+        yield _may(f"{axis} speed doubled", partial(k.speed_scale, axis, 200.0), slow=True)
+    yield _may("wheel and belt drives swapped", k.drives_swapped, slow=True)
     yield _may("wheel diameter", k.DiameterOff, "%", 110.0, slow=True)
-    yield _may("rubber detached", k.RubberDetached, "mm", 0.3)
-    yield _may("rubber relaxation", k.RubberRelaxes, "%", 10.0)
-    yield _may("friction", k.BeltRubsOtherwise, "%", 115.0)
+    yield _may("rubber detached", k.rubber_detached, "mm", 0.3)
+    yield _may("rubber relaxation", k.rubber_relaxes, "%", 10.0)
+    yield _may("friction", k.belt_rubs_otherwise, "%", 115.0)
 
 
 def _rows() -> Iterator[FaultKind]:

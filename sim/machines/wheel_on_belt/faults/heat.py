@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, pi
 from typing import Final
 
 from sim.faults.modbus import line_of, slave_of
-from sim.faults.scene import Effect, Scene
+from sim.faults.scene import Effect, Scene, switched
 from sim.faults.sensors import SensorFault
 from sim.machines.wheel_on_belt.rig import WheelRig
+from sim.nodes.controller_slave import JACKET_HOTTEST_C
 from sim.wires.modbus_wire import Impairment
 
 HALF_DEG: Final = 20.0
@@ -18,83 +19,47 @@ DETACHED_S = 20.0
 
 
 class _Together(Effect):
-    """Faults that come and go as one."""
+    """Faults that come and go together."""
 
-    __slots__ = ("_all",)
+    __slots__ = ("_effects",)
 
-    def __init__(self, *all_of_them: Effect) -> None:
-        """Of these."""
-        self._all = all_of_them
+    def __init__(self, *effects: Effect) -> None:
+        self._effects = effects
 
     def begin(self, scene: Scene, now: float) -> None:
         """Begin all of them."""
-        for one in self._all:
-            one.begin(scene, now)
+        for effect in self._effects:
+            effect.begin(scene, now)
 
     def end(self, scene: Scene, now: float) -> None:
         """End all of them."""
-        for one in self._all:
-            one.end(scene, now)
+        for effect in self._effects:
+            effect.end(scene, now)
 
 
-class CommonSupplyFault(_Together):
-    """The supply that hub sensor and thermometer share is off: both show another share of what they should."""
-
-    __slots__ = ()
-
-    def __init__(self, percent: float) -> None:
-        """Show ``percent`` of what is above ambient temperature."""
-        super().__init__(SensorFault("jacket", "gain", percent), SensorFault("thermometer", "gain", percent))
+def common_supply_off(percent: float) -> Effect:
+    """The supply that hub sensor and thermometer share is off: both show ``percent`` of what is above ambient."""
+    return _Together(SensorFault("jacket", "gain", percent), SensorFault("thermometer", "gain", percent))
 
 
-class HubDetached(_Together):
-    """The hub's sensor sits loose: it takes part in the air's temperature, and follows the hub slowly."""
-
-    __slots__ = ()
-
-    def __init__(self, percent: float) -> None:
-        """Show ``percent`` of what is above ambient temperature, late by DETACHED_S."""
-        super().__init__(SensorFault("jacket", "gain", percent), SensorFault("jacket", "lag", DETACHED_S))
+def hub_detached(percent: float) -> Effect:
+    """The hub's sensor sits loose: it shows ``percent`` of what is above ambient, late by DETACHED_S."""
+    return _Together(SensorFault("jacket", "gain", percent), SensorFault("jacket", "lag", DETACHED_S))
 
 
-class HeaterElement(Effect):
+@switched
+def heater_element(scene: Scene, on: bool, now: float, percent: float) -> None:
     """The way from the controller's output to the heat is broken: a shorted relay (100 %) or an open line (0 %).
 
-    The controller goes on showing the output that it commands.
+    The controller continues to show the output that it commands.
     """
-
-    __slots__ = ("percent",)
-
-    def __init__(self, percent: float) -> None:
-        """Heat whatever the output, in percent of full power."""
-        self.percent = percent
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Break."""
-        scene.machine(WheelRig).jacket.stuck_element = self.percent
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Be mended."""
-        scene.machine(WheelRig).jacket.stuck_element = None
+    scene.machine(WheelRig).jacket.stuck_element = percent if on else None
 
 
-class LimiterDead(Effect):
+@switched
+def limiter_dead(scene: Scene, on: bool, now: float) -> None:
     """The jacket controller's own limiter does nothing (a second fault, with a stuck output)."""
-
-    __slots__ = ("_hottest_c",)
-
-    def __init__(self) -> None:
-        """Alive so far."""
-        self._hottest_c = 0.0
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Put its limit out of reach."""
-        self._hottest_c = scene.machine(WheelRig).jacket.hottest_c
-        scene.machine(WheelRig).jacket.hottest_c = 1e9
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Put it back."""
-        scene.machine(WheelRig).jacket.hottest_c = self._hottest_c
+    scene.machine(WheelRig).jacket.hottest_c = inf if on else JACKET_HOTTEST_C
 
 
 class WornSector(Effect):

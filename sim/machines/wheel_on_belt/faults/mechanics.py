@@ -2,83 +2,40 @@
 
 from __future__ import annotations
 
-from sim.faults.scene import Effect, Scene
+from sim.faults.scene import Effect, Scene, switched
 from sim.machines.wheel_on_belt.rig import WheelRig
-from sim.machines.wheel_on_belt.torque import ShaftTorque
 from sim.sensors import SpeedSensor
 
 LEAST_SHARE = 0.01
 """A scale or a size is never less than this share of what it should be: nothing is divided by 0."""
 
 
-class _OnShaft(Effect):
-    """A fault of the wheel's or the belt's shaft."""
-
-    __slots__ = ("axis",)
-
-    def __init__(self, axis: str) -> None:
-        """Of "wheel" or "belt"."""
-        self.axis = axis
-
-    def sensor(self, scene: Scene) -> SpeedSensor:
-        """Return what stands between the shaft and its drive's speed."""
-        plant = scene.machine(WheelRig).plant
-        return plant.wheel_speed if self.axis == "wheel" else plant.belt_speed
-
-    def shaft(self, scene: Scene) -> ShaftTorque:
-        """Return what stands between the shaft and its drive's torque."""
-        return scene.machine(WheelRig).wheel_shaft if self.axis == "wheel" else scene.machine(WheelRig).belt_shaft
+def _sensor(scene: Scene, axis: str) -> SpeedSensor:
+    """Return what lies between the shaft of "wheel" or "belt" and its drive's speed."""
+    plant = scene.machine(WheelRig).plant
+    return plant.wheel_speed if axis == "wheel" else plant.belt_speed
 
 
-class Reversed(_OnShaft):
+@switched
+def reversed_shaft(scene: Scene, on: bool, now: float, axis: str) -> None:
     """The shaft turns the wrong way round: the drive's direction was never set, and its encoder turns with it."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Turn round."""
-        self._turn(scene)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Turn round again."""
-        self._turn(scene)
-
-    def _turn(self, scene: Scene) -> None:
-        self.sensor(scene).factor *= -1.0
-        self.shaft(scene).way *= -1.0
+    rig = scene.machine(WheelRig)
+    _sensor(scene, axis).factor *= -1.0
+    (rig.wheel_shaft if axis == "wheel" else rig.belt_shaft).way *= -1.0
 
 
-class SpeedScale(_OnShaft):
-    """The shaft turns at another share of the speed that its drive shows: a wrong gear ratio or increment."""
-
-    __slots__ = ("share",)
-
-    def __init__(self, axis: str, percent: float) -> None:
-        """At ``percent`` of the speed shown."""
-        super().__init__(axis)
-        self.share = max(0.01 * percent, LEAST_SHARE)
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Turn at this speed."""
-        self.sensor(scene).factor /= self.share
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Turn as shown."""
-        self.sensor(scene).factor *= self.share
+@switched
+def speed_scale(scene: Scene, on: bool, now: float, axis: str, percent: float) -> None:
+    """The shaft turns at ``percent`` of the speed that its drive shows: a wrong gear ratio or increment."""
+    share = max(0.01 * percent, LEAST_SHARE)
+    sensor = _sensor(scene, axis)
+    sensor.factor = sensor.factor / share if on else sensor.factor * share
 
 
-class DrivesSwapped(Effect):
+@switched
+def drives_swapped(scene: Scene, on: bool, now: float) -> None:
     """The motors of wheel and belt are connected to each other's drives."""
-
-    __slots__ = ()
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Swap them."""
-        scene.machine(WheelRig).swapped = True
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Connect them as they should be."""
-        scene.machine(WheelRig).swapped = False
+    scene.machine(WheelRig).swapped = on
 
 
 class DiameterOff(Effect):
@@ -104,43 +61,28 @@ class DiameterOff(Effect):
             scene.machine(WheelRig).plant.set_size(1.0)
 
 
-class RubberDetached(Effect):
-    """A part of the rubber has come off its hub: the tread swings once a turn, and the force with it."""
+@switched
+def rubber_detached(scene: Scene, on: bool, now: float, swing_mm: float) -> None:
+    """A part of the rubber has come off its hub: the tread, and the force, swings once a turn by this much more.
 
-    __slots__ = ("swing_mm",)
-
-    def __init__(self, swing_mm: float) -> None:
-        """By this much more than it does anyway, peak to peak, mm."""
-        self.swing_mm = swing_mm
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Come off."""
-        plant = scene.machine(WheelRig).plant
-        plant.set_runout(plant.parameters.contact.runout + self.swing_mm)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Be bonded again."""
-        plant = scene.machine(WheelRig).plant
-        plant.set_runout(plant.parameters.contact.runout)
+    ``swing_mm``: peak to peak.
+    """
+    plant = scene.machine(WheelRig).plant
+    plant.set_runout(plant.parameters.contact.runout + (swing_mm if on else 0.0))
 
 
-class RubberRelaxes(Effect):
-    """The rubber gives way more than it should: overheated, or not cured."""
+@switched
+def rubber_relaxes(scene: Scene, on: bool, now: float, percent: float) -> None:
+    """The rubber (overheated, or not cured) relaxes by ``percent`` of the load in a decade of time, up to 15 %."""
+    plant = scene.machine(WheelRig).plant
+    sound = plant.parameters.relaxation * plant.parameters.contact.relaxation
+    plant.set_relaxation(min(0.01 * percent, 0.15) if on else sound)
 
-    __slots__ = ("share",)
 
-    def __init__(self, percent: float) -> None:
-        """By this much of the load in a decade of time, up to 15 %."""
-        self.share = min(0.01 * percent, 0.15)
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Begin to give way."""
-        scene.machine(WheelRig).plant.set_relaxation(self.share)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Behave as sound rubber does."""
-        p = scene.machine(WheelRig).plant.parameters
-        scene.machine(WheelRig).plant.set_relaxation(p.relaxation * p.contact.relaxation)
+@switched
+def belt_rubs_otherwise(scene: Scene, on: bool, now: float, percent: float) -> None:
+    """The belt has ``percent`` of its first friction: another lot, a joint, dust."""
+    scene.machine(WheelRig).plant.set_grip(max(0.01 * percent, 0.0) if on else 1.0)
 
 
 class BeltSlips(Effect):
@@ -154,7 +96,6 @@ class BeltSlips(Effect):
     def __init__(self, percent: float) -> None:
         """By this much, percent of the speed."""
         self.share = 0.01 * percent
-        self._factor = 1.0
 
     def begin(self, scene: Scene, now: float) -> None:
         """Begin to slip."""
@@ -179,10 +120,6 @@ class BeltTorn(Effect):
     __slots__ = ("_factor",)
 
     every_step = True
-
-    def __init__(self) -> None:
-        """In one piece so far."""
-        self._factor = 1.0
 
     def begin(self, scene: Scene, now: float) -> None:
         """Tear."""
@@ -212,10 +149,6 @@ class WheelSlipsOnShaft(Effect):
 
     every_step = True
 
-    def __init__(self) -> None:
-        """Clamped so far."""
-        self._factor = 1.0
-
     def begin(self, scene: Scene, now: float) -> None:
         """Come loose."""
         self._factor = scene.machine(WheelRig).plant.wheel_speed.factor
@@ -232,21 +165,3 @@ class WheelSlipsOnShaft(Effect):
         rolling = belt_m_s / (0.0005 * plant.diameter_mm)
         loose = plant.force_z_n > 0.0 and shaft != 0.0 and rolling != 0.0
         plant.wheel_speed.factor = shaft / rolling if loose else self._factor
-
-
-class BeltRubsOtherwise(Effect):
-    """The belt rubs otherwise than at first: another lot, a joint, dust."""
-
-    __slots__ = ("share",)
-
-    def __init__(self, percent: float) -> None:
-        """With ``percent`` of the friction."""
-        self.share = max(0.01 * percent, 0.0)
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Change."""
-        scene.machine(WheelRig).plant.set_grip(self.share)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """Rub as at first."""
-        scene.machine(WheelRig).plant.set_grip(1.0)
