@@ -2,14 +2,18 @@
 
 A kind is a package: ``tester.kinds.<name>``, or a laboratory's own. Its ``KIND`` is found by name in one place
 (tester.kinds.find), and ``tester.run.kind_lookup`` asks it for the rest of the program. Making a ``KIND`` imports
-nothing: what is large is behind a function.
+nothing: what is large is named by its place and imported when it is asked for::
+
+    KIND = Kind(name="sledge", ..., rig=found_at("lab_sledge.rig:SledgeRig"), runs=found_at("lab_sledge.runs:RUNS"))
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tester.analysis.fit.fit_part import FitPart
@@ -22,6 +26,15 @@ if TYPE_CHECKING:
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
     from tester.results.ring_part import RingPart
+
+
+def found_at(place: str) -> Callable[[], Any]:
+    """Return a function that imports an object and returns it; ``place``: ``package.module:OBJECT``."""
+    return partial(_object, *place.split(":"))
+
+
+def _object(module: str, name: str) -> object:
+    return getattr(import_module(module), name)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

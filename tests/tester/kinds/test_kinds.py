@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ from tester.kinds import (
     packaged_text,
 )
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.interlock_sheet import InterlockSheet
 
 
 @pytest.mark.parametrize("name", PACKAGED)
@@ -28,6 +30,14 @@ def test_a_packaged_kind_is_found_by_its_name_and_ships_rigs_of_itself(name: str
     for rig in kind.rigs:
         assert packaged_rigs()[rig] is kind
         assert isinstance(load_rig(rig), kind.rig()) and load_rig(rig).kind == name
+
+
+@pytest.mark.parametrize("name", PACKAGED)
+def test_what_a_packaged_kind_names_by_its_place_is_there(name: str) -> None:
+    kind = find(name)
+    asked = {one.name: getattr(kind, one.name) for one in fields(kind)}
+    assert all(found() is not None for found in asked.values() if callable(found))
+    assert isinstance(kind.interlocks(), InterlockSheet) and issubclass(kind.rig(), Rig)
 
 
 @pytest.mark.parametrize("name", ["wheel", "no.such:kind", "a/path.py", "tester.kinds:PACKAGED"])

@@ -6,6 +6,7 @@ from typing import Final
 
 from tester.kinds.specimen_on_track.interlocks import chamber, force, motion, operation, stops
 from tester.machine import wires
+from tester.machine.interlock_sheet import InterlockSheet
 from tester.machine.interlock_table import InterlockTable
 
 TABLE: Final = InterlockTable(
@@ -15,3 +16,4 @@ TABLE: Final = InterlockTable(
     ),
     operation.PARAMETERS,
 )  # fmt: skip
+SHEET: Final = InterlockSheet(TABLE.rows, operation.PARAMETERS, operation.ABOUT)

@@ -7,6 +7,7 @@ from typing import Any, Final
 from tester.inputs.rig.parameter import Parameter
 from tester.kinds.wheel_on_belt.interlocks import friction, hub, load, motion, operation, rest, stops, surface, witness
 from tester.machine import wires
+from tester.machine.interlock_sheet import InterlockSheet
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.row import Interlock
 
@@ -20,3 +21,4 @@ TABLE: Final = InterlockTable(
 INTERLOCKS: Final[tuple[Interlock[Any], ...]] = TABLE.rows
 PARAMETERS: Final[tuple[Parameter, ...]] = TABLE.parameters
 """Every key of the rig file's section ``interlocks``, in its order."""
+SHEET: Final = InterlockSheet(TABLE.rows, operation.PARAMETERS, operation.ABOUT)

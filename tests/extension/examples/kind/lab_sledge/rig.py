@@ -12,7 +12,8 @@ from tester.inputs.rig.ceilings import Ceiling, ceilings_of
 from tester.inputs.rig.config import OwnDevice, section_of
 from tester.inputs.rig.parameter import SECTION, Parameter
 from tester.inputs.rig.plain_rig import PlainRig
-from tester.machine.plain.rows import PlainInputs, plain_table
+from tester.machine.interlock_sheet import InterlockSheet
+from tester.machine.plain.rows import ABOUT, PlainInputs, plain_table
 from tester.machine.row import FAST, LOADED, REPAIR, Interlock
 from tester.machine.watches import at_most
 
@@ -32,6 +33,7 @@ OVERDRAWN: Interlock[PlainInputs[SledgeReadings]] = Interlock(
     reset=REPAIR,
 )
 TABLE = plain_table(OVERDRAWN)
+SHEET = InterlockSheet(TABLE.rows, TABLE.operation, ABOUT)
 Interlocks: Any = section_of("Interlocks", TABLE.parameters, __name__)
 
 
