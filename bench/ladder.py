@@ -1,0 +1,248 @@
+"""``python -m bench ladder --against COMMIT``: how fast this tree is beside an earlier one, in turns.
+
+    python -m bench ladder --against COMMIT                  # plain and compiled, five rounds: half an hour
+    python -m bench ladder --against COMMIT --plain --quick  # three rounds of the short recipes: what CI runs
+
+Both trees go into folders of their own: the sources, and, compiled, what pip installs of them. Each then runs the same
+recipes with the same seed by ``tester run``, in turns, with the packages of this interpreter. A ratio is the CPU time
+of COMMIT divided by that of this tree, so above 1 is faster; its interval holds the mean of the rounds' ratios with
+95 % (Student's t of their logarithms). The recipes are whole tests, and tests that spend nearly all of their time in
+one kind of tick: 100 Hz (sliding), 20 Hz (heated, turning), 10 Hz (at rest). A ratio whose interval lies wholly below
+``SLIP`` is a miss, and the exit code is 1; nothing is tried again. The parts of a scan, from a profile of the first
+recipe, are printed for information (plain only).
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import math
+import os
+import subprocess
+import sys
+import tarfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from statistics import fmean, stdev
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+import yaml
+
+from bench.child import ROOT
+from bench.machine import machine
+
+SLIP = 0.97
+"""Least ratio that the interval has to reach."""
+ROUNDS, QUICK_ROUNDS = 5, 3
+STUDENT = {2: 12.706, 3: 4.303, 4: 3.182, 5: 2.776, 6: 2.571, 7: 2.447, 8: 2.365, 9: 2.306, 10: 2.262}
+"""97.5 % quantile of Student's t by the number of rounds."""
+TESTER = "from tester.cli.main import main; main()"
+PROFILED = """
+import cProfile, pstats, sys
+from tester.cli.main import invoke
+profile = cProfile.Profile()
+profile.runcall(invoke, sys.argv[1:])
+parts = {}
+for (file, _, _), (_, calls, own, _, _) in pstats.Stats(profile).stats.items():
+    places = [place for place in (sys.path[0], *sys.path) if place and file.startswith(place)]
+    names = file[len(places[0]):].strip("/").split("/") if places else ["others"]
+    part = "/".join(names[:2]) if names[0] == "tester" else names[0] if names[0] in ("drivers", "sim") else "others"
+    parts[part] = parts.get(part, 0.0) + own
+print("parts", *(f"{part}={own:.3f}" for part, own in parts.items()))
+"""
+
+Changes = Mapping[str, Any]
+
+BASE: dict[str, Any] = {
+    "specimens": [{"compound": "1#"}],
+    "measure": {
+        "wheel_speed": "0.8 m/s",
+        "repeats": 1,
+        "min_valid": 1,
+        "window": "30 rev",
+        "temperature_band": "2 degC",
+        "soak": {"within": "1 degC", "for": "60 s"},
+    },
+    "grids": [{"name": "one", "slip_velocity": "300 mm/s", "load": "200 N", "temperature": "40 degC"}],
+}
+"""One condition; every recipe below changes some of its keys, in words that each version has understood."""
+
+
+class Recipe(NamedTuple):
+    """A recipe to run on both trees; ``quick``: also in the short form."""
+
+    name: str
+    text: str
+    quick: bool
+
+
+class Tree(NamedTuple):
+    """A version that is measured: the folder its packages are imported from."""
+
+    name: str
+    folder: Path
+
+    def run(self, code: str, *arguments: str) -> str:
+        """Run code with these packages and return its output; a failure ends the measurement."""
+        environment = os.environ | {"PYTHONPATH": str(self.folder)}
+        command = [sys.executable, "-P", "-c", code, *arguments]
+        done = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise SystemExit(f"{self.name}: exit code {done.returncode}\n{done.stderr[-2000:]}")
+        return done.stdout
+
+    def cpu_s(self, recipe: Path, out: Path) -> float:
+        """Run a recipe with seed 1 and return the CPU seconds of the whole command."""
+        before = os.times()
+        self.run(TESTER, "run", str(recipe), "--yes", "--seed", "1", "--out", str(out))
+        after = os.times()
+        return after.children_user - before.children_user + after.children_system - before.children_system
+
+    def parts(self, recipe: Path, out: Path) -> dict[str, float]:
+        """Return the CPU seconds that each part of the packages takes for a recipe, by a profile."""
+        printed = self.run(PROFILED, "run", str(recipe), "--yes", "--seed", "1", "--out", str(out))
+        words = next(line for line in printed.splitlines() if line.startswith("parts ")).split()[1:]
+        return {name: float(value) for name, value in (word.split("=") for word in words)}
+
+
+class Ratio(NamedTuple):
+    """Ratios of the rounds, with the interval of their mean."""
+
+    mean: float
+    low: float
+    high: float
+
+    @property
+    def misses(self) -> bool:
+        """Whether the whole interval is below ``SLIP``."""
+        return self.high < SLIP
+
+    def __str__(self) -> str:
+        return f"{self.mean:6.3f}   ({self.low:.3f} to {self.high:.3f}){'   MISSES' if self.misses else ''}"
+
+
+def ratio_of(before: Sequence[float], now: Sequence[float]) -> Ratio:
+    """Return the mean ratio of CPU times, round by round, with its 95 % interval; at least two rounds."""
+    logs = [math.log(earlier / later) for earlier, later in zip(before, now, strict=True)]
+    mean, half = fmean(logs), STUDENT[len(logs)] * stdev(logs) / math.sqrt(len(logs))
+    return Ratio(math.exp(mean), math.exp(mean - half), math.exp(mean + half))
+
+
+def recipes() -> Iterator[Recipe]:
+    """Yield the recipes: whole tests first, then one for each kind of tick."""
+    pre_grind = {"wheel_speed": "0.8 m/s", "belt_speed": "0.6 m/s", "load": "200 N", "duration": "4 min"}
+    rest = {"at_least": "20 min", "until": "25 degC", "within": "2 degC"}
+    loads, both = {"load": ["100 N", "200 N"]}, {"temperature": ["40 degC", "55 degC"]}
+    ground = {"pre_grind": pre_grind, "rest": rest}
+    yield written("four conditions", ground, {"repeats": 5, "min_valid": 3}, loads | both, quick=False)
+    yield written("two conditions", ground, {"repeats": 2}, loads)
+    slide = {"window": "800 rev", "temperature_band": "20 K", "soak": {"within": "2 degC", "for": "2 s"}}
+    slow = {"slip_velocity": "100 mm/s", "load": "100 N", "temperature": "30 degC"}
+    yield written("100 Hz, sliding", {}, slide | {"max_bursts": 1000}, slow)
+    yield written("20 Hz, turning", {}, {"soak": {"within": "1 degC", "for": "1500 s"}}, both)
+    long = {"rest": rest | {"at_least": "120 min", "at_most": "150 min"}}
+    yield written("10 Hz, at rest", ground | long, {}, {})
+
+
+def written(name: str, keys: Changes, measure: Changes, grid: Changes, quick: bool = True) -> Recipe:
+    """Return a recipe: ``BASE`` with some keys changed."""
+    changed = BASE | dict(keys) | {"measure": BASE["measure"] | dict(measure), "grids": [BASE["grids"][0] | dict(grid)]}
+    return Recipe(name, yaml.safe_dump({"recipe": name} | changed, sort_keys=False), quick)
+
+
+def sources(commit: str | None, folder: Path) -> Path:
+    """Write the sources of a commit, or of this checkout, into a folder and return it."""
+    if commit is None:
+        listed = subprocess.run(
+            ["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT, check=True, capture_output=True
+        )
+        for name in filter(None, listed.stdout.decode().split("\0")):
+            if (ROOT / name).is_file():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                (folder / name).write_bytes((ROOT / name).read_bytes())
+        return folder
+    archive = subprocess.run(["git", "archive", commit], cwd=ROOT, check=False, capture_output=True)
+    if archive.returncode:
+        raise SystemExit(f"no such commit: {commit} ({archive.stderr.decode().strip()})")
+    with tarfile.open(fileobj=io.BytesIO(archive.stdout)) as tar:
+        tar.extractall(folder, filter="data")
+    return folder
+
+
+def compiled(tree: Path, folder: Path) -> Path:
+    """Install a tree with its scan compiled into a folder, without the packages it needs, and return the folder."""
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", str(folder), str(tree)]
+    done = subprocess.run(command, env=os.environ | {"FRICTION_TESTER_COMPILE": "1"}, capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"{tree.name} does not compile:\n{done.stderr[-2000:]}")
+    return folder
+
+
+def climb(
+    trees: tuple[Tree, Tree], chosen: Sequence[Recipe], rounds: int, folder: Path, show: Callable[[str], object]
+) -> int:
+    """Run the recipes on both trees in turns, show a line for each, and return how many miss."""
+    misses = 0
+    for recipe in chosen:
+        path = folder / "recipe.yaml"
+        path.write_text(recipe.text, encoding="utf-8")
+        times: tuple[list[float], list[float]] = ([], [])
+        for number in range(rounds):
+            for side in (0, 1) if number % 2 else (1, 0):  # who begins alternates: speed drifts
+                with TemporaryDirectory(dir=folder) as out:
+                    times[side].append(trees[side].cpu_s(path, Path(out)))
+        ratio = ratio_of(*times)
+        misses += ratio.misses
+        show(f"{recipe.name:<24}{ratio}   {fmean(times[0]):.2f} s, {fmean(times[1]):.2f} s")
+    return misses
+
+
+def show_parts(trees: tuple[Tree, Tree], recipe: Recipe, folder: Path, show: Callable[[str], object]) -> None:
+    """Show the ratio of each part of the packages in one profiled run of both trees."""
+    path = folder / "recipe.yaml"
+    path.write_text(recipe.text, encoding="utf-8")
+    profiles: list[dict[str, float]] = []
+    for tree in trees:
+        with TemporaryDirectory(dir=folder) as out:
+            profiles.append(tree.parts(path, Path(out)))
+    before, now = profiles
+    show(f"parts of {recipe.name}, by a profile (which slows calls down); s before, s now, ratio")
+    for part in sorted(before.keys() | now.keys(), key=lambda part: -now.get(part, 0.0)):
+        earlier, later = before.get(part, 0.0), now.get(part, 0.0)
+        share = f"{earlier / later:6.2f}" if earlier and later else "     -"
+        show(f"    {part:<20}{earlier:8.2f}{later:8.2f}  {share}")
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Measure and print; return 1 where a ratio misses."""
+    parser = argparse.ArgumentParser(prog="python -m bench ladder", description="Speed beside an earlier commit.")
+    parser.add_argument("--against", required=True, metavar="COMMIT", help="the earlier version")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--plain", action="store_true", help="only as plain Python")
+    which.add_argument("--compiled", action="store_true", help="only compiled")
+    parser.add_argument("--quick", action="store_true", help="short recipes, three rounds")
+    parser.add_argument("--rounds", type=int, choices=sorted(STUDENT), help="rounds of every recipe (default 5)")
+    options = parser.parse_args(arguments)
+    rounds = options.rounds or (QUICK_ROUNDS if options.quick else ROUNDS)
+    chosen = [recipe for recipe in recipes() if recipe.quick or not options.quick]
+    misses = 0
+    print(", ".join(f"{key}: {value}" for key, value in machine().items() if key != "compiled scan"), flush=True)
+    with TemporaryDirectory(prefix="ladder-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        plain = (
+            Tree(options.against, sources(options.against, folder / "before")),
+            Tree("this tree", sources(None, folder / "now")),
+        )
+        for kind in ("plain", "compiled"):
+            if getattr(options, "compiled" if kind == "plain" else "plain"):
+                continue
+            trees = plain
+            if kind == "compiled":
+                before, now = (compiled(tree.folder, folder / f"{tree.folder.name}-compiled") for tree in plain)
+                trees = (Tree(plain[0].name, before), Tree(plain[1].name, now))
+            print(f"{kind}: {rounds} rounds; CPU of {options.against} by that of this tree, 95 % interval", flush=True)
+            misses += climb(trees, chosen, rounds, folder, lambda line: print(line, flush=True))
+            if kind == "plain" and not options.quick:
+                show_parts(trees, chosen[0], folder, print)
+    return int(misses > 0)
