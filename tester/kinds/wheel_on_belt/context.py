@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import inf
 from typing import Final, Protocol
 
 from tester.base.quantities import Quantities
-from tester.kinds.wheel_on_belt.control.loops import LoadLoop
-from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
+from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
 from tester.kinds.wheel_on_belt.procedures.gates import Gates
-from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
+from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife, wheel_of
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.context import BaseContext
 from tester.machine.prompts import Prompts
@@ -63,10 +61,6 @@ class CellZero(Protocol):
         ...
 
 
-def nothing_to_tell(now: float) -> None:
-    """Take note of nothing: a bench without control."""
-
-
 class Context(BaseContext[RigConfig, Readings, Demand]):
     """One per run; activities read and write it, nothing else."""
 
@@ -74,48 +68,38 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self,
         rig: RigConfig,
         readings: Readings,
-        demand: Demand,
-        gates: Gates,
         prompts: Prompts,
         journal: Recorder,
         attendant: Attendant,
         cell: CellZero,
-        wheel: WheelLife,
-        contact: LoadLoop,
-        ambient_c: float,
-        wheel_changed: Callable[[float], None] = nothing_to_tell,
-        heat: HeatBalance | None = None,
-        heat_known: str = "",
-        observer: ThermalObserver | None = None,
+        view: InterlockInputs,
         quantities: Quantities = QUANTITIES,
     ) -> None:
-        """Take the parts of a rig.
-
-        ``contact``: the press loop, which knows whether it is in contact and where the wheel was touched.
-        ``ambient_c``: air temperature at the rig, degC. ``wheel_changed`` tells control that another wheel is on the
-        rig, at ambient temperature (s). ``heat``: control's balance of the heater's energy, None on a bench without
-        control; ``heat_known``: what earlier runs make known of it, in words. ``observer``: control's model of the
-        rubber's temperature, None on a bench without control. ``quantities``: the run's table of channels.
-        """
-        super().__init__(rig, readings, demand, prompts, journal)
+        """Take the parts of a rig; ``view``: control's inputs, ``quantities``: the run's table of channels."""
+        super().__init__(rig, readings, Demand(), prompts, journal)
         self.setpoints = Setpoints()
-        self.gates = gates
+        self.gates = Gates(rig.gates)
         self.attendant = attendant
         self.cell = cell
-        self.wheel = wheel
-        self.contact = contact
-        self.ambient_c = ambient_c
-        self.wheel_changed = wheel_changed
-        self.heat = heat
-        self.heat_known = heat_known
-        self.observer = observer
         self.quantities = quantities
+        self.view = view
+        self.contact = view.state.load
+        """The press loop: whether the wheel is in contact, and where it was touched."""
+        self.heat = view.heat
+        self.observer = view.observer
+        self.wheel = wheel_of(rig.geometry)
         self.shelf: dict[tuple[int, int], WheelLife] = {}
         """The wheels that were taken off: the last of each specimen and replicate."""
         self.belt_travel_m = 0.0
         """How far the belt has travelled under load since the run began."""
-        self._was_in_contact = contact.in_contact
+        self._was_in_contact = self.contact.in_contact
         self._wear_mm3_per_n_m = rig.wear.rate_mm3_per_n_m
+
+    def put_on(self, wheel: WheelLife) -> None:
+        """Reckon with another wheel from now on: where it was touched is not known, and its turns count anew."""
+        self.wheel = wheel
+        self.contact.forget_contact()
+        self.readings.wheel_angle_rev = 0.0
 
     def before_reading(self) -> None:
         """Bring the wheel's diameters up to date: speeds are worked out with them."""
@@ -143,9 +127,9 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
             self.gates.touched_s = self.now if in_contact else inf
 
     def touching(self) -> bool:
-        """Tell whether contact is wanted, or measured."""
+        """Return whether contact is wanted, or measured."""
         return self.readings.force_z_n > CONTACT_N or self.demand.press is _LOAD
 
     def known(self) -> list[str]:
         """Return what earlier heatings make known."""
-        return [f"heat balance: {self.heat_known}"]
+        return [f"heat balance: {self.view.heat_known}"]

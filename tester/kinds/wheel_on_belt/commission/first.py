@@ -11,8 +11,8 @@ from typing import Any, Final
 from sim.physics.friction import KNOWN
 from sim.physics.slip import predict
 from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
+from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.run.build import loss_ratios
 from tester.machine.commission.commission_step import Alone, Notes
 from tester.machine.commission.person import StepRefused
 
@@ -87,7 +87,7 @@ def as_it_is_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
 def as_soaked_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
     """Return the temperature of a condition that keeps the hub about where the soak has brought it, degC.
 
-    In rolling contact the tread's excess over its cold reading is the hub's over 1 + ratio (``build.loss_ratios``). So
+    In rolling contact the tread's excess over its cold reading is the hub's over 1 + ratio (``loops.loss_ratios``). So
     the wheel is heated only once, without waiting for it to cool; ``BELOW_K`` keeps the hub below its earlier
     temperature.
     """

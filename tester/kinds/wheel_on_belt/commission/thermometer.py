@@ -1,7 +1,7 @@
 """The thermometer against the hub: cold, where both are as warm as the air, and at a soak of at most 45 degC.
 
 Cold it is the offset. Warm, lifted and turning, the tread follows the hub: its excess over the air is the hub's over
-1 + ratio (``build.loss_ratios``). What the thermometer shows of that excess is its gain, which to first order is the
+1 + ratio (``loops.loss_ratios``). What the thermometer shows of that excess is its gain, which to first order is the
 set emissivity over the true one, for a tread that is not much warmer than what it reflects.
 """
 
@@ -13,8 +13,8 @@ from typing import Final
 
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.commission.settling import MEAN_S, SettlingFit
+from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
-from tester.kinds.wheel_on_belt.run.build import loss_ratios
 from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, StepRefused, Waits, wait
 from tester.machine.motions import Power, Sequence

@@ -52,6 +52,8 @@ class InterlockInputs(Inputs):
     state: WheelState = field(kw_only=True)
     rig: RigConfig = field(kw_only=True)
     observer: ThermalObserver = field(init=False)
+    heat_known: str = ""
+    """What earlier runs make known of the heat balance, in words."""
 
     def __post_init__(self) -> None:
         """Take over the parts of the rig file that conditions compare with, and the state they look at."""
@@ -162,11 +164,11 @@ class InterlockInputs(Inputs):
         self.observer.new_wheel()
         self._forget_readings(now)
 
-    def know_heat(self, known: KnownRatio) -> str:
-        """Take over what the rig's own heatings have shown, before the first scan; return it in words."""
+    def know_heat(self, known: KnownRatio) -> None:
+        """Take over what the rig's own heatings have shown, before the first scan."""
         widest, beyond = self.parameters[HEAT_SHARE], self.parameters[HEAT_SHARE_KNOWN]
         self.heat.share = known.share(widest, beyond)
-        return known.told(widest, beyond)
+        self.heat_known = known.told(widest, beyond)
 
     def _forget_readings(self, now: float) -> None:
         """Compare no temperature with the one before."""

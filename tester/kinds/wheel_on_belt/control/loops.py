@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from math import exp, inf, isfinite, nan, pi, sqrt
+from math import exp, inf, isfinite, log, nan, pi, sqrt
 from typing import Final
 
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact_force import STIFFNESS_EXPONENT, UNLOADED_N, Contact
 from tester.kinds.wheel_on_belt.interlocks.inputs import StopStart
-from tester.kinds.wheel_on_belt.rig import HeatLoopConfig, LoadLoopConfig
+from tester.kinds.wheel_on_belt.rig import HeatLoopConfig, LoadLoopConfig, RigConfig
 from tester.machine.state import ControlState
 
 _INF: Final = inf
@@ -140,6 +140,22 @@ def _profile(distance_mm: float, loop: LoadLoopConfig) -> float:
     return sqrt(2.0 * DECELERATION_SHARE * loop.acceleration_mm_s2 * distance_mm)
 
 
+def loss_ratios(rig: RigConfig) -> tuple[float, float]:
+    """Return the steady hub-surface difference per kelvin of surface above ambient: lifted, and in rolling contact.
+
+    Resistance of hub joint and rubber times the loss conductance of the surface, from the observer's parameters
+    [A]. The rubber's side faces lose about half of their heat through the surface cells.
+    """
+    observer, thermal = rig.observer, rig.observer.thermal
+    outer, width = 0.5e-3 * rig.geometry.wheel_diameter_mm, 1e-3 * rig.geometry.wheel_width_mm
+    inner = outer - 1e-3 * observer.wheel.rubber_layer
+    resistance = log(outer / inner) / (2.0 * pi * thermal.conductivity * width) + 1.0 / thermal.hub_to_rubber
+    tread = thermal.film_rotating * 2.0 * pi * outer * width
+    sides = thermal.film_sides * pi * (outer * outer - inner * inner)
+    lifted = tread + sides
+    return resistance * lifted, resistance * (lifted + observer.belt_conductance)
+
+
 @dataclass(slots=True)
 class HeatLoop:
     """State of the outer loop."""
@@ -177,11 +193,11 @@ class HeatLoop:
 class WheelState(ControlState[Setpoints]):
     """Everything ``WheelControl.step`` carries from one scan to the next; plain data, copyable."""
 
-    def __init__(self, setpoints: Setpoints, load: LoadLoop, heat: HeatLoop) -> None:
-        """Begin in idle."""
-        super().__init__(setpoints)
-        self.load = load
-        self.heat = heat
+    def __init__(self, hub_min_c: float) -> None:
+        """Begin in idle, with the hub's setpoint at its least, degC."""
+        super().__init__(Setpoints())
+        self.load = LoadLoop()
+        self.heat = HeatLoop(hub_min_c)
         self.stop_start = StopStart()
         self.turning_since_s = inf
         """Since when the wheel has been confirmed turning."""

@@ -6,7 +6,7 @@ from math import inf
 from typing import Final
 
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
-from tester.kinds.wheel_on_belt.control.loops import WheelState
+from tester.kinds.wheel_on_belt.control.loops import WheelState, loss_ratios
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s, may_heat, may_load, rig_bounds
 from tester.kinds.wheel_on_belt.control.stop_modes import (
     cool_outputs,
@@ -39,21 +39,16 @@ _LIFT: Final = Press.LIFT
 class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
     """The control of a wheel on a belt."""
 
-    def __init__(
-        self, rig: RigConfig, state: WheelState, loss_ratios: tuple[float, float], recipe: Bounds | None = None
-    ) -> None:
-        """Bind configuration and state.
-
-        ``loss_ratios``: steady hub-surface difference per kelvin above ambient, (lifted, in rolling contact).
-        ``recipe``: the most the recipe asks for; commands stay within it and the rig's own bounds.
-        """
+    def __init__(self, rig: RigConfig, recipe: Bounds | None = None) -> None:
+        """Begin in idle; ``recipe``: the most the recipe asks for; commands stay within it and the rig's own bounds."""
+        state = WheelState(rig.loops.heat.hub_min_c)
         view = InterlockInputs(state=state, rig=rig)
         p = view.parameters
         super().__init__(
             state, view, rig.table, Demand(), Demand(), hold_at_most_s=p[HOLD_AT_MOST_S], ack_wait_s=p[ACK_WAIT_S]
         )
         self.rig = rig
-        self.loss_ratios = loss_ratios
+        self.loss_ratios = loss_ratios(rig)
         self.bounds = rig_bounds(rig) if recipe is None else rig_bounds(rig).within(recipe)
         self._parameters = p
         self._confirmed_m_s = confirmed_speed_m_s(p)

@@ -47,7 +47,7 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
             if not isfinite(self.offset_k):
                 self.offset_k = ctx.rig.loops.heat.rolling_offset_k
             target = sp.temperature_c - (self.offset_k if pulsed else 0.0)
-            within = soak_within_k(step.soak, sp.temperature_c, ctx.ambient_c, step.temperature_band_k)
+            within = soak_within_k(step.soak, sp.temperature_c, ctx.rig.ambient_c, step.temperature_band_k)
             self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
             checked = (ZeroCheck(sp.wheel_speed_m_s, self.reference_tare),) if is_due(ctx) else ()
             # A condition that resumes after a hold has had its check.

@@ -74,7 +74,7 @@ def allowed_k(hub_c: float, model_c: float) -> float:
 def soak_check(ctx: Context, condition: int) -> SoakCheck | None:
     """Return thermometer and model at the end of a condition's soak; None where one of them is not known."""
     r, observer = ctx.readings, ctx.observer
-    if observer is None or not r.jacket_valid or not isfinite(observer.surface_c):
+    if not r.jacket_valid or not isfinite(observer.surface_c):
         return None
     surface_c, model_c = ctx.gates.surface.slow_c, observer.surface_c
     if not isfinite(surface_c):

@@ -142,7 +142,7 @@ class _Heat(NamedTuple):
 
 def _heat(ctx: Context) -> _Heat | None:
     heat, r = ctx.heat, ctx.readings
-    if heat is None or not r.jacket_valid:
+    if not r.jacket_valid:
         return None
     return _Heat(heat.begun, heat.put_j, heat.shown_j, r.hub_c)
 

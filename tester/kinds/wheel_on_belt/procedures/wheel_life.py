@@ -9,12 +9,12 @@ them as ``cold_mm`` and ``diameter_mm``, brought up to date from here in every s
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, nan, pi
+from math import inf, isfinite, nan, pi
 from typing import Final
 
 from tester.analysis.wear_rate import WearCheck
 from tester.kinds.wheel_on_belt.image.process_image import Readings
-from tester.kinds.wheel_on_belt.rig import WearConfig
+from tester.kinds.wheel_on_belt.rig import GeometryConfig, WearConfig
 
 _INF: Final = inf
 SAME_SIZE_K: Final = 0.25
@@ -102,3 +102,13 @@ class WheelLife:
                 self.grown_mm = wear.growth_mm(mean_c)
         r.cold_mm = cold_mm = self.installed_mm - self.loss_mm
         r.diameter_mm = cold_mm + self.grown_mm
+
+
+def wheel_of(
+    geometry: GeometryConfig, specimen: int = 0, replicate: int = 0, wheel: int = 0, compound: str = "",
+    diameter_mm: float = nan,
+) -> WheelLife:  # fmt: skip
+    """Return a wheel of a rig's size; ``diameter_mm``: cold, where it is worn already."""
+    new_mm = geometry.wheel_diameter_mm
+    loss_mm = new_mm - diameter_mm if isfinite(diameter_mm) else 0.0
+    return WheelLife(specimen, replicate, wheel, compound, new_mm, geometry.wheel_width_mm, loss_mm)

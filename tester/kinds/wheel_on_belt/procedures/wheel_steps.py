@@ -10,7 +10,7 @@ from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, speeds_reached
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
-from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
+from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind, WornState
 from tester.machine.motions import Power, Sequence
@@ -104,30 +104,15 @@ class InstallWheel:
             return
         new_specimen = old.wheel == 0
         ctx.attendant.install(step.specimen, step.wheel, step.compound, new_specimen=new_specimen)
-        geometry = ctx.rig.geometry
-        ctx.wheel = WheelLife(
-            specimen=step.specimen,
-            replicate=step.replicate,
-            wheel=step.wheel,
-            compound=step.compound,
-            installed_mm=geometry.wheel_diameter_mm,
-            width_mm=geometry.wheel_width_mm,
-        )
-        ctx.contact.forget_contact()
-        ctx.wheel_changed(ctx.now)
-        ctx.readings.wheel_angle_rev = 0.0
-        wheel = ctx.wheel
-        record = PieceInfo(
-            wheel.wheel,
-            wheel.specimen,
-            wheel.replicate,
-            wheel.compound,
-            ctx.now,
-            wheel.installed_mm,
-            wheel.cold_mm,
-            updated_s=ctx.now,
-        )
-        ctx.journal.piece_mounted(record)
+        wheel = wheel_of(ctx.rig.geometry, step.specimen, step.replicate, step.wheel, step.compound)
+        ctx.put_on(wheel)
+        ctx.view.wheel_changed(ctx.now)
+        ctx.journal.piece_mounted(
+            PieceInfo(
+                wheel.wheel, wheel.specimen, wheel.replicate, wheel.compound, ctx.now, wheel.installed_mm,
+                wheel.cold_mm, updated_s=ctx.now,
+            )
+        )  # fmt: skip
 
     def _back_on(self, ctx: Context) -> bool:
         """Go on with a wheel that was taken off: the last of its specimen. False where none was."""
@@ -137,28 +122,19 @@ class InstallWheel:
             return False
         ctx.attendant.mount_again(wheel.specimen, wheel.wheel, wheel.compound, wheel.cold_mm, wheel.sliding_m)
         # Where the press stood at its first check says nothing once it was off.
-        ctx.wheel = replace(wheel, reference=None, last_check=None)
-        ctx.contact.forget_contact()
-        ctx.wheel_changed(ctx.now)
-        ctx.readings.wheel_angle_rev = 0.0
+        ctx.put_on(replace(wheel, reference=None, last_check=None))
+        ctx.view.wheel_changed(ctx.now)
         return True
 
     def _remount(self, ctx: Context, worn: WornState) -> None:
         """Go on with a wheel as the store knows it: its record, its first tare and its number stay."""
-        step, geometry = self.install, ctx.rig.geometry
+        step = self.install
         ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
-        ctx.wheel = WheelLife(
-            specimen=step.specimen,
-            replicate=step.replicate,
-            wheel=step.wheel,
-            compound=step.compound,
-            installed_mm=geometry.wheel_diameter_mm,
-            width_mm=geometry.wheel_width_mm,
-            loss_mm=geometry.wheel_diameter_mm - worn.diameter_mm,
-            sliding_m=worn.sliding_m,
+        wheel = wheel_of(
+            ctx.rig.geometry, step.specimen, step.replicate, step.wheel, step.compound, worn.diameter_mm
         )
-        ctx.contact.forget_contact()
-        ctx.readings.wheel_angle_rev = 0.0
+        wheel.sliding_m = worn.sliding_m
+        ctx.put_on(wheel)
 
 
 class Grind:

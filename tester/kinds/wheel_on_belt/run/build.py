@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import log, nan, pi
+from math import nan
 
 from drivers.joined_cell import JoinedCell
 from tester.analysis.closest import combining_of
@@ -10,18 +10,16 @@ from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N
 from tester.kinds.wheel_on_belt.context import Attendant, Context
-from tester.kinds.wheel_on_belt.control.loops import HeatLoop, LoadLoop, WheelState
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.control.step import WheelControl
 from tester.kinds.wheel_on_belt.image.axes import held_by, straight
 from tester.kinds.wheel_on_belt.image.devices import CELL_CHANNELS, SURFACE_CHANNELS, Devices, WheelDrives
-from tester.kinds.wheel_on_belt.image.process_image import CELL, Demand, Readings, Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import CELL, Readings
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
-from tester.kinds.wheel_on_belt.procedures.gates import Gates
 from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
 from tester.kinds.wheel_on_belt.procedures.steps import DEFAULT_LOAD_N, DEFAULT_SPEED_M_S, WheelProcedures
-from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
+from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, PreGrind, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
@@ -59,19 +57,11 @@ def take_up_wheels(ctx: Context, plan: WheelPlan, stand: Stand) -> None:
     ctx.belt_travel_m = stand.travel_m
     if stand.travel_m > 0.0:
         ctx.attendant.belt_travelled(stand.travel_m)
-    installed_mm, width_mm = ctx.wheel.installed_mm, ctx.wheel.width_mm
     for one in stand.mounted:
-        ctx.shelf[(one.specimen, one.replicate)] = WheelLife(
-            specimen=one.specimen,
-            replicate=one.replicate,
-            wheel=one.number,
-            compound=plan.specimen(one.specimen).compound,
-            installed_mm=installed_mm,
-            width_mm=width_mm,
-            loss_mm=installed_mm - one.diameter_mm,
-            sliding_m=one.sliding_m,
-            condition=one.last_condition,
-        )
+        compound = plan.specimen(one.specimen).compound
+        wheel = wheel_of(ctx.rig.geometry, one.specimen, one.replicate, one.number, compound, one.diameter_mm)
+        wheel.sliding_m, wheel.condition = one.sliding_m, one.last_condition
+        ctx.shelf[(one.specimen, one.replicate)] = wheel
 
 
 def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
@@ -117,22 +107,6 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
     return Devices(drivers, WheelDrives(wheel, belt, press, drives), cell, thermometer, drivers.controller("jacket"))
 
 
-def loss_ratios(rig: RigConfig) -> tuple[float, float]:
-    """Return the steady hub-surface difference per kelvin of surface above ambient: lifted, and in rolling contact.
-
-    Resistance of hub joint and rubber times the loss conductance of the surface, from the observer's parameters
-    [A]. The rubber's side faces lose about half of their heat through the surface cells.
-    """
-    observer, thermal = rig.observer, rig.observer.thermal
-    outer, width = 0.5e-3 * rig.geometry.wheel_diameter_mm, 1e-3 * rig.geometry.wheel_width_mm
-    inner = outer - 1e-3 * observer.wheel.rubber_layer
-    resistance = log(outer / inner) / (2.0 * pi * thermal.conductivity * width) + 1.0 / thermal.hub_to_rubber
-    tread = thermal.film_rotating * 2.0 * pi * outer * width
-    sides = thermal.film_sides * pi * (outer * outer - inner * inner)
-    lifted = tread + sides
-    return resistance * lifted, resistance * (lifted + observer.belt_conductance)
-
-
 def build_run(
     rig: RigConfig,
     plan: Plan,
@@ -150,34 +124,17 @@ def build_run(
     balance (``heatings``); ``procedures``: selects the activities of its steps.
     """
     devices = build_devices(rig, ports)
-    load = LoadLoop()
-    state = WheelState(Setpoints(), load, HeatLoop(rig.loops.heat.hub_min_c))
-    control = WheelControl(rig, state, loss_ratios(rig), plan_bounds(plan, rig))
-    geometry, quantities, cell = rig.geometry, quantities_on(rig), devices.cell
-    ctx = Context(
-        rig=rig,
-        readings=Readings(
-            cold_mm=geometry.wheel_diameter_mm,
-            diameter_mm=geometry.wheel_diameter_mm,
-            channels=[nan] * len(quantities.further),
-            joined=cell if isinstance(cell, JoinedCell) else None,
-            cell_old_s=rig.interlocks.stale_cell_s,
-        ),
-        demand=Demand(),
-        gates=Gates(rig.gates),
-        prompts=prompts,
-        journal=recorder,
-        attendant=attendant,
-        cell=cell,
-        wheel=WheelLife(installed_mm=geometry.wheel_diameter_mm, width_mm=geometry.wheel_width_mm),
-        contact=load,
-        ambient_c=rig.ambient_c,
-        wheel_changed=control.view.wheel_changed,
-        heat=control.view.heat,
-        heat_known=control.view.know_heat(heat),
-        observer=control.view.observer,
-        quantities=quantities,
+    control = WheelControl(rig, plan_bounds(plan, rig))
+    control.view.know_heat(heat)
+    diameter_mm, quantities, cell = rig.geometry.wheel_diameter_mm, quantities_on(rig), devices.cell
+    readings = Readings(
+        cold_mm=diameter_mm,
+        diameter_mm=diameter_mm,
+        channels=[nan] * len(quantities.further),
+        joined=cell if isinstance(cell, JoinedCell) else None,
+        cell_old_s=rig.interlocks.stale_cell_s,
     )
+    ctx = Context(rig, readings, prompts, recorder, attendant, cell, control.view, quantities)
     results = WheelResults(recorder, combining_of(plan.metadata))
     serving = procedures(plan, results, hardware=not rig.simulated)
     if point is not None:

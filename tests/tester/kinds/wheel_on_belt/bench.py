@@ -12,11 +12,10 @@ from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.control.loops import LoadLoop
+from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
+from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.procedures.gates import Gates
-from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
@@ -202,7 +201,7 @@ class Bench:
         r.hub_c = self.surface_c
 
 
-def make_bench(config: RigConfig | None = None, *, automatic: bool = True, ambient_c: float = 23.0) -> Bench:
+def make_bench(config: RigConfig | None = None, *, automatic: bool = True) -> Bench:
     """Return a bench at standstill, drives off, everything in order."""
     used = config or rig()
     notes, cell, diameter = Notes(), Cell(), used.geometry.wheel_diameter_mm
@@ -212,19 +211,8 @@ def make_bench(config: RigConfig | None = None, *, automatic: bool = True, ambie
         surface_c=24.0, surface_valid=True, hub_c=24.0, heat_percent=0.0, jacket_valid=True, safety_chain=True,
         guard_closed=True,
     )  # fmt: skip
-    ctx = Context(
-        rig=used,
-        readings=readings,
-        demand=Demand(),
-        gates=Gates(used.gates),
-        prompts=Prompts(automatic=automatic),
-        journal=notes,
-        attendant=NoAttendant(),
-        cell=cell,
-        wheel=WheelLife(installed_mm=diameter),
-        contact=LoadLoop(),
-        ambient_c=ambient_c,
-    )
+    view = InterlockInputs(state=WheelState(used.loops.heat.hub_min_c), rig=used)
+    ctx = Context(used, readings, Prompts(automatic=automatic), notes, NoAttendant(), cell, view)
     return Bench(ctx, notes, cell, Sampler(notes, QUANTITIES))
 
 

@@ -8,7 +8,7 @@ from math import cos, inf, pi, radians, sin
 import pytest
 
 from tester.kinds import load_rig
-from tester.kinds.wheel_on_belt.control.loops import HeatLoop, LoadLoop, WheelState
+from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.step import WheelControl
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -98,8 +98,8 @@ def healthy_readings() -> Readings:
 
 def make_bench(rig: RigConfig) -> Bench:
     """Return the rig in RUN, sliding under load with the heat on, everything in order."""
-    state = WheelState(Setpoints(), LoadLoop(), HeatLoop())
-    control = WheelControl(rig, state, (0.56, 0.81))
+    control = WheelControl(rig)
+    state = control.state
     readings = healthy_readings()
     demand = Demand(
         enabled=True, wheel_speed_m_s=0.8, belt_speed_m_s=0.5, press=Press.LOAD, load_n=200.0, surface_c=40.0

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from math import nan
+
 import pytest
 
 from tester.analysis.results import SoakCheck
-from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
 from tester.kinds.wheel_on_belt.procedures.on_record import HUB_K, MODEL_SHARE, THERMOMETER_K, allowed_k, soak_check
 from tests.tester.kinds.wheel_on_belt.bench import Bench, make_bench
 
@@ -14,7 +15,6 @@ def soaked(surface_c: float, *, model_c: float = 40.0, hub_c: float = 52.0, vali
     """Return what is found on a rig whose sensors show this."""
     bench: Bench = make_bench()
     ctx = bench.ctx
-    ctx.observer = ThermalObserver(ctx.rig)
     ctx.observer.surface_c = model_c
     ctx.readings.hub_c, ctx.readings.jacket_valid = hub_c, valid
     ctx.gates.surface.slow_c = surface_c
@@ -43,6 +43,4 @@ def test_without_a_hub_sensor_nothing_is_found() -> None:
 
 
 def test_without_a_model_nothing_is_found() -> None:
-    bench = make_bench()
-    bench.ctx.observer = None
-    assert soak_check(bench.ctx, 3) is None
+    assert soaked(40.0, model_c=nan) is None

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
-from tester.kinds.wheel_on_belt.run.build import build_run, loss_ratios
+from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.prompts import Prompts
 from tester.machine.state import Mode
 from tester.run.simulated import simulated_ports
@@ -65,7 +66,7 @@ def test_a_belt_that_draws_more_heat_needs_a_hotter_hub() -> None:
 def test_without_a_history_the_heat_balance_takes_the_file_s_share(simulation: Simulation) -> None:
     heat = simulation.ctx.heat
     assert heat is not None and heat.share == simulation.ctx.rig.interlocks.heat_share
-    assert simulation.ctx.heat_known == "no history yet; a row tells from 30 %"
+    assert simulation.ctx.known() == ["heat balance: no history yet; a row tells from 30 %"]
 
 
 def test_what_earlier_runs_have_shown_tightens_the_heat_balance() -> None:
@@ -75,4 +76,5 @@ def test_what_earlier_runs_have_shown_tightens_the_heat_balance() -> None:
     run = build_run(config, plan_of(), ports, attendant, NullRecorder(), prompts, heat=KnownRatio(3, 1.0))
     heat = run.engine.ctx.heat
     assert heat is not None and heat.share == pytest.approx(0.12)
-    assert run.engine.ctx.heat_known == "known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"
+    (known,) = run.engine.ctx.known()
+    assert known == "heat balance: known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"
