@@ -65,7 +65,7 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
     compound = yield from _compound(notes)
     yield from seat.do(FirstContact())
     reference: list[float] = []
-    tare = _tare(seat, reference)
+    tare = _tare(reference)
     yield from seat.do(Sequence(Power(True), Lift(), tare))
     if tare.failed:
         raise StepRefused(f"tare: {tare.failed}")
@@ -87,9 +87,8 @@ def _compound(notes: Notes) -> Generator[Waits, str, str]:
     return (yield from line("compound", f"{text}; any other name will do"))
 
 
-def _tare(seat: ArmedSeat, reference: list[float]) -> TakeTare:
-    limits = seat.rig.interlocks
-    return TakeTare(TARE_S, reference, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
+def _tare(reference: list[float]) -> TakeTare:
+    return TakeTare(TARE_S, reference, ends_run=False)
 
 
 def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
@@ -98,7 +97,7 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
     """
     first = SPEEDS_M_S[0]
     yield from seat.do(
-        Sequence(Power(True), Lift(), Turn(first, first), Settle(0.5), _tare(seat, []), Load(ROLLING_N, percent=5.0))
+        Sequence(Power(True), Lift(), Turn(first, first), Settle(0.5), _tare([]), Load(ROLLING_N, percent=5.0))
     )
     reversals: list[tuple[float, float]] = []
     for speed in SPEEDS_M_S:

@@ -8,23 +8,13 @@ from typing import Final
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.control.loops import WheelState, loss_ratios
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s, may_heat, may_load, rig_bounds
-from tester.kinds.wheel_on_belt.control.stop_modes import (
-    cool_outputs,
-    mirror_emergency,
-    must_cool,
-    no_outputs,
-    note_fast_stop,
-    note_stop,
-    safe_outputs,
-    stop_ended,
-    stop_outputs,
-)
+from tester.kinds.wheel_on_belt.control.stop_modes import WheelStops
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import RUNAWAY_WINDOW_S
 from tester.kinds.wheel_on_belt.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.control import Control, bounded, may_move
+from tester.machine.control import bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S
 
 CEILING_STEP_S: Final = 1.0
@@ -36,7 +26,7 @@ _LOAD: Final = Press.LOAD
 _LIFT: Final = Press.LIFT
 
 
-class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
+class WheelControl(WheelStops):
     """The control of a wheel on a belt."""
 
     def __init__(self, rig: RigConfig, recipe: Bounds | None = None) -> None:
@@ -76,53 +66,6 @@ class WheelControl(Control[WheelState, Readings, Demand, InterlockInputs]):
             f" belt {readings.belt_speed_m_s:.3f} m/s,"
             f" surface {readings.surface_c:.1f} degC, hub {readings.hub_c:.1f} degC"
         )
-
-    # -- stops ----------------------------------------------------------------------------------------------
-
-    def stop_outputs(self) -> None:
-        stop_outputs(self.state, self.view)
-
-    def safe_outputs(self) -> None:
-        safe_outputs(self.state.setpoints, self.rig, fast=True)
-
-    def emergency_outputs(self) -> None:
-        mirror_emergency(self.state.setpoints, self.rig)
-
-    def rest_outputs(self) -> None:
-        no_outputs(self.state.setpoints, self.rig)
-
-    def withdraw_escalation(self) -> None:
-        super().withdraw_escalation()
-        self.state.setpoints.jacket_silent = False
-
-    def end_lease(self, readings: Readings) -> None:
-        """Stop renewing the jacket's setpoint while it gives output."""
-        if not (readings.heat_percent <= 0.0):
-            self.state.setpoints.jacket_silent = True
-
-    def note_stop(self) -> None:
-        """Record the speeds and the press's position."""
-        note_stop(self.state, self.view, self.bounds)
-
-    def note_fast_stop(self) -> None:
-        """Record the speeds."""
-        note_fast_stop(self.state, self.view, self.bounds)
-
-    def note_rest(self) -> None:
-        """Record where the press rests."""
-        press_mm = self.view.readings.press_mm
-        self.state.stop_start.press_mm = press_mm if -_INF < press_mm < _INF else _INF
-
-    def stop_ended(self) -> bool:
-        """Return whether the rig is at rest, lifted, unloaded and without heat."""
-        return stop_ended(self.state, self.view)
-
-    def must_cool(self) -> str:
-        """Return why the hub is too hot to stop turning."""
-        return must_cool(self.view)
-
-    def cool_outputs(self) -> str:
-        return cool_outputs(self.state, self.view)
 
     # -- RUN and HOLD ---------------------------------------------------------------------------------------
 

@@ -1,4 +1,4 @@
-"""The stops, scan by scan, from leaving RUN to standstill. Their deadlines: ``interlocks.stops``."""
+"""The stops of this machine, scan by scan, from leaving RUN to standstill. Their deadlines: ``interlocks.stops``."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from math import inf, isfinite
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, confirmed_speed_m_s
-from tester.kinds.wheel_on_belt.image.process_image import Setpoints
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
 from tester.kinds.wheel_on_belt.interlocks.inputs import contactor_open, standing, unloaded
 from tester.kinds.wheel_on_belt.interlocks.operation import COOLDOWN_AT_MOST_S, COOLDOWN_HUB_C, COOLDOWN_SPEED_M_S
 from tester.kinds.wheel_on_belt.interlocks.stops import HEAT_OFF_S, LIFTED_MM, PRESS_LAG_S, SLIP_OUT_S, STOP_TIMEOUT_S
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.control import Control
 from tester.machine.state import Mode
 
 
@@ -32,78 +33,6 @@ def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
     setpoints.quick_stop = fast
 
 
-def no_outputs(setpoints: Setpoints, rig: RigConfig) -> None:
-    """Set every command to zero and want no power: at rest. What was escalated stays so until it is acknowledged."""
-    safe_outputs(setpoints, rig, fast=False)
-    setpoints.press_mm_s = 0.0
-    setpoints.enable = False
-
-
-def mirror_emergency(setpoints: Setpoints, rig: RigConfig) -> None:
-    """Set every command to zero: the hardware has taken over, and nothing may start when it gives the power back.
-
-    The quick stop ends in power off by itself; the press wants no power, so that its spring lifts it.
-    """
-    safe_outputs(setpoints, rig, fast=True)
-    setpoints.press_mm_s = 0.0
-    setpoints.enable = False
-
-
-def note_stop(state: WheelState, view: InterlockInputs, bounds: Bounds) -> None:
-    """Record the drives' speeds at the begin of a stop; an unknown speed counts as the highest allowed.
-
-    A press on its way to the contact still has its ramp ahead of it, and the lag of scan and drive.
-    """
-    start = state.stop_start
-    start.speed_m_s = _speed(view, bounds)
-    coming = max(view.press.high_mm_s, state.setpoints.press_mm_s)
-    coming_mm = coming * (view.parameters[PRESS_LAG_S] + 0.5 * coming / view.rig.axes.press.deceleration)
-    start.press_mm = view.readings.press_mm + coming_mm if isfinite(view.readings.press_mm) else inf
-
-
-def note_fast_stop(state: WheelState, view: InterlockInputs, bounds: Bounds) -> None:
-    """Record the drives' speeds at the begin of the quick stop."""
-    state.stop_start.fast_speed_m_s = _speed(view, bounds)
-
-
-def _speed(view: InterlockInputs, bounds: Bounds) -> float:
-    wheel, belt = abs(view.readings.wheel_speed_m_s), abs(view.readings.belt_speed_m_s)
-    if isfinite(wheel) and isfinite(belt):
-        return max(wheel, belt)
-    return max(bounds.wheel_speed_m_s, bounds.belt_speed_m_s)
-
-
-def stop_outputs(state: WheelState, view: InterlockInputs) -> None:
-    """Command a controlled or a fast stop."""
-    out, r, rig = state.setpoints, view.readings, view.rig
-    fast = state.mode is not Mode.STOPPING
-    wheel_rad_s = out.wheel_rad_s
-    safe_outputs(out, rig, fast=fast)
-    loaded = not (r.force_z_n < UNLOADED_N)
-    matched_m_s = confirmed_speed_m_s(view.parameters)
-    slipping = not (-matched_m_s < r.slip_m_s < matched_m_s)
-    if not fast and loaded and slipping and view.stopped_s < view.parameters[SLIP_OUT_S] and r.wheel_speed_m_s > 0.0:
-        # Slip to zero first: with equal decelerations the slower belt would stop while the wheel still turns.
-        out.wheel_rad_s = wheel_rad_s
-        out.belt_m_s = min(r.wheel_speed_m_s, rig.limits.belt_speed_m_s)
-    lifted_mm = state.load.lifted_mm(rig.loops.load) if unloaded(view) else 0.0
-    if r.press_mm <= lifted_mm + view.parameters[LIFTED_MM]:
-        out.press_mm_s = 0.0
-
-
-def stop_ended(state: WheelState, view: InterlockInputs) -> bool:
-    """Return whether the rig is at rest, lifted, unloaded and without heat, or the time for it is over ("stop not
-    ended").
-    """
-    r = view.readings
-    if r.now_s - state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
-        return True
-    lifted = r.press_mm <= state.load.lifted_mm(view.rig.loops.load) + view.parameters[LIFTED_MM]
-    if state.mode is Mode.EMERGENCY or state.setpoints.power_off or r.drives_disabled:
-        lifted = True  # the press has no power: the open contact is what counts
-    return standing(view) and lifted and unloaded(view) and heat_off(view)
-
-
 def heat_off(view: InterlockInputs) -> bool:
     """Return whether the heat is known to be off: no output and the contactor open.
 
@@ -116,22 +45,116 @@ def heat_off(view: InterlockInputs) -> bool:
     return silent or contactor_open(view)
 
 
-def must_cool(view: InterlockInputs) -> str:
-    """Return why the wheel is to turn on after a controlled stop: standing, a hot hub would bake it in one spot."""
-    r = view.readings
-    hub_c = r.hub_c if r.jacket_valid else view.jacket.hub_c
-    healthy = r.drives_enabled and not r.drive_fault
-    return "jacket hot" if healthy and hub_c > view.parameters[COOLDOWN_HUB_C] else ""
+class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
+    """Control outside RUN and HOLD; ``step`` adds what it commands in those."""
 
+    rig: RigConfig
+    bounds: Bounds
 
-def cool_outputs(state: WheelState, view: InterlockInputs) -> str:
-    """Command the cool-down: unloaded creep, heat off. Return why it is over, "" while it is not."""
-    out, r, p, now = state.setpoints, view.readings, view.parameters, view.readings.now_s
-    safe_outputs(out, view.rig, fast=False)
-    out.press_mm_s = 0.0
-    if r.jacket_valid and r.hub_c <= p[COOLDOWN_HUB_C]:
-        return "cooled down"
-    if now - state.mode_since_s > p[COOLDOWN_AT_MOST_S]:
-        return "cool-down time over"
-    out.wheel_rad_s = p[COOLDOWN_SPEED_M_S] / (r.diameter_mm * 0.5e-3) if r.diameter_mm > 1.0 else 0.0
-    return ""
+    def safe_outputs(self) -> None:
+        safe_outputs(self.state.setpoints, self.rig, fast=True)
+
+    def emergency_outputs(self) -> None:
+        """Set every command to zero: the hardware has taken over, and nothing may start when it gives the power back.
+
+        The quick stop ends in power off by itself; the press wants no power, so that its spring lifts it.
+        """
+        safe_outputs(self.state.setpoints, self.rig, fast=True)
+        self._no_power()
+
+    def rest_outputs(self) -> None:
+        """Set every command to zero and want no power. What was escalated stays so until it is acknowledged."""
+        safe_outputs(self.state.setpoints, self.rig, fast=False)
+        self._no_power()
+
+    def _no_power(self) -> None:
+        out = self.state.setpoints
+        out.press_mm_s = 0.0
+        out.enable = False
+
+    def withdraw_escalation(self) -> None:
+        super().withdraw_escalation()
+        self.state.setpoints.jacket_silent = False
+
+    def end_lease(self, readings: Readings) -> None:
+        """Stop renewing the jacket's setpoint while it gives output."""
+        if not (readings.heat_percent <= 0.0):
+            self.state.setpoints.jacket_silent = True
+
+    def note_stop(self) -> None:
+        """Record the drives' speeds at the begin of a stop, and how far the press may still come.
+
+        A press on its way to the contact still has its ramp ahead of it, and the lag of scan and drive.
+        """
+        state, view = self.state, self.view
+        start = state.stop_start
+        start.speed_m_s = self._speed()
+        coming = max(view.press.high_mm_s, state.setpoints.press_mm_s)
+        coming_mm = coming * (view.parameters[PRESS_LAG_S] + 0.5 * coming / self.rig.axes.press.deceleration)
+        start.press_mm = view.readings.press_mm + coming_mm if isfinite(view.readings.press_mm) else inf
+
+    def note_fast_stop(self) -> None:
+        self.state.stop_start.fast_speed_m_s = self._speed()
+
+    def note_rest(self) -> None:
+        press_mm = self.view.readings.press_mm
+        self.state.stop_start.press_mm = press_mm if isfinite(press_mm) else inf
+
+    def _speed(self) -> float:
+        """Return the faster of wheel and belt, m/s; an unknown speed counts as the highest allowed."""
+        wheel, belt = abs(self.view.readings.wheel_speed_m_s), abs(self.view.readings.belt_speed_m_s)
+        if isfinite(wheel) and isfinite(belt):
+            return max(wheel, belt)
+        return max(self.bounds.wheel_speed_m_s, self.bounds.belt_speed_m_s)
+
+    def stop_outputs(self) -> None:
+        """Command a controlled or a fast stop."""
+        state, view, rig = self.state, self.view, self.rig
+        out, r = state.setpoints, view.readings
+        fast = state.mode is not Mode.STOPPING
+        wheel_rad_s = out.wheel_rad_s
+        safe_outputs(out, rig, fast=fast)
+        loaded = not (r.force_z_n < UNLOADED_N)
+        matched_m_s = confirmed_speed_m_s(view.parameters)
+        slipping = not (-matched_m_s < r.slip_m_s < matched_m_s)
+        taking_out = not fast and view.stopped_s < view.parameters[SLIP_OUT_S]
+        if taking_out and loaded and slipping and r.wheel_speed_m_s > 0.0:
+            # Slip to zero first: with equal decelerations the slower belt would stop while the wheel still turns.
+            out.wheel_rad_s = wheel_rad_s
+            out.belt_m_s = min(r.wheel_speed_m_s, rig.limits.belt_speed_m_s)
+        lifted_mm = state.load.lifted_mm(rig.loops.load) if unloaded(view) else 0.0
+        if r.press_mm <= lifted_mm + view.parameters[LIFTED_MM]:
+            out.press_mm_s = 0.0
+
+    def stop_ended(self) -> bool:
+        """Return whether the rig is at rest, lifted, unloaded and without heat, or the time for it is over ("stop not
+        ended").
+        """
+        state, view = self.state, self.view
+        r = view.readings
+        if r.now_s - state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
+            return True
+        lifted = r.press_mm <= state.load.lifted_mm(self.rig.loops.load) + view.parameters[LIFTED_MM]
+        if state.mode is Mode.EMERGENCY or state.setpoints.power_off or r.drives_disabled:
+            lifted = True  # the press has no power: the open contact is what counts
+        return standing(view) and lifted and unloaded(view) and heat_off(view)
+
+    def must_cool(self) -> str:
+        """Return why the wheel is to turn on after a controlled stop: standing, a hot hub would bake it in one spot."""
+        view = self.view
+        r = view.readings
+        hub_c = r.hub_c if r.jacket_valid else view.jacket.hub_c
+        healthy = r.drives_enabled and not r.drive_fault
+        return "jacket hot" if healthy and hub_c > view.parameters[COOLDOWN_HUB_C] else ""
+
+    def cool_outputs(self) -> str:
+        """Command the cool-down: unloaded creep, heat off. Return why it is over, "" while it is not."""
+        out, r, p = self.state.setpoints, self.view.readings, self.view.parameters
+        safe_outputs(out, self.rig, fast=False)
+        out.press_mm_s = 0.0
+        if r.jacket_valid and r.hub_c <= p[COOLDOWN_HUB_C]:
+            return "cooled down"
+        if r.now_s - self.state.mode_since_s > p[COOLDOWN_AT_MOST_S]:
+            return "cool-down time over"
+        out.wheel_rad_s = p[COOLDOWN_SPEED_M_S] / (r.diameter_mm * 0.5e-3) if r.diameter_mm > 1.0 else 0.0
+        return ""

@@ -182,8 +182,7 @@ class MeasureRepeat:
 
     def _tare(self, ctx: Context) -> None:
         if self.tare is None:
-            limits = ctx.rig.interlocks
-            self.tare = TakeTare(TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+            self.tare = TakeTare(TARE_S, self.reference)
             wheel = self.setpoint.wheel_speed_m_s
             self.moves = Sequence(Power(True), Lift(), Turn(wheel, wheel), Settle(TARE_WAIT_S), self.tare)
         self._demand_heat(ctx)

@@ -130,14 +130,12 @@ class Yaw(Move):
 class TakeTare(ZeroOfCell):
     """Average the unloaded load cell over whole turns and make that its zero.
 
-    The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than ``stop_n``
-    is a damaged or touching cell (5 N warn, 20 N stop). The reference itself is no more than an
-    unloaded cell may show (``arming.unloaded``), else it is not taken.
+    The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than
+    ``interlocks.zero_stop`` is a damaged or touching cell. The reference itself is no more than an unloaded cell may
+    show (``arming.unloaded``), else it is not taken.
     """
 
-    def __init__(
-        self, seconds: float, reference: list[float], warn_n: float, stop_n: float, *, ends_run: bool = True
-    ) -> None:
+    def __init__(self, seconds: float, reference: list[float], *, ends_run: bool = True) -> None:
         """``reference``: shared list, empty until the first tare fills it.
 
         ``ends_run``: a zero that has wandered too far ends the run, which comes to its standstill with that zero: with
@@ -145,8 +143,6 @@ class TakeTare(ZeroOfCell):
         """
         super().__init__(seconds)
         self.reference = reference
-        self.warn_n = warn_n
-        self.stop_n = stop_n
         self.ends_run = ends_run
         self.drift_n = 0.0
         """Drift of the zero from the reference, N: that of the force that has moved most."""
@@ -174,9 +170,10 @@ class TakeTare(ZeroOfCell):
         ctx.journal.tare(ctx.now, kind, dict(zip(CELL, new, strict=True)), ctx.repeat_key)
 
     def _wandered(self, ctx: Context, new: tuple[float, ...]) -> str:
-        """Return "" or how far a zero is off the reference; one that is worth a warning is written down."""
+        """Return "" or how far a zero is off the reference; journal one that is worth a warning."""
+        limits = ctx.rig.interlocks
         self.drift_n = drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
         text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"
-        if drift > self.warn_n:
+        if drift > limits.zero_warn_n:
             ctx.journal.event(ctx.now, "tare", text, "warning")
-        return text if drift > self.stop_n else ""
+        return text if drift > limits.zero_stop_n else ""

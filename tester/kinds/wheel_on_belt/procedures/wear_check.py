@@ -23,7 +23,6 @@ from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, 
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, WheelLife, rubber_c
-from tester.kinds.wheel_on_belt.recipe.plan_steps import WearCheck as Method
 from tester.machine.motions import Power, Sequence, Settle
 
 TARE_WAIT_S: Final = 0.4
@@ -103,9 +102,9 @@ class CheckByRolling:
     def step(self, ctx: Context) -> bool:
         """Done when the check is in the record."""
         if self.moves is None:
-            limits, speed = ctx.rig.interlocks, self.wheel_speed_m_s
+            speed = self.wheel_speed_m_s
             # A zero that has wandered too far is not taken: the tare of the repeat that follows ends the run with it.
-            tare = TakeTare(TARE_S, self.reference_tare, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
+            tare = TakeTare(TARE_S, self.reference_tare, ends_run=False)
             self.moves = Sequence(
                 Power(True), Lift(), Straighten(), Turn(speed, speed), Settle(TARE_WAIT_S), tare, Load(ROLL_CHECK_N),
                 RollCheck(self.before),
@@ -239,12 +238,3 @@ def _doubt(ctx: Context, check: WearCheck) -> str:
     grown_mm = check.diameter_mm - last.diameter_mm
     u_mm = hypot(check.u_mm, last.u_mm, check.u_growth_mm_k * (check.rubber_c - last.rubber_c))
     return f"{grown_mm:.3f} mm larger than at the check before" if grown_mm > LARGER_BY * u_mm else ""
-
-
-def check_activity(
-    method: Method, wheel_speed_m_s: float, reference_tare: list[float], before: int
-) -> CheckByRolling | CheckByPerson | None:
-    """Return the check that a recipe asks for; None where it asks for none."""
-    if method == "each_condition":
-        return CheckByRolling(wheel_speed_m_s, reference_tare, before)
-    return CheckByPerson(before) if method == "prompt" else None

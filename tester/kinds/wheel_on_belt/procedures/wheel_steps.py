@@ -37,8 +37,7 @@ class ShowContact:
         """Done when shown, or when the zero is not to be trusted: nothing is pressed by it."""
         ctx.demand.surface_c = float("nan")
         if self.tare is None:
-            limits = ctx.rig.interlocks
-            self.tare = TakeTare(REFERENCE_TARE_S, self.reference, limits.zero_warn_n, limits.zero_stop_n)
+            self.tare = TakeTare(REFERENCE_TARE_S, self.reference)
             self.moves = Sequence(Power(True), Straighten(), self.tare, FirstContact())
         return bool(self.failed) or self.moves.step(ctx)
 

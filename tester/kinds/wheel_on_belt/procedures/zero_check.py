@@ -42,14 +42,14 @@ class ZeroCheck:
 
     def step(self, ctx: Context) -> bool:
         """Done when lifted with the new zero; raises MoveFailedError where it has moved further than it may."""
-        limits, speed = ctx.rig.interlocks, self.wheel_speed_m_s
         if self.tare is None:
             self.after_s = contact_s(ctx)
-            self.tare = TakeTare(TARE_S, self.reference_tare, limits.zero_warn_n, limits.zero_stop_n)
+            speed = self.wheel_speed_m_s
+            self.tare = TakeTare(TARE_S, self.reference_tare)
             self.moves = Sequence(Turn(speed, speed), Lift(), Settle(SETTLE_S), self.tare)
         if not self.moves.step(ctx):
             return False
-        drift_n, stop_n = self.tare.drift_n, limits.zero_stop_n
+        drift_n, stop_n = self.tare.drift_n, ctx.rig.interlocks.zero_stop_n
         text = f"zero checked after {self.after_s / 60:.0f} min of contact: {drift_n:.1f} N off, at most {stop_n:g} N"
         ctx.journal.event(ctx.now, "tare", text)
         if self.tare.failed:

@@ -31,7 +31,6 @@ class Body:
         self.turning_w_k = thermal.hub_to_shaft + sides + thermal.film_rotating * tread
         self.resistance_k_w = math.log(outer / inner) / (2.0 * math.pi * thermal.conductivity * width)
         surface_w_k = thermal.film_rotating * tread + believed.belt_conductance
-        self.rolling_w_k = self.turning_w_k + believed.belt_conductance
         # Mean of hub and rubber above ambient, per kelvin of surface above ambient, in rolling contact.
         hub_ratio = 1.0 + self.resistance_k_w * surface_w_k
         self.hub_ratio = hub_ratio

@@ -28,7 +28,6 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import WearCheck
 Speed: TypeAlias = Annotated[float, Quantity("m/s", ge=LEAST_SPEED_M_S)]
 MaxBursts: TypeAlias = Annotated[int, Field(ge=1, le=10_000)]
 RunIn: TypeAlias = Annotated[float, Quantity("m", ge=0, le=1000)]
-WearCheckName: TypeAlias = Literal["never", "each_condition", "prompt"]
 
 
 class PreGrindModel(Section, frozen=True):
@@ -78,7 +77,7 @@ class WheelMeasure(MeasureModel, frozen=True):
     wheel_speed: Speed
     max_bursts: MaxBursts = 40
     """slip pulses in which a repeat may collect its window"""
-    wear_check: WearCheckName = "never"
+    wear_check: WearCheck = "never"
     both_directions: bool = False
     """repeats alternate between the slip and its reverse (+ - - +); repeats, at_most and min_valid count pairs"""
     run_in_after_reversal: RunIn = 0.0
@@ -89,7 +88,7 @@ class WheelGrid(GridModel, frozen=True):
     """All combinations of its axes; missing keys are as in ``measure``."""
 
     max_bursts: MaxBursts | None = None
-    wear_check: WearCheckName | None = None
+    wear_check: WearCheck | None = None
     both_directions: bool | None = None
     run_in_after_reversal: RunIn | None = None
 

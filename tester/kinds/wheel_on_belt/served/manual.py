@@ -96,10 +96,8 @@ class WheelHand:
             return "the wheel is in contact: lift it first"
         if abs(r.wheel_speed_m_s) > STANDING_M_S or abs(r.belt_speed_m_s) > STANDING_M_S:
             return "the rig moves: stop wheel and belt first"
-        limits = ctx.rig.interlocks
         self.old = ctx.cell.tare
-        reference = list(self.reference_tare)
-        self.taring = TakeTare(TARE_S, reference, limits.zero_warn_n, limits.zero_stop_n, ends_run=False)
+        self.taring = TakeTare(TARE_S, list(self.reference_tare), ends_run=False)
         return ""
 
     def step(self, ctx: Context, axis: str, sign: float) -> str:

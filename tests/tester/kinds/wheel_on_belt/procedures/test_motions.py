@@ -182,7 +182,7 @@ def test_a_question_is_put_once() -> None:
 
 
 def tare(reference: list[float]) -> TakeTare:
-    return TakeTare(1.0, reference, 5.0, 20.0)
+    return TakeTare(1.0, reference)
 
 
 def test_a_tare_takes_the_mean_of_the_unloaded_cell(turning: Bench) -> None:
@@ -228,7 +228,7 @@ def test_a_zero_that_has_wandered_too_far_is_taken_only_where_it_ends_the_run(
     turning.zero_n = 3.0
     turning.run(tare(reference))
     turning.zero_n = 40.0
-    second = TakeTare(1.0, reference, 5.0, 20.0, ends_run=ends_run)
+    second = TakeTare(1.0, reference, ends_run=ends_run)
     turning.run(second)
     assert "drifted by 37.0 N" in second.failed
     assert turning.cell.tare[2] == pytest.approx(zero_n) and reference[2] == pytest.approx(3.0)
