@@ -1,4 +1,4 @@
-"""Cost of measuring one condition: closed formulas, cached by setpoint and settings.
+"""Cost of measuring one condition: closed formulas, looked up again by setpoint and settings.
 
 How long a slip pulse may last follows from the square root of time by which friction heats a half-space (H. S.
 Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: rise = 2 q sqrt(t / pi) / sqrt(k rho c)).
@@ -8,59 +8,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from sim.physics import laws
 from sim.physics.friction import KNOWN
 from sim.physics.slip import cornering_factor, slip_velocity
 from tester.analysis.judge import ALONE
 from tester.analysis.stability import REPEAT_WINDOWS
-from tester.base.axes import Axes, Setpoint
-from tester.inputs.recipe.plan import Soak, Window
-from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, Counted, expected, repeats_each
+from tester.base.axes import Setpoint
+from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, expected, repeats_each
 from tester.inputs.recipe.time_estimate import StepEstimate
-from tester.kinds.wheel_on_belt.image.axes import AXES, Held, held_by
+from tester.kinds.wheel_on_belt.image.axes import Held, held_by
 from tester.kinds.wheel_on_belt.recipe.body import Body
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
+    from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
+    from tester.kinds.wheel_on_belt.recipe.schema import WheelSettings
     from tester.kinds.wheel_on_belt.rig import RigConfig
 
 ROLLING_M_S = 1e-9
 """Slower slip than this is none: the wheel rolls, in one contact a repeat."""
 
 
-class Procedure(Counted, Protocol):
-    """Settings of a condition that affect its cost: a WheelCondition, or a grid's WheelSettings."""
-
-    @property
-    def window(self) -> Window:
-        """The window of a repeat."""
-        ...
-
-    @property
-    def temperature_band_k(self) -> float:
-        """Half the width of the temperature gate, K."""
-        ...
-
-    @property
-    def soak(self) -> Soak:
-        """What comes before the first repeat."""
-        ...
-
-    @property
-    def max_bursts(self) -> int:
-        """Most pulses a repeat."""
-        ...
-
-    @property
-    def run_in_m(self) -> float:
-        """Sliding after a reversal that does not count, m."""
-        ...
+Procedure: TypeAlias = "WheelCondition | WheelSettings"
+"""How a condition is measured: the settings of its grid, or the step itself, which has the same fields."""
 
 
 class ConditionMotion(NamedTuple):
-    """What is settled before load and temperature are: a grid has few of them beside its conditions."""
+    """Speeds and times of a condition, whatever its load and temperature: a grid has few of them."""
 
     model: laws.FrictionLaw | None
     cornering: float
@@ -94,7 +70,7 @@ def _run_in_s(how: Procedure, repeats: float, slip_m_s: float) -> float:
 
 
 class ConditionCosts:
-    """Costs of conditions on one rig; whole grids are measured alike, so they are looked up by setpoint."""
+    """Costs of conditions on one rig; specimens and replicates share theirs."""
 
     def __init__(
         self, rig: RigConfig, constants: EstimateConstants, body: Body, repeatability: Mapping[str, float] | None = None
@@ -118,20 +94,8 @@ class ConditionCosts:
         self.rubber_share = believed.friction_heat_fraction
         self.offset_k = rig.loops.heat.rolling_offset_k
         self.models = {name: laws.make(rig.sim.friction_model, name) for name in KNOWN}
-        self._take_off(AXES)
-        self._procedure: tuple[object, ...] = ()
         self._costs: dict[tuple[object, ...], StepEstimate] = {}
         self._motions: dict[tuple[object, ...], ConditionMotion] = {}
-        self._remembered: dict[
-            tuple[object, ...], tuple[dict[tuple[object, ...], StepEstimate], dict[tuple[object, ...], ConditionMotion]]
-        ] = {}
-
-    def _take_off(self, axes: Axes) -> None:
-        """Prepare for setpoints of these axes: which of their numbers a cost begins with."""
-        self._axes = axes
-        self._loaded = axes.numbers_of("load", "temperature")
-        self._moving = axes.numbers_of(*(axis.name for axis in axes if axis.name not in ("load", "temperature")))
-        """What is settled before load and temperature are."""
 
     def mu(self, compound: str, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> float:
         """Return the friction coefficient expected; a round figure for a compound without a model."""
@@ -150,54 +114,46 @@ class ConditionCosts:
 
     def of(self, setpoint: Setpoint, how: Procedure) -> StepEstimate:
         """Return what holding a setpoint takes when it is measured like this."""
-        key = (
+        procedure = (
             how.repeats, how.at_most, how.until_percent, how.window, how.temperature_band_k, how.soak, how.max_bursts,
             how.both_directions, how.run_in_m,
         )  # fmt: skip
-        if key != self._procedure:
-            self._procedure = key
-            self._costs, self._motions = self._remembered.setdefault(key, ({}, {}))
-        held = setpoint.compound, setpoint.values
-        known = self._costs.get(held)
+        key = setpoint.compound, setpoint.values, procedure
+        known = self._costs.get(key)
         if known is None:
-            known = self._costs[held] = self._cost(setpoint, how)
+            sp = held_by(setpoint)
+            moving = sp.compound, sp.slip_velocity_m_s, sp.wheel_speed_m_s, *sp.positions.values(), procedure
+            motion = self._motions.get(moving)
+            if motion is None:
+                motion = self._motions[moving] = self._motion(sp, how)
+            known = self._costs[key] = self._cost(sp.load_n, sp.temperature_c, motion, how)
         return known
 
-    def _cost(self, sp: Setpoint, how: Procedure) -> StepEstimate:
-        """Return the cost of a condition; comparisons instead of min and max, which take a third of a microsecond."""
-        if sp.axes is not self._axes:
-            self._take_off(sp.axes)
-        load_n, temperature_c = self._loaded(sp.values)
-        key = (sp.compound, self._moving(sp.values))
-        motion = self._motions.get(key)
-        if motion is None:
-            motion = self._motions[key] = self._motion(held_by(sp), how)
-        model, cornering, slip_m_s, _, soak_s, window_s, edge_s, repeat_s, moves_s, repeats, run_in_s, _ = motion
+    def _cost(self, load_n: float, temperature_c: float, motion: ConditionMotion, how: Procedure) -> StepEstimate:
+        model, slip_m_s, soak_s, repeats = motion.model, motion.slip_m_s, motion.soak_s, motion.repeats
         c = self.constants
         if slip_m_s < ROLLING_M_S:
-            seconds = soak_s + repeats * (repeat_s + window_s)
-            return StepEstimate(seconds, 0.0, 0.0, 0.0, temperature_c, 1, repeats=repeats)
-        mu = c.unknown_mu if model is None else model.mu(temperature_c, load_n, slip_m_s) * cornering
+            seconds = soak_s + repeats * (motion.repeat_s + motion.window_s)
+            return StepEstimate(seconds, peak_c=temperature_c, bursts=1, repeats=repeats)
+        mu = c.unknown_mu if model is None else model.mu(temperature_c, load_n, slip_m_s) * motion.cornering
         power_w = mu * load_n * slip_m_s
         rise_k = self.rise_k * power_w
         bursts, counted_s, held = self._bursts(motion, how, rise_k)
         if not held:
             repeats = 1.0
-        slide_s = counted_s + bursts * edge_s + run_in_s
+        slide_s = counted_s + bursts * motion.edge_s + motion.run_in_s
         sliding_m = repeats * slip_m_s * slide_s
         heat_w = self.rubber_share * power_w
         waiting_s = repeats * slide_s * self._cooling(temperature_c, heat_w)
         if heat_w > c.sink_from_w:
             waiting_s += c.sink_s_w * (heat_w - c.sink_from_w)
-        above_k, most_k = rise_k * math.sqrt(slide_s / bursts), how.temperature_band_k
-        if self.offset_k < most_k:
-            most_k = self.offset_k
+        above_k = min(rise_k * math.sqrt(slide_s / bursts), how.temperature_band_k, self.offset_k)
         return StepEstimate(
-            soak_s + repeats * (repeat_s + slide_s + bursts * moves_s) + waiting_s,
+            soak_s + repeats * (motion.repeat_s + slide_s + bursts * motion.moves_s) + waiting_s,
             sliding_m,
             self.loss_mm_per_nm * load_n * sliding_m,
             repeats * power_w * slide_s,
-            temperature_c + (above_k if above_k < most_k else most_k),
+            temperature_c + above_k,
             bursts,
             held,
             waiting_s,
@@ -231,9 +187,7 @@ class ConditionCosts:
     def _cooling(self, temperature_c: float, heat_w: float) -> float:
         """Return the seconds of waiting per second of sliding, in which the surface comes back below the setpoint."""
         c = self.constants
-        above_k = temperature_c - self.offset_k - self.ambient_c
-        if above_k < 1.0:
-            above_k = 1.0
+        above_k = max(temperature_c - self.offset_k - self.ambient_c, 1.0)
         heat_w -= c.carried_w + c.near_carried_wk / above_k
         if heat_w <= 0.0:
             return 0.0
@@ -246,12 +200,12 @@ class ConditionCosts:
 
         ``rise_k`` is the surface's rise in K per square root of a second.
         """
-        _, _, _, turn_s, _, window_s, edge_s, _, _, _, _, swing_k = motion
+        turn_s, window_s, edge_s = motion.turn_s, motion.window_s, motion.edge_s
         if rise_k <= 0.0:
             return 1, window_s, True
         c = self.constants
         # From below the setpoint to as far above it, so that the samples centre on it ...
-        each_s = (swing_k / rise_k) ** 2 - edge_s
+        each_s = (motion.swing_k / rise_k) ** 2 - edge_s
         few_s = c.few_turns * turn_s
         if each_s < few_s:
             # ... or, where that is over too soon, from below the band to its top.
@@ -266,7 +220,5 @@ class ConditionCosts:
             least_s *= 0.5
         bursts = math.ceil(window_s / min(each_s, least_s) - 0.1)
         each_s = max(each_s, window_s / bursts)
-        if bursts > how.max_bursts:
-            bursts = how.max_bursts
-        counted_s = bursts * each_s
-        return bursts, counted_s if counted_s < window_s else window_s, True
+        bursts = min(bursts, how.max_bursts)
+        return bursts, min(bursts * each_s, window_s), True
