@@ -25,6 +25,8 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Literal
 
+from tester.base.trouble import MisuseError
+
 Group = Literal["profiles", "drives", "formats", "laws", "kinds"]
 
 ALLOW_VARIABLE = "TESTER_ALLOW"
@@ -167,7 +169,7 @@ def plugins() -> Plugins:
     return Plugins(None if allowed is None else [name.strip() for name in allowed.split(",") if name.strip()])
 
 
-class MissingExtraError(Exception):
+class MissingExtraError(MisuseError):
     """A library that comes with an extra is not installed; the message gives the command that installs it."""
 
 

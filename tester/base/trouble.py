@@ -1,4 +1,4 @@
-"""Errors of the operating system in words: which file, why, and the remedy. Without error numbers."""
+"""Errors that people can mend: their base classes, and errors of the operating system in words."""
 
 from __future__ import annotations
 
@@ -31,6 +31,14 @@ _IN_WORDS: Final[Mapping[int, tuple[str, str]]] = {
 """Reason and remedy by errno."""
 _OF_SQLITE: Final[Mapping[int, int]] = {sqlite3.SQLITE_FULL: errno.ENOSPC, sqlite3.SQLITE_IOERR: errno.EIO}
 """Disk errors by SQLite's code."""
+
+
+class TroubleError(Exception):
+    """An error that a person can mend; the message gives the reason. A command prints it and ends with exit code 1."""
+
+
+class MisuseError(TroubleError):
+    """An error of the person's input: a command prints it with its usage line and ends with exit code 2."""
 
 
 def in_words(error: BaseException) -> str:

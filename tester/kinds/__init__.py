@@ -12,6 +12,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from tester.base.trouble import TroubleError
 from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ SIMULATED: Final = "sim"
 """Name of the packaged rig that counts where none is named."""
 
 
-class UnknownKindError(LookupError):
+class UnknownKindError(TroubleError, LookupError):
     """There is no such kind of rig; the message names those there are."""
 
 

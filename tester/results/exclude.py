@@ -9,7 +9,7 @@ from pathlib import Path
 from tester import __version__
 from tester.base import clock
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
-from tester.base.trouble import in_words
+from tester.base.trouble import TroubleError, in_words
 from tester.base.words import plain_text
 from tester.results import write_all
 from tester.results.formats import FORMATS
@@ -24,7 +24,7 @@ LONGEST = 2000
 """Most characters of a reason."""
 
 
-class CannotExcludeError(Exception):
+class CannotExcludeError(TroubleError):
     """The exclusion is refused; the message gives the reason, for people."""
 
 

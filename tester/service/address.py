@@ -17,6 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
+from tester.base.trouble import MisuseError
+
 HAS_UNIX = hasattr(socket, "AF_UNIX") and os.name == "posix"
 SOCKET = "service.sock"
 CARD = "service.json"
@@ -28,7 +30,7 @@ STOP_SUFFIX = ".stop"
 """Suffix of the socket for STOP, which lies beside the service's socket."""
 
 
-class AddressError(Exception):
+class AddressError(MisuseError):
     """The address is not usable; the message gives the reason."""
 
 

@@ -18,6 +18,7 @@ import sqlite3
 from typing import Final
 
 from tester import __version__
+from tester.base.trouble import TroubleError
 
 APPLICATION_ID = 0x46525431
 """``FRT1``: SQLite's application_id of a run's database, by which ``file`` and this program recognise it."""
@@ -410,7 +411,7 @@ no hash of the chain; a migration that changes values must chain those rows agai
 VERSION = 1 + len(MIGRATIONS)
 
 
-class StoreError(Exception):
+class StoreError(TroubleError):
     """A run's database cannot be used; the message gives the reason, for people."""
 
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
+from tester.base.trouble import TroubleError
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -155,7 +157,7 @@ class Sourced:
     left_out: tuple[tuple[str, str], ...] = field(default=())
 
 
-class FitError(ValueError):
+class FitError(TroubleError, ValueError):
     """A fit is impossible; the message gives the quantity, the reason and a remedy."""
 
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from tester.base.trouble import TroubleError
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     Places = NDArray[np.intp]
 
 
-class MasterError(ValueError):
+class MasterError(TroubleError, ValueError):
     """The conditions allow no master curve; the message gives the reason and a remedy."""
 
 

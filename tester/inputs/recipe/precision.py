@@ -12,6 +12,7 @@ from typing import TypeVar
 
 from tester.analysis.uncertainty import Pool
 from tester.base.axes import condition_words
+from tester.base.trouble import MisuseError
 from tester.inputs.recipe.foreseen import Foreseen
 from tester.inputs.recipe.plan import ConditionStep, Plan
 from tester.inputs.recipe.recipe_schema import MAX_REPEATS, Recipe, RepeatsModel
@@ -21,7 +22,7 @@ from tester.inputs.recipe.time_estimate import Estimate, Estimator
 AnyRecipe = TypeVar("AnyRecipe", bound=Recipe)
 
 
-class PrecisionError(Exception):
+class PrecisionError(MisuseError):
     """An unreachable total uncertainty; the message names the floor and its largest term."""
 
 

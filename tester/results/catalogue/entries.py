@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Protocol
 
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
+from tester.base.trouble import TroubleError
 from tester.base.words import finite
 from tester.results.run_results import Measured, results_of
 from tester.store.record_schema import StoreError
@@ -20,7 +21,7 @@ _MADE_BY = "1"
 """Increase it when the same record yields other entries than before: then all are made anew."""
 
 
-class CatalogueError(Exception):
+class CatalogueError(TroubleError):
     """A catalogue cannot be used; the message gives the reason."""
 
 

@@ -9,12 +9,12 @@ from importlib import import_module
 from typing import Protocol, cast
 
 from tester.base.plugins import needs
-from tester.base.trouble import in_words
+from tester.base.trouble import MisuseError, in_words
 from tester.run.pool import WorkerPool
 from tester.run.sweep.case import CaseResult, SweepTask
 
 
-class NoClusterError(Exception):
+class NoClusterError(MisuseError):
     """The cluster is not usable; the message gives the reason."""
 
 

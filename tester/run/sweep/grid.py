@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from tester.base.trouble import MisuseError
+
 _OPENING, _CLOSING, _QUOTES = "[{(", "]})", "\"'"
 
 
-class GridError(Exception):
+class GridError(MisuseError):
     """A text does not describe an axis of a sweep; the message gives the reason."""
 
 

@@ -11,6 +11,7 @@ from typing import Protocol
 from recipes import find
 from tester.base.axes import Axes
 from tester.base.processes import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
+from tester.base.trouble import MisuseError
 from tester.run.folder import make_folder
 from tester.run.kind_lookup import checked_recipe, load_rig, served_kind
 from tester.run.run_materials import kept_files, used_materials
@@ -32,7 +33,7 @@ class Audience(Protocol):
         ...
 
 
-class NotSimulatedError(Exception):
+class NotSimulatedError(MisuseError):
     """A sweep needs simulated rigs; the message names the real one."""
 
 
