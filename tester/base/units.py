@@ -186,6 +186,19 @@ def parse(text: str, unit: str) -> float:
     return parse_one_of(text, (unit,))[0]
 
 
+def rig_speed(text: str) -> float | None:
+    """Return a simulated rig's seconds per second, None for ``max``; raises ValueError for any other text."""
+    if text.strip().lower() == "max":
+        return None
+    try:
+        speed = float(text)
+    except ValueError:
+        speed = 0.0
+    if not 0.0 < speed <= 1e6:
+        raise ValueError(f'expected "max" or a number above 0 (rig seconds per second), got "{text}"')
+    return speed
+
+
 def parse_one_of(text: str, units: tuple[str, ...]) -> tuple[float, str]:
     """Return (value, unit) of a quantity that may be of several kinds, e.g. ``("rev", "s")``.
 

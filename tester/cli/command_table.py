@@ -44,7 +44,7 @@ SECTIONS: Mapping[str, Mapping[str, Listed]] = {
     "Try without a rig": {
         "new": CommandEntry("new_command", "new", "Write a recipe by answering five questions."),
         "check": CommandEntry("recipe_commands", "check", "Validate a recipe; every problem at once."),
-        "plan": CommandEntry("recipe_commands", "plan", "List the steps of a recipe and how long they take."),
+        "plan": CommandEntry("plan_command", "plan", "List the steps of a recipe and how long they take."),
         "predict": CommandEntry("predict_command", "predict", "Compute a friction law for one condition."),
         "sweep": CommandEntry("sweep_command", "sweep", "Simulate a recipe for many seeds and rig keys."),
     },

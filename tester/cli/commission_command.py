@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE, EXIT_INVALID, EXIT_TRIPPED
-from tester.cli.options import risk_option, seed_option, set_option
-from tester.cli.tui_command import SWITCH_S, SpeedType, need_terminal
+from tester.cli.options import SpeedType, risk_option, seed_option, set_option
+from tester.cli.tui_command import SWITCH_S, need_terminal
 
 if TYPE_CHECKING:
     from tester.inputs.rig import Rig

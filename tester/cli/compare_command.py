@@ -9,7 +9,7 @@ import click
 
 from tester.base.axes import ListWords
 from tester.base.words import Json
-from tester.cli.options import run_folder
+from tester.cli.options import command, json_option, results_named
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from tester.results.run_results import RunResults
 
 
-@click.command()
+@command()
 @click.argument("run1")
 @click.argument("run2", required=False)
 @click.option(
     "--compounds", nargs=2, metavar="FIRST SECOND",
     help="Compare these: FIRST of RUN1, SECOND of RUN2; without RUN2 both are of RUN1 (unless told its only two).",
 )  # fmt: skip
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option
 def compare(run1: str, run2: str | None, compounds: tuple[str, str] | None, as_json: bool) -> None:
     """Hold the conditions of RUN1 and RUN2, or of two compounds of RUN1, against each other: coefficients, difference,
     uncertainty, z.
@@ -39,7 +39,7 @@ def compare(run1: str, run2: str | None, compounds: tuple[str, str] | None, as_j
     from tester.results.compared import comparison, same_rig
 
     names = (run1, run1 if run2 is None else run2)
-    results = [_results(name) for name in names]
+    results = [results_named(name) for name in names]
     if run2 is None and compounds is None:
         compounds = _both(run1, results[0])
     kinds = [one.run.info.kind for one in results]
@@ -87,15 +87,3 @@ def _lines(table: Table[Pair], compounds: tuple[str, str] | None) -> Iterator[st
     found = table.view(Output.COMPARE)
     what = Column[Pair]("condition_words", "condition", lambda pair: words.of(pair.either.info.setpoint))
     yield from plain_lines(Table((what, *found.columns), found.rows))
-
-
-def _results(name: str) -> RunResults:
-    from tester.results.run_results import results_of
-    from tester.store.record_schema import StoreError
-    from tester.store.run_reader import RunReader
-
-    try:
-        with RunReader(run_folder(name)) as reader:
-            return results_of(reader)
-    except StoreError as error:
-        raise click.ClickException(str(error)) from error

@@ -1,7 +1,8 @@
-"""`tester components`: adhesion and hysteresis of what was measured dry and with a film."""
+"""`tester components`: adhesion and hysteresis of conditions that were measured dry and with a film."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -9,8 +10,8 @@ import click
 
 from tester.base.axes import ListWords
 from tester.base.words import Json, coefficient, finite
-from tester.cli.options import json_option, run_folder
-from tester.cli.text_table import dump, shown
+from tester.cli.options import command, json_option, results_named
+from tester.cli.text_table import dump, plain_lines, shown
 
 if TYPE_CHECKING:
     from tester.analysis.components import PartValue
@@ -23,11 +24,8 @@ ASSUMED = (
     "known of its sensitivity (0 +- 2.6 %/K where the run has one temperature)",
 )
 
-_WIDTH = 18
-"""Of a column: a value with its U."""
 
-
-@click.command()
+@command()
 @click.argument("run")
 @json_option
 def components(run: str, as_json: bool) -> None:
@@ -38,68 +36,69 @@ def components(run: str, as_json: bool) -> None:
     share is that of hysteresis in the dry coefficient. Ends with the mean share of each compound.
     """
     from tester.results.components_table import film_pairs, has_interfaces, means_of
-    from tester.results.run_results import results_of
-    from tester.store.record_schema import StoreError
-    from tester.store.run_reader import RunReader
 
-    try:
-        with RunReader(run_folder(run)) as reader:
-            results = results_of(reader)
-    except StoreError as error:
-        raise click.ClickException(str(error)) from error
+    results = results_named(run)
     if not has_interfaces(results):
         raise click.ClickException(f"{run}: its conditions do not say what is in the contact (no interface)")
     pairs = [*film_pairs(results)]
     means = [*means_of(pairs)]
     if as_json:
-        conditions: list[Json] = [_pair_json(one) for one in pairs]
+        conditions: list[Json] = [*map(_pair_json, pairs)]
         dump({"conditions": conditions, "means": [*map(_mean_json, means)], "assumed": [*ASSUMED]})
         return
     if not pairs:
         raise click.ClickException(
             f"{run}: no condition has a value both dry and with a film on one specimen (expected interface: [dry, wet])"
         )
-    words = ListWords(one.film.info.setpoint for one in pairs)
-    told = [shown(words.of(one.film.info.setpoint)) for one in pairs]
-    if words.common:
-        click.echo(f"all at {shown(words.common)}")
-    width = max(map(len, [*told, "condition"]))
-    heads = "".join(f"{head:<{_WIDTH}}" for head in ("adhesion", "hysteresis", "share"))
-    click.echo(f"{'condition':<{width}}  dry    film   {heads}warmer")
-    for text, one in zip(told, pairs, strict=True):
-        parts = one.parts
-        figures = "".join(f"{_told(each):<{_WIDTH}}" for each in (parts.adhesion, parts.hysteresis, parts.share))
-        mu = (one.dry.result.mu_resultant, one.film.result.mu_resultant)
-        warmer = f"{parts.warmer_k:+.1f} K" if isfinite(parts.warmer_k) else "-"
-        click.echo(f"{text:<{width}}  {coefficient(mu[0])}  {coefficient(mu[1])}  {figures}{warmer}")
-    for mean in means:
-        of = f"{mean.compound}, {mean.interface}: share of hysteresis, mean of {mean.conditions} conditions"
-        click.echo(f"{shown(of)}: {_told(mean.share)}")
-    if any(not isfinite(one.parts.share.expanded) for one in pairs):
-        click.echo("no U: a condition measured once does not tell its repeatability (measure: repeats: 2 or more)")
-    click.echo("dry, film: mu as measured, at the temperatures that were measured")
-    for line in ASSUMED:
+    for line in _lines(pairs, means):
         click.echo(line)
 
 
-def _told(one: PartValue) -> str:
-    value = coefficient(one.value)
-    return f"{value} ± {coefficient(one.expanded)}" if isfinite(one.expanded) else value
+def _lines(pairs: Sequence[FilmPair], means: Sequence[SharesMean]) -> Iterator[str]:
+    """Yield the setpoints that all pairs share, a row for each pair, the means, and what the values rest on."""
+    from tester.results.columns import Column, Table
+    from tester.results.components_table import FilmPair
+
+    words = ListWords(pair.film.info.setpoint for pair in pairs)
+    if words.common:
+        yield f"all at {shown(words.common)}"
+    columns = (
+        Column[FilmPair]("condition", "condition", lambda pair: words.of(pair.film.info.setpoint)),
+        Column[FilmPair]("dry", "dry", lambda pair: coefficient(pair.dry.result.mu_resultant)),
+        Column[FilmPair]("film", "film", lambda pair: coefficient(pair.film.result.mu_resultant)),
+        Column[FilmPair]("adhesion", "adhesion", lambda pair: _with_u(pair.parts.adhesion)),
+        Column[FilmPair]("hysteresis", "hysteresis", lambda pair: _with_u(pair.parts.hysteresis)),
+        Column[FilmPair]("share", "share", lambda pair: _with_u(pair.parts.share)),
+        Column[FilmPair]("warmer", "warmer (K)", lambda pair: pair.parts.warmer_k, decimals=1),
+    )
+    yield from plain_lines(Table(columns, tuple(pairs)))
+    for mean in means:
+        of = f"{mean.compound}, {mean.interface}: share of hysteresis, mean of {mean.conditions} conditions"
+        yield f"{shown(of)}: {_with_u(mean.share)}"
+    if any(not isfinite(pair.parts.share.expanded) for pair in pairs):
+        yield "no U: a condition measured once does not show its repeatability (measure: repeats: 2 or more)"
+    yield "dry, film: mu as measured, at the temperatures that were measured"
+    yield from ASSUMED
 
 
-def _estimate_json(one: PartValue) -> dict[str, Json]:
-    return {"value": finite(one.value), "u": finite(one.standard), "U": finite(one.expanded)}
+def _with_u(part: PartValue) -> str:
+    value = coefficient(part.value)
+    return f"{value} ± {coefficient(part.expanded)}" if isfinite(part.expanded) else value
 
 
-def _pair_json(one: FilmPair) -> dict[str, Json]:
-    held, parts = one.film.info.setpoint, one.parts
+def _estimate_json(part: PartValue) -> dict[str, Json]:
+    return {"value": finite(part.value), "u": finite(part.standard), "U": finite(part.expanded)}
+
+
+def _pair_json(pair: FilmPair) -> dict[str, Json]:
+    info, parts = pair.film.info, pair.parts
     return {
-        "compound": held.compound,
-        "specimen": one.film.info.specimen,
-        "replicate": one.film.info.replicate,
-        **{axis.column: axis.of(held) for axis in held.axes},
-        "mu_dry_as_measured": finite(one.dry.result.mu_resultant),
-        "mu_film_as_measured": finite(one.film.result.mu_resultant),
+        "compound": info.setpoint.compound,
+        "specimen": info.specimen,
+        "replicate": info.replicate,
+        **{axis.column: axis.of(info.setpoint) for axis in info.setpoint.axes},
+        "mu_dry_as_measured": finite(pair.dry.result.mu_resultant),
+        "mu_film_as_measured": finite(pair.film.result.mu_resultant),
         "adhesion": _estimate_json(parts.adhesion),
         "hysteresis": _estimate_json(parts.hysteresis),
         "hysteresis_share": _estimate_json(parts.share),
@@ -107,10 +106,10 @@ def _pair_json(one: FilmPair) -> dict[str, Json]:
     }
 
 
-def _mean_json(one: SharesMean) -> dict[str, Json]:
+def _mean_json(mean: SharesMean) -> dict[str, Json]:
     return {
-        "compound": one.compound,
-        "interface": one.interface,
-        "conditions": one.conditions,
-        "hysteresis_share": _estimate_json(one.share),
+        "compound": mean.compound,
+        "interface": mean.interface,
+        "conditions": mean.conditions,
+        "hysteresis_share": _estimate_json(mean.share),
     }

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
-
 import click
 
-from tester.cli.options import run_folder
+from tester.cli.options import Decorated, command, results_named, run_folder
 from tester.cli.text_table import shown
-
-Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 
 def _of_a_repeat(command: Decorated) -> Decorated:
@@ -21,7 +16,7 @@ def _of_a_repeat(command: Decorated) -> Decorated:
     return click.argument("run")(command)
 
 
-@click.command()
+@command()
 @_of_a_repeat
 def exclude(run: str, repeat: str, reason: str, operator: str | None) -> None:
     """Leave a repeat of RUN out of its condition's mean, and make the run's tables anew.
@@ -31,7 +26,7 @@ def exclude(run: str, repeat: str, reason: str, operator: str | None) -> None:
     _say(run, repeat, reason, operator, excluded=True)
 
 
-@click.command()
+@command()
 @_of_a_repeat
 def include(run: str, repeat: str, reason: str, operator: str | None) -> None:
     """Take a repeat of RUN that was excluded into its condition's mean again, and make the run's tables anew."""
@@ -41,21 +36,14 @@ def include(run: str, repeat: str, reason: str, operator: str | None) -> None:
 def _say(run: str, repeat: str, reason: str, operator: str | None, *, excluded: bool) -> None:
     from tester.base.lock import user
     from tester.results.exclude import CannotExcludeError, Word, parse_target, record_word
-    from tester.results.run_results import results_of
-    from tester.store.record_schema import StoreError
-    from tester.store.run_reader import RunReader
 
     folder = run_folder(run)
     try:
         condition, number = parse_target(repeat)
     except CannotExcludeError as error:
         raise click.UsageError(str(error)) from error
-    try:
-        record_word(folder, Word(condition, number, excluded, reason, user() if operator is None else operator))
-        with RunReader(folder) as reader:
-            results = results_of(reader)
-    except (CannotExcludeError, StoreError) as error:
-        raise click.ClickException(str(error)) from error
+    record_word(folder, Word(condition, number, excluded, reason, user() if operator is None else operator))
+    results = results_named(run)
     row = next(row for row in results.all_rows() if any(one.info.condition == condition for one in row.replicates))
     n = f"valid {row.result.counts.words}"
     click.echo(f"{condition}/{number} {'excluded' if excluded else 'included'}: {shown(row.describe())}, {n}", err=True)

@@ -1,21 +1,49 @@
-"""Options that several commands share, and the parameter type for quantities."""
+"""Options that several commands share, and a command whose errors a person can mend."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import click
 
+from tester.base.trouble import MisuseError, TroubleError
 from tester.base.units import UnitError, parse
 
 if TYPE_CHECKING:
     from tester.inputs.rig import Rig
-
+    from tester.kinds.kind import Kind
+    from tester.results.run_results import RunResults
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+
+
+class ReportedCommand(click.Command):
+    """A command that reports the errors a person can mend as click does: their message, and exit code 1 or 2."""
+
+    def invoke(self, ctx: click.Context) -> object:
+        try:
+            return super().invoke(ctx)
+        except MisuseError as error:
+            raise click.UsageError(str(error), ctx) from error
+        except TroubleError as error:
+            from tester.cli.text_table import shown
+
+            raise click.ClickException("\n".join(map(shown, str(error).split("\n")))) from error
+
+
+class ReportedGroup(click.Group):
+    """A group of such commands."""
+
+    command_class = ReportedCommand
+
+
+def command(name: str | None = None) -> Callable[[Callable[..., object]], click.Command]:
+    """Return the decorator that makes a ReportedCommand of a function."""
+    return click.command(name, cls=ReportedCommand)
 
 
 class QuantityType(click.ParamType[float]):
@@ -36,78 +64,96 @@ class QuantityType(click.ParamType[float]):
             self.fail(str(error), param, ctx)
 
 
-def rig_option(command: Decorated) -> Decorated:
-    """Add --rig: the rig's file, or sim."""
-    return click.option(
-        "--rig",
-        "rig_name",
-        default="sim",
-        show_default=True,
-        metavar="RIG",
-        help="Rig file, or sim for the simulated rig.",
-    )(command)
+class SpeedType(click.ParamType[float | None]):
+    """Rig seconds per second: a number above 0, or max, which is None."""
+
+    name = "speed"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
+        """Return the number, None for max; any other text is a usage error."""
+        from tester.base.units import rig_speed
+
+        try:
+            return rig_speed(str(value))
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
 
 
-def set_option(command: Decorated) -> Decorated:
-    """Add --set KEY=VALUE, any number of times."""
-    return click.option(
-        "--set",
-        "overrides",
-        multiple=True,
-        metavar="KEY=VALUE",
-        help="Replace one key of the rig file, e.g. sim.noise=0. May be given again.",
-    )(command)
+class RigChoice(NamedTuple):
+    """The rig of a command, as ``load_rig(*choice)`` takes it: its file or name, replaced keys, accepted risk."""
+
+    name: str
+    overrides: tuple[str, ...]
+    accept_risk: str
+
+    def remark(self, rig: Rig) -> None:
+        """Print on stderr the keys that take the packaged value, and lines set otherwise than their devices' profiles
+        say.
+        """
+        from tester.inputs.rig.checks import other_settings
+        from tester.kinds import packaged_keys
+
+        if keys := packaged_keys(self.name, self.overrides):
+            click.echo(f"{self.name}: packaged values count for {', '.join(keys)}", err=True)
+            click.echo(f"{self.name}: `tester rig upgrade {self.name}` writes them in", err=True)
+        for text in other_settings(rig):
+            click.echo(f"{self.name}: warning: {text}", err=True)
 
 
-def risk_option(command: Decorated) -> Decorated:
-    """Add --accept-risk REASON."""
-    return click.option(
-        "--accept-risk",
-        "accept_risk",
-        default="",
-        metavar="REASON",
-        help="Why safety keys of the rig may be looser than they should be; stored and shown with the run.",
-    )(command)
+rig_option = click.option(
+    "--rig", "rig_name", default="sim", show_default=True, metavar="RIG",
+    help="Rig file, or sim for the simulated rig.",
+)  # fmt: skip
+set_option = click.option(
+    "--set", "overrides", multiple=True, metavar="KEY=VALUE",
+    help="Replace one key of the rig file, e.g. sim.noise=0. May be given again.",
+)  # fmt: skip
+risk_option = click.option(
+    "--accept-risk", default="", metavar="REASON",
+    help="Why safety keys of the rig may be looser than they should be; stored and shown with the run.",
+)  # fmt: skip
+seed_option = click.option(
+    "--seed", default=0, show_default=True, metavar="N", type=click.IntRange(0, 2**63 - 1),
+    help="Seed of the simulated rig.",
+)  # fmt: skip
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout.")
+yes_option = click.option(
+    "--yes", is_flag=True, help="Answer prompts with yes, but those that ask a person to a real rig."
+)
+operator_option = click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
+lapse_option = click.option(
+    "--speed", type=SpeedType(), default="max", metavar="max|X",
+    help="Simulated rig: as fast as it goes, or X times real time.",
+)  # fmt: skip
+bus_log_option = click.option(
+    "--bus-log", default=None, metavar="DIR", type=click.Path(path_type=Path),
+    help="Write every CAN and Modbus frame into this folder.",
+)  # fmt: skip
+theme_option = click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours.")
+ascii_option = click.option("--ascii", "plain", is_flag=True, help="Draw with ASCII characters only.")
 
 
-def seed_option(command: Decorated) -> Decorated:
-    """Add --seed: where all randomness of the simulated rig comes from."""
-    return click.option(
-        "--seed",
-        default=0,
-        show_default=True,
-        metavar="N",
-        type=click.IntRange(0, 2**63 - 1),
-        help="Seed of the simulated rig.",
-    )(command)
+def runs_option(text: str) -> Callable[[Decorated], Decorated]:
+    """Return --out, the folder of the runs; ``text``: its help."""
+    folder = click.Path(path_type=Path)
+    return click.option("--out", default=Path("runs"), show_default=True, metavar="DIR", type=folder, help=text)
 
 
-def json_option(command: Decorated) -> Decorated:
-    """Add --json: data for programs on stdout."""
-    return click.option("--json", "as_json", is_flag=True, help="Print JSON on stdout.")(command)
+def rig_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add --rig, --set and --accept-risk, which arrive as one RigChoice named ``rig``."""
+
+    @wraps(function)
+    def chosen(
+        *arguments: object, rig_name: str, overrides: tuple[str, ...], accept_risk: str, **others: object
+    ) -> object:
+        return function(*arguments, rig=RigChoice(rig_name, overrides, accept_risk), **others)
+
+    return rig_option(set_option(risk_option(chosen)))
 
 
 def print_json(data: object) -> None:
     """Print data as one line of JSON, numbers in full precision; not-a-number is refused (ValueError)."""
     click.echo(json.dumps(data, ensure_ascii=False, allow_nan=False))
-
-
-def say_other_settings(rig_name: str, rig: Rig) -> None:
-    """Say on stderr which lines are set otherwise than the profiles of their devices say."""
-    from tester.inputs.rig.checks import other_settings
-
-    for text in other_settings(rig):
-        click.echo(f"{rig_name}: warning: {text}", err=True)
-
-
-def say_packaged_keys(rig_name: str, overrides: Sequence[str]) -> None:
-    """Say on stderr for which keys the packaged value counts, because the rig file does not have them."""
-    from tester.kinds import packaged_keys
-
-    keys = packaged_keys(rig_name, overrides)
-    if keys:
-        click.echo(f"{rig_name}: packaged values count for {', '.join(keys)}", err=True)
-        click.echo(f"{rig_name}: `tester rig upgrade {rig_name}` writes them in", err=True)
 
 
 def run_folder(name: str) -> Path:
@@ -119,3 +165,21 @@ def run_folder(name: str) -> Path:
         return find_run(name)
     except StoreError as error:
         raise click.UsageError(str(error)) from error
+
+
+def results_named(run: str) -> RunResults:
+    """Return a run's results; raises StoreError."""
+    from tester.results.run_results import results_of
+    from tester.store.run_reader import RunReader
+
+    with RunReader(run_folder(run)) as reader:
+        return results_of(reader)
+
+
+def kind_in(folder: Path) -> Kind:
+    """Return the kind of a run's rig; raises StoreError, UnknownKindError."""
+    from tester.kinds import find
+    from tester.store.run_reader import RunReader
+
+    with RunReader(folder) as reader:
+        return find(reader.run().info.kind)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED
-from tester.cli.options import json_option
+from tester.cli.options import command, json_option
 from tester.cli.text_table import Json, dump
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tester.analysis.papers.item import Paper
 
 
-@click.command()
+@command()
 @click.option("--all", "every", is_flag=True, help="Every figure, table, equation and statement of all papers.")
 @json_option
 def paper(every: bool, as_json: bool) -> int:
@@ -26,12 +26,7 @@ def paper(every: bool, as_json: bool) -> int:
     on appendix B, and the errors that the paper quotes. With --all: a page with each item of this paper
     and of the two that the laws persson and greta come from, with an error that is worked out now and a verdict.
     """
-    from tester.base.plugins import MissingExtraError
-
-    try:
-        return _all(as_json) if every else _one(as_json)
-    except MissingExtraError as error:
-        raise click.UsageError(str(error)) from error
+    return _all(as_json) if every else _one(as_json)
 
 
 def _one(as_json: bool) -> int:

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.options import run_folder
+from tester.cli.options import command, run_folder
 
 if TYPE_CHECKING:
     from tester.report.charts import Material
     from tester.report.record_section import RunRecord
 
 
-@click.command()
+@command()
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True)
 @click.option(
     "--out", type=click.Path(dir_okay=False, path_type=Path), default=None,
@@ -30,7 +30,6 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     The file holds everything, fetches nothing and has no script. A browser prints it, on paper or as PDF. Several runs
     are held against each other. The file's name is printed.
     """
-    from tester.base.plugins import MissingExtraError
     from tester.cli.kind_words import material_of
     from tester.report.page import page_of
     from tester.report.report_build import report_of
@@ -41,10 +40,7 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     def showing(record: RunRecord) -> Material:
         return material_of(record.results, law, published)
 
-    try:
-        page = page_of(report_of(records, showing))
-    except MissingExtraError as error:
-        raise click.UsageError(str(error)) from error
+    page = page_of(report_of(records, showing))
     path = out if out is not None else Path("reports") / f"{records[0].name}.html"
     path.parent.mkdir(parents=True, exist_ok=True)
     write_file(path, [page.encode()])
@@ -52,15 +48,11 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
 
 
 def _record(folder: Path) -> RunRecord:
-    """Return what is told of a run; raises ClickException where it cannot be read."""
+    """Return the data of a run for a report; raises StoreError."""
     from tester.cli.kind_words import words_of
     from tester.report.record_section import read_record
-    from tester.store.record_schema import StoreError
     from tester.store.run_reader import RunReader
 
-    try:
-        with RunReader(folder) as reader:
-            info = reader.run().info
-        return read_record(folder, words_of(info))
-    except StoreError as error:
-        raise click.ClickException(str(error)) from error
+    with RunReader(folder) as reader:
+        info = reader.run().info
+    return read_record(folder, words_of(info))

@@ -6,19 +6,11 @@ from pathlib import Path
 
 import click
 
-from tester.cli.options import (
-    json_option,
-    print_json,
-    rig_option,
-    risk_option,
-    say_other_settings,
-    say_packaged_keys,
-    set_option,
-)
+from tester.cli.options import ReportedGroup, RigChoice, json_option, print_json, rig_options
 from tester.kinds import DEFAULT
 
 
-@click.group()
+@click.group(cls=ReportedGroup)
 def rig() -> None:
     """Write, show or complete a rig file."""
 
@@ -52,21 +44,18 @@ def init(file: Path, force: bool, kind: str, like: str) -> None:
 
 
 @rig.command()
-@rig_option
-@set_option
-@risk_option
+@rig_options
 @json_option
-def show(rig_name: str, overrides: tuple[str, ...], accept_risk: str, as_json: bool) -> None:
+def show(rig: RigChoice, as_json: bool) -> None:
     """Check a rig file and print it with everything resolved."""
     from tester.kinds import load_rig
 
-    config = load_rig(rig_name, overrides, accept_risk)
+    config = load_rig(*rig)
     if as_json:
         print_json(config.tree)
     else:
         click.echo(config.text, nl=False)
-    say_packaged_keys(rig_name, overrides)
-    say_other_settings(rig_name, config)
+    rig.remark(config)
 
 
 @rig.command()

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from tester.base.words import Json, duration
+from tester.cli.options import command, json_option
 from tester.cli.text_table import dump, shown
 from tester.store.run_folders import RunStatus
 
@@ -15,7 +17,7 @@ if TYPE_CHECKING:
     from tester.results.catalogue.entries import RunEntry
 
 
-@click.command()
+@command()
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), default=None, help="Folder of the runs (runs)."
 )
@@ -24,7 +26,7 @@ if TYPE_CHECKING:
 @click.option("--until", default="", metavar="DATE", help="Runs begun on or before a date (UTC).")
 @click.option("--recipe", default="", metavar="TEXT", help="Runs whose recipe's name holds this text.")
 @click.option("--status", type=click.Choice([one.value for one in RunStatus]), default=None, help="Runs that stand so.")
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option
 def runs(
     out: Path | None, compound: str, since: str, until: str, recipe: str, status: str | None, as_json: bool
 ) -> None:
@@ -33,21 +35,15 @@ def runs(
     With TESTER_CATALOGUE=postgresql://... the runs of everybody who shares that catalogue.
     """
     from tester.results.catalogue import open_catalogue
-    from tester.results.catalogue.entries import CatalogueError, WantedRuns, refresh
+    from tester.results.catalogue.entries import WantedRuns, refresh
     from tester.store.run_folders import RUNS
 
     under = out or RUNS
     wanted = WantedRuns(compound, _date(since, "--since"), _end_of(_date(until, "--until")), recipe)
-    try:
-        catalogue = open_catalogue(under)
-        try:
-            refresh(catalogue, under)
-            found = catalogue.runs(wanted)
-        finally:
-            catalogue.close()
-    except CatalogueError as error:
-        raise click.ClickException(str(error)) from error
-    found = [run for run in found if not status or run.status == status]
+    with closing(open_catalogue(under)) as catalogue:
+        refresh(catalogue, under)
+        stored = catalogue.runs(wanted)
+    found = [run for run in stored if not status or run.status == status]
     if as_json:
         dump([_record(run) for run in found])
         return

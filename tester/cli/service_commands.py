@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.processes import EXIT_FAILED, EXIT_UNREACHABLE
+from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_UNREACHABLE
 from tester.base.words import conditions_done, duration
-from tester.cli.options import json_option, print_json, rig_option, risk_option, set_option
+from tester.cli.options import RigChoice, command, json_option, print_json, rig_options, runs_option
+from tester.cli.text_table import shown
 
 if TYPE_CHECKING:
     from tester.service.address import Address
@@ -18,26 +20,15 @@ if TYPE_CHECKING:
     from tester.service.state_view import StateView
 
 NO_SERVICE = "no service is running: start one with `tester serve`"
-Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+connect_option = click.option(
+    "--connect", "address", default="", metavar="URL", help="The service: unix:PATH or ws://127.0.0.1:PORT."
+)
+take_option = click.option("--take", is_flag=True, help="Take control from the client that has it.")
 
 
-def connect_option(command: Decorated) -> Decorated:
-    """Add --connect: where the service listens."""
-    return click.option(
-        "--connect", "address", default="", metavar="URL", help="The service: unix:PATH or ws://127.0.0.1:PORT."
-    )(command)
-
-
-def take_option(command: Decorated) -> Decorated:
-    """Add --take: take control from the client that has it."""
-    return click.option("--take", is_flag=True, help="Take control from the client that has it.")(command)
-
-
-@click.command()
-@rig_option
-@set_option
-@risk_option
-@click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder that gets the runs' folders.")
+@command()
+@rig_options
+@runs_option("Folder that gets the runs' folders.")
 @click.option("--connect", "address", default="", metavar="URL", help="Listen at unix:PATH instead of the user's own.")
 @click.option("--tcp", "port", default=None, metavar="PORT", type=click.IntRange(0, 65535),
               help="Listen on loopback TCP with a token instead of a Unix socket; 0 = any port.")  # fmt: skip
@@ -45,33 +36,23 @@ def take_option(command: Decorated) -> Decorated:
               help="Extension that may be loaded: entry point or package.module:object.")  # fmt: skip
 @click.option("--notify", default="", metavar="COMMAND",
               help="Command to run on a trip, hold, prompt, end or full disk; JSON on its standard input.")  # fmt: skip
-def serve(
-    rig_name: str,
-    overrides: tuple[str, ...],
-    accept_risk: str,
-    out: str,
-    address: str,
-    port: int | None,
-    allowed: tuple[str, ...],
-    notify: str,
-) -> int:
+def serve(rig: RigChoice, out: Path, address: str, port: int | None, allowed: tuple[str, ...], notify: str) -> int:
     """Own the rig and run what clients ask for. Runs continue when they disconnect.
 
     Nothing moves by starting it. TERM or Ctrl+C stops a run in a controlled way and leaves at standstill.
     """
-    from pathlib import Path
-
     from tester.service.service import ServiceOptions
     from tester.service.service_process import host
 
-    return host(ServiceOptions(rig_name, overrides, Path(out), accept_risk, allowed), address, port, notify)
+    options = ServiceOptions(rig.name, rig.overrides, out, rig.accept_risk, allowed)
+    return host(options, address, port, notify)
 
 
-@click.command()
+@command()
 @connect_option
 @json_option
 def status(address: str, as_json: bool) -> int:
-    """Say what the rig is doing; exit code 4 where no service is running."""
+    """Print what the rig is doing; exit code 4 where no service is running."""
 
     async def ask(client: Client) -> None:
         _show(client.state, as_json)
@@ -86,40 +67,40 @@ def status(address: str, as_json: bool) -> int:
         else:
             click.echo(NO_SERVICE, err=True)
         return EXIT_UNREACHABLE
-    return 0
+    return EXIT_DONE
 
 
-@click.command()
+@command()
 @connect_option
 @take_option
 def hold(address: str, take: bool) -> int:
     """Lift, take the slip out and keep the temperature; the repeat under way is done again after `tester release`."""
     from tester.service.commands import Hold
 
-    return _command(address, Hold(), take)
+    return give(address, Hold(), take)
 
 
-@click.command()
+@command()
 @connect_option
 @take_option
 def release(address: str, take: bool) -> int:
     """Resume a run that `tester hold` holds."""
     from tester.service.commands import Release
 
-    return _command(address, Release(), take)
+    return give(address, Release(), take)
 
 
-@click.command()
+@command()
 @connect_option
 @take_option
 def ack(address: str, take: bool) -> int:
     """Acknowledge every alarm and a latched trip. Nothing moves by it."""
     from tester.service.commands import Acknowledge
 
-    return _command(address, Acknowledge(), take)
+    return give(address, Acknowledge(), take)
 
 
-@click.command()
+@command()
 @connect_option
 @click.option("--fast", is_flag=True, help="Quick stop of both drives instead of a controlled stop.")
 def stop(address: str, fast: bool) -> int:
@@ -128,22 +109,15 @@ def stop(address: str, fast: bool) -> int:
     from tester.service.stop_call import NotTakenError, StopCall
 
     try:
-        with StopCall(_address(address), _name()) as call:
+        with StopCall(address_named(address), _name()) as call:
             call.stop(fast=fast)
-    except NotTakenError:
-        pass  # its lane is not there: as any other command then
-    else:
-        return 0
-    return _command(address, Stop(fast=fast), take=False, control=False)
+    except NotTakenError:  # without the lane for STOP it goes the way of any other command
+        return give(address, Stop(fast=fast), take=False, control=False)
+    return EXIT_DONE
 
 
-def run_detached(address: str, action: Action, take: bool) -> int:
-    """Have the service run a recipe, print the run's folder and leave it to the service; return the exit code."""
-    return _command(address, action, take, show_folder=True)
-
-
-def _command(address: str, action: Action, take: bool, *, control: bool = True, show_folder: bool = False) -> int:
-    """Give one command; return the exit code."""
+def give(address: str, action: Action, take: bool, *, control: bool = True, show_folder: bool = False) -> int:
+    """Give the service one command and return the exit code; ``show_folder``: print the run's folder."""
     from tester.service.client import LostError, NoServiceError, RefusedError
     from tester.service.commands import TakeControl
 
@@ -164,7 +138,7 @@ def _command(address: str, action: Action, take: bool, *, control: bool = True, 
         hint = ": `--take` takes control" if may_take and "has control" in str(error) else ""
         click.echo(f"refused: {error}{hint}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
         return EXIT_FAILED
-    return 0
+    return EXIT_DONE
 
 
 def _with_client(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool) -> None:
@@ -174,24 +148,21 @@ def _with_client(address: str, work: Callable[[Client], Awaitable[None]], *, con
     from tester.service.client import Client
 
     async def session() -> None:
-        async with await Client.connect(_address(address), name=_name(), control=control) as client:
+        async with await Client.connect(address_named(address), name=_name(), control=control) as client:
             await work(client)
 
     asyncio.run(session())
 
 
-def _address(text: str) -> Address | None:
-    """Return the address that was typed, None for the user's own service. Raises UsageError."""
-    from tester.service.address import AddressError, address_of
+def address_named(text: str) -> Address | None:
+    """Return the address that was typed, None for the user's own service; raises AddressError."""
+    from tester.service.address import address_of
 
-    try:
-        return address_of(text) if text else None
-    except AddressError as error:
-        raise click.UsageError(str(error)) from error
+    return address_of(text) if text else None
 
 
 def _name() -> str:
-    """Return how a command is called at the service."""
+    """Return a command's name at the service."""
     import os
 
     return f"command of process {os.getpid()}"
@@ -205,7 +176,7 @@ def _show(state: StateView, as_json: bool) -> None:
         click.echo(to_json(state, inf_nan_mode="null"))
         return
     for line in _lines(state):
-        click.echo("".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in line))
+        click.echo(shown(line))
 
 
 def _lines(state: StateView) -> list[str]:

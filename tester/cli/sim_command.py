@@ -2,77 +2,53 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
 import click
 
-from tester.cli.options import rig_option, risk_option, seed_option, set_option
+from tester.base.processes import EXIT_DONE, EXIT_FAILED
+from tester.cli.options import RigChoice, bus_log_option, command, rig_options, seed_option
+
+if TYPE_CHECKING:
+    from sim.servers.doors import Doors
+
+PATH = click.Path(path_type=Path)
+TIMES = click.FloatRange(0.01, 100.0)
+"""How many times as fast as real time."""
 
 
-@click.command("sim")
-@rig_option
-@set_option
-@risk_option
+@command()
+@rig_options
 @seed_option
 @click.option("--compound", default="", metavar="NAME", help="Rubber of the specimen on the rig (the kind's first).")
 @click.option(
-    "--listen",
-    default="127.0.0.1",
-    show_default=True,
-    metavar="HOST[:PORT]",
+    "--listen", default="127.0.0.1", show_default=True, metavar="HOST[:PORT]",
     help="Loopback address of TCP doors; CAN is on PORT, the lines after it. Without PORT: any free ones.",
 )
 @click.option("--slcan", is_flag=True, help="CAN on a pseudo-terminal, as an slcan adapter, instead of TCP.")
 @click.option("--rtu", is_flag=True, help="Modbus RTU on a pseudo-terminal for each line, instead of TCP.")
 @click.option(
-    "--can",
-    default="",
-    metavar="INTERFACE:CHANNEL",
+    "--can", default="", metavar="INTERFACE:CHANNEL",
     help="CAN on a real interface of python-can, e.g. socketcan:vcan0, instead of TCP.",
 )
-@click.option("--links", default="", metavar="DIR", help="Folder for links to the pseudo-terminals.")
+@click.option("--links", default=None, metavar="DIR", type=PATH, help="Folder for links to the pseudo-terminals.")
 @click.option(
-    "--speed",
-    default=1.0,
-    show_default=True,
-    metavar="X",
-    type=click.FloatRange(0.01, 100.0),
+    "--speed", default=1.0, show_default=True, metavar="X", type=TIMES,
     help="The rig lives X times as fast, for all: its time-outs are X times as short for programs.",
 )
+@click.option("--idle-speed", default=None, metavar="X", type=TIMES, help="X while no program is on its CAN bus.")
 @click.option(
-    "--idle-speed",
-    default=None,
-    metavar="X",
-    type=click.FloatRange(0.01, 100.0),
-    help="The same while no program is on its CAN bus.",
-)
-@click.option(
-    "--control",
-    default=None,
-    metavar="PORT",
-    type=click.IntRange(0, 65535),
+    "--control", default=None, metavar="PORT", type=click.IntRange(0, 65535),
     help="Take commands (faults, speed, state; see help) over TCP on this port of loopback; 0 = any free one.",
 )
 @click.option("--console", is_flag=True, help="Take commands from standard input also where it is no terminal.")
-@click.option("--write-rig", default=None, metavar="FILE", help="Write the rig file that reaches it.")
-@click.option("--log", default=None, metavar="FILE", help="Write the rig's true state every 10 ms, as CSV.")
-@click.option("--bus-log", default=None, metavar="DIR", help="Write every CAN and Modbus frame into this folder.")
+@click.option("--write-rig", default=None, metavar="FILE", type=PATH, help="Write the rig file that reaches it.")
+@click.option("--log", default=None, metavar="FILE", type=PATH, help="Write the rig's true state every 10 ms, as CSV.")
+@bus_log_option
 def sim(
-    rig_name: str,
-    overrides: tuple[str, ...],
-    accept_risk: str,
-    seed: int,
-    compound: str,
-    listen: str,
-    slcan: bool,
-    rtu: bool,
-    can: str,
-    links: str,
-    speed: float,
-    idle_speed: float | None,
-    control: int | None,
-    console: bool,
-    write_rig: str | None,
-    log: str | None,
-    bus_log: str | None,
+    rig: RigChoice, listen: str, slcan: bool, rtu: bool, can: str, links: Path | None, console: bool, **options: Any
 ) -> int:
     """Let a simulated rig live until it is interrupted, and say on stdout where it can be reached.
 
@@ -80,54 +56,40 @@ def sim(
     with the FILE of --write-rig, runs a recipe on it as on a machine. On a terminal, commands can be typed: `help`
     lists them, `fault belt drive heartbeat lost for 3 s` is one.
     """
-    import sys
-    from pathlib import Path
-
-    from sim.servers.doors import Doors
+    # ``options`` has the fields of SimOptions that no other option changes.
     from tester.run.sim_process import SimOptions, run_sim
 
-    host, port = _loopback(listen)
-    if slcan and can:
-        raise click.UsageError("--slcan and --can: the CAN bus has one door")
-    if can and not all(can.partition(":")):
-        raise click.UsageError(f"--can: expected INTERFACE:CHANNEL such as socketcan:vcan0, not {can!r}")
+    doors = _doors(listen, slcan, rtu, can, links)
     at_terminal = sys.stdin is not None and sys.stdin.isatty() and sys.stdout is not None and sys.stdout.isatty()
-    options = SimOptions(
-        rig=rig_name,
-        overrides=overrides,
-        accept_risk=accept_risk,
-        seed=seed,
-        compound=compound,
-        doors=Doors(
-            can="slcan" if slcan else can or "tcp",
-            lines="rtu" if rtu else "tcp",
-            host=host,
-            port=port,
-            links=str(Path(links).absolute()) if links else "",
-        ),
-        speed=speed,
-        idle_speed=idle_speed,
-        control=control,
-        typed=console or at_terminal,
-        write_rig=Path(write_rig) if write_rig else None,
-        log=Path(log) if log else None,
-        bus_log=Path(bus_log) if bus_log else None,
-    )
     status = StatusLine() if at_terminal else None
     try:
-        latest_s = run_sim(options, _say, status.show if status is not None else None)
+        simulated = SimOptions(*rig, doors=doors, typed=console or at_terminal, **options)
+        latest_s = run_sim(simulated, click.echo, status.show if status is not None else None)
     except (ValueError, FileNotFoundError) as error:  # a rubber that the kind does not have
         raise click.UsageError(str(error)) from error
     except OSError as error:
         from tester.base.trouble import in_words
 
         click.echo(f"cannot listen on {listen}, open a door or write a file: {in_words(error)}", err=True)
-        return 1
+        return EXIT_FAILED
     finally:
         if status is not None:
             status.close()
     click.echo(f"ended; at most {1e3 * latest_s:.1f} ms late", err=True)
-    return 0
+    return EXIT_DONE
+
+
+def _doors(listen: str, slcan: bool, rtu: bool, can: str, links: Path | None) -> Doors:
+    """Return the doors of the rig's wires; a usage error where two are asked for the CAN bus."""
+    from sim.servers.doors import Doors
+
+    host, port = _loopback(listen)
+    if slcan and can:
+        raise click.UsageError("--slcan and --can: the CAN bus has one door")
+    if can and not all(can.partition(":")):
+        raise click.UsageError(f"--can: expected INTERFACE:CHANNEL such as socketcan:vcan0, not {can!r}")
+    folder = str(links.absolute()) if links is not None else ""
+    return Doors("slcan" if slcan else can or "tcp", "rtu" if rtu else "tcp", host, port, folder)
 
 
 class StatusLine:
@@ -151,11 +113,6 @@ class StatusLine:
         """Give the line back."""
         if self._rows:
             click.echo(f"\x1b7\x1b[r\x1b[{self._rows};1H\x1b[2K\x1b8", nl=False)
-
-
-def _say(line: str) -> None:
-    """Print at once, also into a pipe."""
-    click.echo(line)
 
 
 def _loopback(text: str) -> tuple[str, int]:

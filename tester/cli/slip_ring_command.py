@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.options import run_folder
+from tester.cli.options import command, json_option, run_folder
 from tester.cli.text_table import dump
 
 if TYPE_CHECKING:
     from tester.analysis.ring_runs import RingRun
 
 
-@click.command("slip-ring")
+@command("slip-ring")
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True)
 @click.option("--before", type=float, default=0.0, metavar="TURNS", help="What the ring had turned before the first.")
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option
 def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
     """Show how requests over the slip ring failed in each RUN: time-outs, bad checksums, late replies of the jacket.
 

@@ -8,55 +8,28 @@ from pathlib import Path
 
 import click
 
-from tester.cli.options import rig_option, run_folder
-from tester.cli.service_commands import connect_option
+from tester.cli.options import SpeedType, ascii_option, command, rig_option, run_folder, runs_option, theme_option
+from tester.cli.service_commands import address_named, connect_option
 
-MAX = "max"
 SWITCH_S = 0.001
 """How long drawing may keep the interpreter from the thread that sends STOP, s (Python: 5 ms)."""
 
 
-class SpeedType(click.ParamType[float | None]):
-    """Rig seconds per second: a number above 0, or max."""
-
-    name = "speed"
-
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float | None:
-        """Return the number, None for max."""
-        text = str(value)
-        if text == MAX:
-            return None
-        try:
-            speed = float(text)
-        except ValueError:
-            speed = 0.0
-        if not 0.0 < speed <= 1e6:
-            self.fail(f'expected "max" or a number above 0 (rig seconds per second), got "{text}"', param, ctx)
-        return speed
-
-
-@click.command()
+@command()
 @connect_option
 @rig_option
 @click.option("--speed", type=SpeedType(), default="1", show_default=True, metavar="X",
               help="Rig seconds per second of simulated runs that are started here, or max.")  # fmt: skip
-@click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder of the runs.")
-@click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours.")
-@click.option("--ascii", "plain", is_flag=True, help="Draw with ASCII characters only.")
+@runs_option("Folder of the runs.")
+@theme_option
+@ascii_option
 @click.option("--view", "view_only", is_flag=True, help="Watch only: command nothing, start no service.")
 @click.option("--web", is_flag=True, help="Serve a view-only screen to browsers of this machine (extra: web).")
 @click.option("--port", type=click.IntRange(1, 65535), default=8000, show_default=True, help="Of --web.")
 def tui(
-    address: str,
-    rig_name: str,
-    speed: float | None,
-    out: str,
-    theme: str | None,
-    plain: bool,
-    view_only: bool,
-    web: bool,
-    port: int,
-) -> int:
+    address: str, rig_name: str, speed: float | None, out: Path, theme: str | None, plain: bool, view_only: bool,
+    web: bool, port: int,
+) -> int:  # fmt: skip
     """Show the rig, choose recipes, run them, see results. Starts the service if none runs.
 
     F12 or Ctrl+X is STOP on every screen. Leaving with q touches no run.
@@ -64,20 +37,12 @@ def tui(
     if web:
         return _serve(port, address)
     need_terminal("tester tui", "`tester status`, `tester run` and `tester stop` need none")
-    from tester.service.address import AddressError, address_of
     from tester.tui.app import TesterApp
     from tester.tui.host import TuiOptions
 
-    try:
-        where = address_of(address) if address else None
-    except AddressError as error:
-        raise click.UsageError(str(error)) from error
     app = TesterApp(
-        TuiOptions(
-            rig=rig_name, speed=speed, runs=Path(out), address=where, plain=plain, view_only=view_only,
-            theme=theme or "",
-        )
-    )  # fmt: skip
+        TuiOptions(rig_name, speed, out, address_named(address), plain=plain, view_only=view_only, theme=theme or "")
+    )
     sys.setswitchinterval(SWITCH_S)
     farewell = app.run()
     if farewell:
@@ -86,7 +51,7 @@ def tui(
 
 
 def need_terminal(command: str, instead: str) -> None:
-    """Raise UsageError where there is no terminal to draw on and to read keys from; a browser's is none of ours."""
+    """Raise UsageError where there is no terminal to draw on and to read keys from. A browser's screen needs none."""
     if "TEXTUAL_DRIVER" in os.environ:
         return
     if not all(stream is not None and stream.isatty() for stream in (sys.__stdin__, sys.__stderr__)):
@@ -106,23 +71,18 @@ def _serve(port: int, address: str) -> int:
     return 0
 
 
-@click.command()
+@command()
 @click.argument("run")
-@click.option("--theme", type=click.Choice(["dark", "light", "16"]), default=None, help="Colours.")
-@click.option("--ascii", "plain", is_flag=True, help="Draw with ASCII characters only.")
+@theme_option
+@ascii_option
 def replay(run: str, theme: str | None, plain: bool) -> int:
     """Show RUN (a folder, a name under runs, or latest) as it went; space plays, arrows seek. No rig is needed."""
-    from tester.store.record_schema import StoreError
     from tester.tui.playback import load
     from tester.tui.replay import ReplayApp
     from tester.tui.stored import read
 
     folder = run_folder(run)
     need_terminal("tester replay", "`tester show` needs none")
-    try:
-        playback, stored = load(folder), read(str(folder), folder.parent)
-    except StoreError as error:
-        raise click.ClickException(str(error)) from error
-    app = ReplayApp(playback, stored, plain=plain, theme=theme or "")
+    app = ReplayApp(load(folder), read(str(folder), folder.parent), plain=plain, theme=theme or "")
     app.run()
     return app.return_code or 0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
-from tester.cli.options import json_option, print_json, run_folder
+from tester.cli.options import command, json_option, print_json, run_folder
 
 if TYPE_CHECKING:
     from tester.results.verify import Verification
@@ -21,7 +21,7 @@ def _hash(_context: click.Context, _parameter: click.Parameter, value: str) -> s
     return value
 
 
-@click.command()
+@command()
 @click.argument("run")
 @click.option("--head", metavar="HASH", default="", callback=_hash, help="The record's head as you have kept it.")
 @json_option
