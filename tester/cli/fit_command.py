@@ -9,13 +9,14 @@ import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.base.words import Json
-from tester.cli.options import json_option
+from tester.cli.measured_sources import of_one_kind, print_left_out
+from tester.cli.options import command, json_option
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
-    from tester.analysis.fit.fit_law import FitPoint, Law, Sourced
-    from tester.analysis.fit.fit_part import FitPart
-    from tester.analysis.fit.joint import GroupFit
+    from tester.analysis.fit.fit_law import FitPoint, Law
+    from tester.analysis.fit.fit_part import FitPart, PublishedTable
+    from tester.analysis.fit.joint import Errors, GroupFit
     from tester.kinds.kind import Kind
 
 
@@ -27,7 +28,7 @@ class Conditions(NamedTuple):
     left_out: list[tuple[str, str]]
 
 
-@click.command()
+@command()
 @click.argument("sources", metavar="SOURCE...", nargs=-1, required=True)
 @click.option(
     "--validate", "validation", multiple=True, metavar="SOURCE", help="Conditions to predict. May be given again."
@@ -72,51 +73,41 @@ def fit(
     """
     from tester.analysis.fit.fit_law import FitError, by_group
     from tester.analysis.fit.joint import fit_group
-    from tester.base.plugins import MissingExtraError
 
     fitted, others = _conditions(sources), _conditions(validation) if validation else None
     part = _part(fitted.kind)
-    if others is not None and others.kind.name != fitted.kind.name:
-        raise click.UsageError(f"--validate: conditions of the kind {others.kind.name}, not {fitted.kind.name}")
+    _refuse_mixed(fitted, sources, others, validation)
     if check and not part.checked(sources, validation):
         raise click.UsageError(
             f"--check: nothing is asked of this fit (expected {part.packaged[0]} --validate {part.packaged[-1]})"
         )
-    both = sorted(set(sources) & set(validation))
-    if both:
-        raise click.UsageError(f"--validate: {', '.join(both)} is fitted, and says nothing of other conditions")
     law = _law(part, law_name)
-    try:
-        groups = by_group(fitted.points)
-        if not groups:
-            raise FitError(f"no condition of {', '.join(sources)} can be fitted{_why(fitted.left_out)}")
-        figures = _figures(givens)
-        fits = [
-            fit_group(part.bound(law, name, surface, figures), name, own, part.cells, _held(law, name, holds))
-            for name, own in groups.items()
-        ]
-        table = part.published_table() if check else None
-    except MissingExtraError as error:
-        raise click.UsageError(str(error)) from error
-    except FitError as error:
-        raise click.ClickException(shown(str(error))) from error
+    groups = by_group(fitted.points)
+    if not groups:
+        raise FitError(f"no condition of {', '.join(sources)} can be fitted{_why(fitted.left_out)}")
+    figures = _figures(givens)
+    fits = [
+        fit_group(part.bound(law, name, surface, figures), name, own, part.cells, _held(law, name, holds))
+        for name, own in groups.items()
+    ]
     rows = by_group(others.points) if others is not None else None
-    told = _as_json(law, fits, rows, fitted, force) if as_json else {}
-    if not as_json:
-        _print(law, fits, rows, fitted, others, force)
-    if table is not None:
-        from tester.analysis.fit import as_json as plain
-        from tester.analysis.fit.fit_text import table_lines
-
-        told["check"] = plain.table(table)
-        if not as_json:
-            click.echo()
-            for line in table_lines(table):
-                click.echo(line)
+    table = part.published_table() if check else None
     if as_json:
-        dump(told)
+        dump(_as_json(law, fits, rows, fitted, force, table))
+    else:
+        _print(law, fits, rows, [*fitted.left_out, *(others.left_out if others is not None else [])], force, table)
     missed = table is not None and bool(table.missed)
     return EXIT_FAILED if missed or not all(one.sound for one in fits) else EXIT_DONE
+
+
+def _refuse_mixed(
+    fitted: Conditions, sources: Sequence[str], others: Conditions | None, validation: Sequence[str]
+) -> None:
+    """Raise UsageError where --validate names conditions of another kind, or conditions that are fitted."""
+    if others is not None and others.kind.name != fitted.kind.name:
+        raise click.UsageError(f"--validate: conditions of the kind {others.kind.name}, not {fitted.kind.name}")
+    if both := sorted(set(sources) & set(validation)):
+        raise click.UsageError(f"--validate: {', '.join(both)} is fitted, and shows nothing of other conditions")
 
 
 def _part(kind: Kind) -> FitPart:
@@ -134,36 +125,12 @@ def _law(part: FitPart, name: str | None) -> Law:
 
 
 def _conditions(names: Sequence[str]) -> Conditions:
-    """Return the conditions of sources of one kind; what is none, or named twice, is a usage error."""
-    doubled = sorted({name for name in names if names.count(name) > 1})
-    if doubled:
-        raise click.UsageError(f"{', '.join(doubled)}: named twice, and its conditions would count twice")
-    found = [_source(name) for name in names]
-    kinds = {kind.name: kind for kind, _ in found}
-    if len(kinds) > 1:
-        raise click.UsageError(f"conditions of different kinds of rigs: {', '.join(kinds)}")
-    points = [point for _, one in found for point in one.points]
-    left_out = [entry for _, one in found for entry in one.left_out]
-    return Conditions(found[0][0], points, left_out)
-
-
-def _source(name: str) -> tuple[Kind, Sourced]:
-    from tester.base.source import InvalidSource
-    from tester.cli.options import run_folder
-    from tester.kinds import UnknownKindError, find, packaged_conditions
-    from tester.store.record_schema import StoreError
-    from tester.store.run_reader import RunReader
-
-    kind = packaged_conditions().get(name)
-    if kind is not None:
-        return kind, _part(kind).packaged_points(name)
-    folder = run_folder(name)
-    try:
-        with RunReader(folder) as reader:
-            kind = find(reader.run().info.kind)
-        return kind, _part(kind).run_points(folder)
-    except (StoreError, UnknownKindError, InvalidSource) as error:
-        raise click.ClickException(str(error)) from error
+    """Return the conditions of sources of one kind."""
+    kind, found = of_one_kind(
+        names, lambda kind, name: _part(kind).packaged_points(name), lambda kind, folder: _part(kind).run_points(folder)
+    )
+    points = [point for one in found for point in one.points]
+    return Conditions(kind, points, [entry for one in found for entry in one.left_out])
 
 
 def _held(law: Law, group: str, holds: Sequence[str]) -> dict[str, float]:
@@ -208,59 +175,54 @@ def _print(
     law: Law,
     fits: Sequence[GroupFit],
     rows: dict[str, list[FitPoint]] | None,
-    fitted: Conditions,
-    others: Conditions | None,
+    left_out: Sequence[tuple[str, str]],
     force: bool,
+    table: PublishedTable | None,
 ) -> None:
-    from tester.analysis.fit.fit_text import all_lines, group_lines, law_line, trend_lines, verdict_lines
+    from tester.analysis.fit.fit_text import all_lines, group_lines, law_line, table_lines, trend_lines, verdict_lines
     from tester.analysis.fit.joint import overall
 
-    click.echo(law_line(law))
-    for one in fits:
-        for line in verdict_lines(one):
-            click.echo(shown(line))
+    lines = [law_line(law), *(line for one in fits for line in verdict_lines(one))]
     if not force and not all(one.sound for one in fits):
-        click.echo("--force prints the intervals and trends that are not to be relied on")
-    click.echo()
+        lines.append("--force prints the intervals and trends that are not to be relied on")
+    lines.append("")
     for one in fits:
-        validation = one.errors_on(rows.get(one.group, [])) if rows is not None else None
-        for line in group_lines(one, validation, force=force):
-            click.echo(shown(line))
-    click.echo("\nall:")
-    for line in all_lines(overall(fits, rows)):
-        click.echo(line)
-    click.echo("\nwhat it says:")
-    for line in trend_lines(fits, force=force):
+        lines += group_lines(one, _errors(one, rows), force=force)
+    lines += ["", "all:", *all_lines(overall(fits, rows)), "", "what it says:", *trend_lines(fits, force=force)]
+    for line in lines:
         click.echo(shown(line))
-    reasons: dict[str, list[str]] = {}
-    for label, reason in [*fitted.left_out, *(others.left_out if others is not None else [])]:
-        reasons.setdefault(reason, []).append(label)
-    for reason, labels in reasons.items():
-        click.echo(f"left out ({shown(reason)}): {shown(', '.join(labels))}", err=True)
+    print_left_out(left_out)
     unseen = sorted(set(rows or {}) - {one.group for one in fits})
     if unseen:
         click.echo(f"not predicted, for nothing was fitted to it: {shown(', '.join(unseen))}", err=True)
+    for line in ["", *table_lines(table)] if table is not None else ():
+        click.echo(line)
+
+
+def _errors(fit: GroupFit, rows: dict[str, list[FitPoint]] | None) -> Errors | None:
+    """Return how far a fit is off the conditions of its group that it has not seen."""
+    return fit.errors_on(rows.get(fit.group, [])) if rows is not None else None
 
 
 def _as_json(
-    law: Law, fits: Sequence[GroupFit], rows: dict[str, list[FitPoint]] | None, fitted: Conditions, force: bool
+    law: Law,
+    fits: Sequence[GroupFit],
+    rows: dict[str, list[FitPoint]] | None,
+    fitted: Conditions,
+    force: bool,
+    table: PublishedTable | None,
 ) -> dict[str, Json]:
     from tester.analysis.fit import as_json as plain
     from tester.analysis.fit.joint import overall
 
     every = overall(fits, rows)
-    groups: list[Json] = []
-    for one in fits:
-        validation = one.errors_on(rows.get(one.group, [])) if rows is not None else None
-        groups.append(plain.group(one, validation, force=force))
+    groups: list[Json] = [plain.group(one, _errors(one, rows), force=force) for one in fits]
+    errors = {"errors": every.fitted, "left_out": every.left_out, "validation": every.validation}
     return {
         "law": law.name,
         "formula": law.formula,
         "groups": groups,
-        "all": {
-            "errors": plain.errors(every.fitted),
-            "left_out": plain.errors(every.left_out),
-            "validation": plain.errors(every.validation),
-        },
+        "all": {name: plain.errors(each) for name, each in errors.items()},
         "not_fitted": [{"condition": label, "reason": reason} for label, reason in fitted.left_out],
+        **({"check": plain.table(table)} if table is not None else {}),
     }

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
-from tester.cli.options import QuantityType, json_option
+from tester.cli.measured_sources import of_one_kind, print_left_out
+from tester.cli.options import QuantityType, command, json_option, run_folder
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
     from sim.physics.materials import Rubber
     from tester.analysis.master_curve.fitted_curve import Master
-    from tester.analysis.master_curve.points import MasterPoint, MasterRun
+    from tester.analysis.master_curve.points import MasterPart, MasterPoint, MasterRun
     from tester.inputs.materials.compound import LoadedCompound
     from tester.kinds.kind import Kind
 
@@ -24,7 +25,7 @@ GLASS = "glass"
 """Asks for Ts = Tg + 50 K."""
 
 
-@click.command()
+@command()
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True)
 @click.option(
     "--reference", "reference_c", type=QuantityType("degC"), default=20.0, metavar="20degC",
@@ -64,7 +65,6 @@ def master(
     Exit code 0: it collapses; 1: it does not, or is refused; 6: these conditions cannot tell.
     """
     from tester.analysis.master_curve.fitted_curve import master_of
-    from tester.analysis.master_curve.points import MasterError
     from tester.analysis.master_curve.verdict import Verdict
 
     kind_of_file = _ending(ending, out)
@@ -74,10 +74,7 @@ def master(
     name = points[0].compound
     file = _compound_file(runs[0], name)
     glass_c = file.model.Tg if file is not None else None
-    try:
-        made = master_of(points, reference_c, _ts(ts_words, name, glass_c), _rubber(file), glass_c)
-    except MasterError as error:
-        raise click.ClickException(shown(str(error))) from error
+    made = master_of(points, reference_c, _ts(ts_words, name, glass_c), _rubber(file), glass_c)
     _tell(made, [entry for one in found for entry in one.left_out], as_json)
     if out is not None:
         _write(made, out, kind_of_file)
@@ -123,7 +120,6 @@ def _compound_file(run: str, compound: str) -> LoadedCompound | None:
     """Return a compound's file: the run's copy, else the laboratory's or the packaged one; None where there is none."""
     from sim.physics.materials import UnknownMaterialError
     from tester.base.source import InvalidSource
-    from tester.cli.options import run_folder
     from tester.inputs.materials.library import Library
 
     try:
@@ -145,38 +141,19 @@ def _rubber(file: LoadedCompound | None) -> Rubber | None:
 
 def _runs(names: Sequence[str]) -> list[MasterRun]:
     """Return the conditions of all runs; raises ClickException for a run that is refused."""
-    doubled = sorted({name for name in names if names.count(name) > 1})
-    if doubled:
-        raise click.UsageError(f"{', '.join(doubled)}: named twice, and its conditions would count twice")
-    read = [(name, *_run(name)) for name in names]
-    kinds = {kind.name for _, kind, _ in read}
-    if len(kinds) > 1:
-        raise click.UsageError(f"conditions of different kinds of rigs: {', '.join(sorted(kinds))}")
-    refused = [f"{name} is refused: {one.refusal}" for name, _, one in read if one.refusal]
+    _, runs = of_one_kind(
+        names, lambda kind, name: _part(kind).packaged(name), lambda kind, folder: _part(kind).run(folder)
+    )
+    refused = [f"{name} is refused: {run.refusal}" for name, run in zip(names, runs, strict=True) if run.refusal]
     if refused:
-        raise click.ClickException(shown("\n".join(refused)))
-    return [one for _, _, one in read]
+        raise click.ClickException("\n".join(map(shown, refused)))
+    return runs
 
 
-def _run(name: str) -> tuple[Kind, MasterRun]:
-    from tester.base.source import InvalidSource
-    from tester.cli.options import run_folder
-    from tester.kinds import UnknownKindError, find, packaged_conditions
-    from tester.store.record_schema import StoreError
-    from tester.store.run_reader import RunReader
-
-    kind = packaged_conditions().get(name)
-    if kind is not None and kind.masters is not None:
-        return kind, kind.masters().packaged(name)
-    folder = run_folder(name)
-    try:
-        with RunReader(folder) as reader:
-            kind = find(reader.run().info.kind)
-        if kind.masters is None:
-            raise click.ClickException(f"{name}: the kind {kind.name} says nothing of master curves")
-        return kind, kind.masters().run(folder)
-    except (StoreError, UnknownKindError, InvalidSource) as error:
-        raise click.ClickException(f"{name}: {error}") from error
+def _part(kind: Kind) -> MasterPart:
+    if kind.masters is None:
+        raise click.ClickException(f"the kind {kind.name} has no master curves")
+    return kind.masters()
 
 
 def _chosen(
@@ -215,18 +192,13 @@ def _tell(made: Master, left_out: Sequence[tuple[str, str]], as_json: bool) -> N
         click.echo(line)
     for line in summary_lines(made):
         click.echo(shown(line), err=True)
-    reasons: dict[str, list[str]] = {}
-    for label, reason in left_out:
-        reasons.setdefault(reason, []).append(label)
-    for reason, labels in reasons.items():
-        click.echo(f"left out ({shown(reason)}): {shown(', '.join(labels))}", err=True)
+    print_left_out(left_out)
     click.echo(next(verdict_lines(made)), err=True)  # again, below a table that has pushed the first one out of sight
 
 
 def _write(made: Master, path: Path, ending: str) -> None:
     """Write the table or the figure."""
     from tester.analysis.master_curve.text import csv_text
-    from tester.base.plugins import MissingExtraError
     from tester.report.draw import draw
     from tester.report.law_charts import master_chart
 
@@ -235,8 +207,6 @@ def _write(made: Master, path: Path, ending: str) -> None:
             path.write_text(csv_text(made), encoding="utf-8", newline="")
         else:
             draw(master_chart(made), path)
-    except MissingExtraError as error:
-        raise click.UsageError(str(error)) from error
     except OSError as error:
         raise click.ClickException(f"{path}: {error.strerror or error}") from error
     click.echo(f"written: {path}", err=True)

@@ -167,7 +167,7 @@ def test_an_unknown_compound_has_nothing_published_to_hold(home: Path, capsys: p
     [
         (["appendix-c"], "no run appendix-c"),
         (["appendix-a", "appendix-a"], "named twice"),
-        (["appendix-a", "--validate", "appendix-a"], "is fitted, and says nothing of other conditions"),
+        (["appendix-a", "--validate", "appendix-a"], "is fitted, and shows nothing of other conditions"),
         (["appendix-a", "--law", "v3"], "no law 'v3' can be fitted (expected v2, paper)"),
         (["appendix-b", "--check"], "expected appendix-a --validate appendix-b"),
         ([], "Missing argument 'SOURCE...'"),
