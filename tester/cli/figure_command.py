@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,18 +11,22 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.cli.law_parts import OVERS, At, parts_chart
-from tester.cli.options import QuantityType, run_folder
+from tester.cli.options import QuantityType, command, results_named, run_folder
 from tester.cli.text_table import shown
 
 if TYPE_CHECKING:
-    from tester.report.chart import Figure
+    from tester.analysis.master_curve.points import MasterPoint
+    from tester.kinds.kind import Kind
+    from tester.report.chart import Chart, Figure
     from tester.results.run_results import RunResults
 
 TOGETHER = "several-runs"
 """Folder of the figures that show several runs together."""
+REFERENCE_C = 20.0
+"""Reference temperature of the master curves, the default of ``tester master``."""
 
 
-@click.command()
+@command()
 @click.argument("runs", metavar="[RUN...]", nargs=-1)
 @click.option("--name", "names", multiple=True, metavar="NAME", help="Only this figure (--list). May be given again.")
 @click.option("--list", "only_list", is_flag=True, help="Name the figures that there are, draw none.")
@@ -68,23 +73,26 @@ def figure(
         return
     if not runs:
         raise click.UsageError("no run is named (expected RUN..., or --components)")
-    named = list(dict.fromkeys(runs))
-    read = [_results(name) for name in named]
-    sets = {folder: _figures(results, law, published) for folder, results in read}
-    for name, (folder, _) in zip(named, read, strict=True):
-        sets[folder] += _masters(name)
-    if len(sets) > 1:
-        sets[TOGETHER] = _of_several(read)
+    sets = _sets(list(dict.fromkeys(runs)), law, published)
     known = list(dict.fromkeys(one.name for figures in sets.values() for one in figures))
     unknown = sorted(set(names) - {*known})
     if unknown and not only_list:
-        of = ", ".join(folder for folder, _ in read)
+        of = ", ".join(folder for folder in sets if folder != TOGETHER)
         raise click.UsageError(f"no figure {', '.join(unknown)} of {of} (there are {', '.join(known) or 'none'})")
     for folder, figures in sets.items():
-        for one in figures if only_list else ():
-            click.echo(f"{one.name}: {shown(one.title)}")
-        if not only_list:
+        if only_list:
+            for one in figures:
+                click.echo(f"{one.name}: {shown(one.title)}")
+        else:
             _draw(figures, names, out / folder, ending)
+
+
+def _sets(names: Sequence[str], law: str, published: bool) -> dict[str, list[Figure]]:
+    """Return the figures of each run by its folder's name, of several runs also those that show them together."""
+    folders = [run_folder(name) for name in names]
+    results = {folder.name: results_named(name) for folder, name in zip(folders, names, strict=True)}
+    sets = {folder.name: figures_of(folder, results[folder.name], law, published) for folder in folders}
+    return sets | {TOGETHER: _of_several(results)} if len(sets) > 1 else sets
 
 
 def _draw_law(
@@ -101,7 +109,6 @@ def _draw_law(
 
 def _draw(figures: Sequence[Figure], names: Sequence[str], target: Path, ending: str) -> None:
     """Write figures of these names, all for none, into a folder; raises ClickException where there are none at all."""
-    from tester.base.plugins import MissingExtraError
     from tester.report.draw import draw
 
     if not figures:
@@ -109,30 +116,13 @@ def _draw(figures: Sequence[Figure], names: Sequence[str], target: Path, ending:
     for one in figures if not names else [one for one in figures if one.name in names]:
         target.mkdir(parents=True, exist_ok=True)
         path = target / f"{one.name}.{ending}"
-        try:
-            draw(one, path)
-        except MissingExtraError as error:
-            raise click.UsageError(str(error)) from error
+        draw(one, path)
         click.echo(path)
 
 
-def _results(name: str) -> tuple[str, RunResults]:
-    """Return the name of a run's folder and its results; raises ClickException where it cannot be read."""
-    from tester.results.run_results import results_of
-    from tester.store.record_schema import StoreError
-    from tester.store.run_reader import RunReader
-
-    folder = run_folder(name)
-    try:
-        with RunReader(folder) as reader:
-            return folder.name, results_of(reader)
-    except StoreError as error:
-        raise click.ClickException(str(error)) from error
-
-
-def _figures(results: RunResults, law: str, published: bool) -> list[Figure]:
+def figures_of(folder: Path, results: RunResults, law: str, published: bool) -> list[Figure]:
     """Return a run's figures."""
-    from tester.cli.kind_words import material_of
+    from tester.cli.kind_words import kind_of, material_of
     from tester.report.charts import charts_of, control_chart, repeats_chart
     from tester.report.overview import overview_chart
 
@@ -141,32 +131,43 @@ def _figures(results: RunResults, law: str, published: bool) -> list[Figure]:
         found.append(control_chart(results.watch.charts))
     measured = [one for one in results.conditions() if any(r.result.mu_resultant > 0.0 for r in one.repeats)]
     overview = overview_chart([("", results)]) if measured else None
-    return [*found, *([overview] if overview is not None else []), *map(repeats_chart, measured)]
+    found += [*([overview] if overview is not None else []), *map(repeats_chart, measured)]
+    kind = kind_of(results.run.info)
+    return [*found, *(master_charts(kind, folder) if kind is not None else [])]
 
 
-def _masters(name: str) -> list[Figure]:
-    """Return a run's master curves."""
-    from tester.cli.master_figures import master_charts
-    from tester.kinds import UnknownKindError, find
-    from tester.store.run_reader import RunReader
+def master_charts(kind: Kind, folder: Path) -> list[Chart]:
+    """Return a run's master curves: one for each compound, interface and load.
 
-    folder = run_folder(name)
-    with RunReader(folder) as reader:
-        kind = reader.run().info.kind
-    try:
-        return [*master_charts(find(kind), folder)]
-    except UnknownKindError:
+    None where its kind has no master curves, where friction heated the contact, or where the conditions allow none;
+    ``tester master`` gives the reason. A figure's title has the verdict. Raises StoreError.
+    """
+    if kind.masters is None:
         return []
+    from tester.analysis.master_curve.fitted_curve import master_of
+    from tester.analysis.master_curve.points import MasterError
+    from tester.report.law_charts import master_chart
+
+    run = kind.masters().run(folder)
+    alike: dict[tuple[object, ...], list[MasterPoint]] = {}
+    for point in () if run.refusal else run.points:
+        alike.setdefault((point.compound, *point.held.items()), []).append(point)
+    charts: list[Chart] = []
+    for points in alike.values():
+        with suppress(MasterError):
+            charts.append(master_chart(master_of(points, REFERENCE_C)))
+    if len(charts) == 1:
+        return charts
+    return [replace(one, name=f"{one.name}-{number}") for number, one in enumerate(charts, start=1)]
 
 
-def _of_several(read: Sequence[tuple[str, RunResults]]) -> list[Figure]:
+def _of_several(results: Mapping[str, RunResults]) -> list[Figure]:
     """Return the figures that show several runs together: those of the first one's kind."""
-    from tester.report.charts import ChartValue, overlay_charts, values_of
+    from tester.report.charts import overlay_charts, values_of
     from tester.report.overview import overview_chart
 
-    alike = [(name, results) for name, results in read if results.axes == read[0][1].axes]
-    values: list[ChartValue] = []
-    for name, results in alike:
-        values += values_of(results, name)
+    first = next(iter(results.values()))
+    alike = [(name, one) for name, one in results.items() if one.axes == first.axes]
     overview = overview_chart(alike)
-    return [*overlay_charts(values), *([overview] if overview is not None else [])]
+    charts = overlay_charts([value for name, one in alike for value in values_of(one, name)])
+    return [*charts, *([overview] if overview is not None else [])]

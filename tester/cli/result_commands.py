@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,108 +12,125 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.words import Json, duration, finite
-from tester.cli.options import run_folder
+from tester.cli.options import command, json_option, run_folder
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
     from tester.results.formats import Format
-    from tester.results.run_results import RunResults, TableRow
-    from tester.store.records import StoredTrip
+    from tester.results.run_results import ReferenceWatch, RunResults, TableRow
+    from tester.store.records import Change, SessionInfo, StoredEvent, StoredExclusion, StoredTrip
 
 
 # tester show
 
 SHOW_WIDTH = 120
-"""Columns within which flags stand behind a row of `tester show`."""
-_SESSION = "session origin_s started_utc host operator software_version git_revision"
-_CHANGE = "session utc subject before_sha256 after_sha256 reason"
-_MATERIAL = "role name file source sha256 doubts"
-_WORD = "condition repeat attempt excluded reason operator utc software_version"
-"""Fields of the records of these names that ``show --json`` tells."""
+"""Columns within which flags are printed behind a row of `tester show`."""
 
-@click.command()
+
+@dataclass(frozen=True)
+class ShownRun:
+    """A run as `tester show` prints it: its results, and what happened to it."""
+
+    name: str
+    results: RunResults
+    sessions: Sequence[SessionInfo]
+    changes: Sequence[Change]
+    exclusions: Sequence[StoredExclusion]
+    trips: Sequence[StoredTrip]
+    commands: Sequence[StoredEvent]
+    holds: Sequence[StoredEvent]
+
+
+@command()
 @click.argument("run")
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option
 @click.option("--budget", "with_budget", is_flag=True, help="What each uncertainty is made of, term by term.")
 def show(run: str, as_json: bool, with_budget: bool) -> None:
     """Show what RUN holds: a run's folder, its name under runs, or latest.
 
-    Behind a coefficient stand two expanded uncertainties (95 %): of what was mounted, in this condition, and of the
-    compound, which any other piece of it comes with.
+    A coefficient is followed by two expanded uncertainties (95 %): that of what was mounted, in this condition, and
+    that of the compound, which any other piece of it comes with.
     """
     from tester.results.run_results import results_of
-    from tester.store.record_schema import StoreError
     from tester.store.run_reader import RunReader
 
     folder = run_folder(run)
-    try:
-        with RunReader(folder) as reader:
-            results, sessions, changes = results_of(reader), reader.sessions(), reader.changes()
-            said, trips, commands = reader.exclusions(), [*reader.trips()], [*reader.commands()]
-            holds = [*reader.holds()]
-    except StoreError as error:
-        raise click.ClickException(str(error)) from error
+    with RunReader(folder) as reader:
+        stored = ShownRun(
+            folder.name, results_of(reader), reader.sessions(), reader.changes(), reader.exclusions(),
+            [*reader.trips()], [*reader.commands()], [*reader.holds()],
+        )  # fmt: skip
     if as_json:
-        history: dict[str, Json] = {
-            "sessions": [_fields(session, _SESSION) for session in sessions],
-            "changes": [_fields(change, _CHANGE) for change in changes],
-            "exclusions": [_fields(word, _WORD, excluded=bool(word.excluded)) for word in said],
-        }
-        history["trips"] = [*map(_trip, trips)]
-        history["holds"] = [{"t_s": finite(one.t_s), "utc": one.utc, "text": one.text} for one in holds]
-        history["commands"] = [{"t_s": finite(one.t_s), "utc": one.utc, "text": one.text} for one in commands]
-        dump(_summary(folder.name, results) | history)
+        dump(_summary(folder.name, stored.results) | _history_json(stored))
         return
-    if with_budget:
-        from tester.cli.budget_lines import budget_lines
+    for line in _budgets(stored.results) if with_budget else (*_lines(folder.name, stored.results), *_history(stored)):
+        click.echo(line)
 
-        for text in budget_lines(results):
-            click.echo(text)
-        return
-    for text in _lines(folder.name, results):
-        click.echo(text)
-    for session in sessions[1:]:
+
+def _history(run: ShownRun) -> Iterator[str]:
+    """Yield what happened to a run, a line each."""
+    for session in run.sessions[1:]:
         where = f"{duration(session.origin_s)} of rig time, {session.started_utc}"
-        click.echo(f"went on at {where}, version {session.software_version}")
-    for change in changes:
-        click.echo(f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}")
-    for one in commands:
-        click.echo(f"command at {duration(one.t_s)} of rig time, {one.utc}: {shown(one.text)}")
-    for one in holds:
-        click.echo(f"{one.text}, until {duration(one.t_s)} of rig time, {one.utc}")
-    for trip in trips:
+        yield f"resumed at {where}, version {session.software_version}"
+    for change in run.changes:
+        yield f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}"
+    for event in run.commands:
+        yield f"command at {duration(event.t_s)} of rig time, {event.utc}: {shown(event.text)}"
+    for event in run.holds:
+        yield f"{event.text}, until {duration(event.t_s)} of rig time, {event.utc}"
+    for trip in run.trips:
         compared = f" ({trip.compared})" if trip.compared else ""
-        click.echo(f"trip at {duration(trip.t_s)} of rig time, {trip.utc}: {trip.interlock}{compared}")
-        click.echo(f"  {shown(trip.acknowledged)}")
-    for word in said:
+        yield f"trip at {duration(trip.t_s)} of rig time, {trip.utc}: {trip.interlock}{compared}"
+        yield f"  {shown(trip.acknowledged)}"
+    for word in run.exclusions:
         what = "excluded" if word.excluded else "included again"
         who = f" by {shown(word.operator)}" if word.operator else ""
-        click.echo(f"{word.condition}/{word.repeat} {what} {word.utc}{who}: {shown(word.reason)}")
+        yield f"{word.condition}/{word.repeat} {what} {word.utc}{who}: {shown(word.reason)}"
 
 
-def _fields(record: object, names: str, **instead: Json) -> Json:
-    """Return some of a record's fields, by their names; ``instead``: values that take the place of a field's."""
-    return {name: getattr(record, name) for name in names.split()} | instead
-
-
-def _trip(trip: StoredTrip) -> Json:
+def _history_json(run: ShownRun) -> dict[str, Json]:
+    session = "session origin_s started_utc host operator software_version git_revision"
+    change = "session utc subject before_sha256 after_sha256 reason"
+    word = "condition repeat attempt excluded reason operator utc software_version"
+    trip = "t_s utc interlock text value unit acknowledged_s acknowledged_utc acknowledged_by"
     return {
-        "t_s": finite(trip.t_s),
-        "utc": trip.utc,
-        "interlock": trip.interlock,
-        "text": trip.text,
-        "value": finite(trip.value),
-        "limit": finite(trip.limit_value),
-        "unit": trip.unit,
-        "acknowledged_s": finite(trip.acknowledged_s),
-        "acknowledged_utc": trip.acknowledged_utc or None,
-        "acknowledged_by": trip.acknowledged_by,
+        "sessions": [_fields(one, session) for one in run.sessions],
+        "changes": [_fields(one, change) for one in run.changes],
+        "exclusions": [_fields(one, word, excluded=bool(one.excluded)) for one in run.exclusions],
+        "trips": [
+            _fields(one, trip, limit=finite(one.limit_value), acknowledged_utc=one.acknowledged_utc or None)
+            for one in run.trips
+        ],
+        "holds": [_fields(one, "t_s utc text") for one in run.holds],
+        "commands": [_fields(one, "t_s utc text") for one in run.commands],
     }
 
 
+def _fields(record: object, names: str, **instead: Json) -> dict[str, Json]:
+    """Return some of a record's fields, by their names; ``instead``: values that take the place of a field's."""
+    values = {name: getattr(record, name) for name in names.split()}
+    return {name: finite(value) if isinstance(value, float) else value for name, value in values.items()} | instead
+
+
+def _budgets(results: RunResults) -> Iterator[str]:
+    """Yield each condition's budget, the largest term first; terms in per cent of the coefficient."""
+    from tester.base.axes import condition_words
+    from tester.cli.text_table import plain_lines
+    from tester.results.budget_table import budgeted_rows, sums, terms_table
+    from tester.results.columns import Output
+    from tester.results.conditions_table import conditions_table
+
+    conditions = conditions_table(results)
+    for row in budgeted_rows(conditions):
+        first, *others = sums(conditions, row)
+        yield shown(f"{condition_words(row.info.setpoint)}: {first}")
+        yield from (shown(f"  {line}") for line in others)
+        yield from (f"  {line}" for line in plain_lines(terms_table(row, results.worn).view(Output.SHOW)))
+
+
 def _summary(name: str, results: RunResults) -> dict[str, Json]:
-    from tester.cli.watch_json import watch_json
     from tester.results.pieces_table import pieces_table
+    from tester.results.settings_table import settings_table
     from tester.results.tally import tally_of
 
     run, tally = results.run, tally_of(results)
@@ -122,15 +140,10 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "reason": run.reason,
         "recipe": run.info.recipe_name,
         "recipe_sha256": run.recipe_sha256,
-        "seed": run.info.seed,
-        "simulated": run.info.simulated,
-        "operator": run.info.operator,
-        "risk": run.info.risk,
-        "software_version": run.info.software_version,
-        "git_revision": run.info.git_revision,
+        **_fields(run.info, "seed simulated operator risk software_version git_revision"),
         "versions": dict(run.info.versions),
         "calibration_sha256": run.calibration_sha256,
-        "materials": [_fields(one, _MATERIAL) for one in run.info.materials],
+        "materials": [_fields(one, "role name file source sha256 doubts") for one in run.info.materials],
         "started_utc": run.info.started_utc,
         "ended_utc": run.ended_utc or None,
         "rig_seconds": finite(run.rig_seconds),
@@ -142,8 +155,28 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "missing": [row.describe() for row in results.missing()],
         "conditions": [*_conditions(results)],
         "wheels": [*pieces_table(results).records()],
-        **watch_json(results),
+        "settings": [*settings_table(results).records()],
+        **({"reference": _reference(results.watch)} if results.watch is not None else {}),
     }
+
+
+def _reference(watch: ReferenceWatch) -> Json:
+    """Return what the reference conditions show: the drift of the counterface, and the control charts."""
+    drift, drifted = watch.drift, None
+    if drift is not None:
+        change, low, high = map(finite, drift.changed_percent(drift.over_m))
+        drifted = {
+            "told_apart": drift.apart,
+            "change_percent": change,
+            "change_low_percent": low,
+            "change_high_percent": high,
+            **_fields(drift, "over_m references pieces"),
+        }
+    charts: list[Json] = []
+    for chart in watch.charts:
+        points = [_fields(point, " ".join(asdict(point))) for point in chart.points]
+        charts.append({**_fields(chart, "compound centre low high"), "points": [*points]})
+    return {"drift": drifted, "charts": charts}
 
 
 def _conditions(results: RunResults) -> Iterator[Json]:
@@ -238,7 +271,7 @@ class FormatName(click.ParamType["Format"]):
             self.fail(f"no format {value!r} (there are {', '.join(FORMATS)}); {error}", param, ctx)
 
 
-@click.command()
+@command()
 @click.argument("run")
 @click.option("--format", "kind", type=FormatName(), required=True, help="Which table.")
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), default=None, help="File to write (stdout).")
@@ -251,24 +284,17 @@ def export(run: str, kind: Format, out: Path | None, decimals: int) -> None:
     Conditions without a value that can be trusted are not in the appendix and are named on stderr; so are values that
     are to be taken with care.
     """
-    from tester.base.plugins import MissingExtraError
     from tester.results import Record, write_format
-    from tester.store.record_schema import StoreError
     from tester.store.run_reader import RunReader
 
     if out is None and not kind.is_text:
         raise click.UsageError(f"{kind.name} is not text: name a file with --out")
-    try:
-        with RunReader(run_folder(run)) as reader:
-            record = Record(reader, decimals)
-            if out is not None:
-                write_format(out, kind, record)
-            else:
-                kind.write(record, sys.stdout.buffer)
-                sys.stdout.flush()
-            for remark in kind.remarks(record):
-                click.echo(shown(remark), err=True)
-    except MissingExtraError as error:
-        raise click.UsageError(str(error)) from error
-    except StoreError as error:
-        raise click.ClickException(str(error)) from error
+    with RunReader(run_folder(run)) as reader:
+        record = Record(reader, decimals)
+        if out is not None:
+            write_format(out, kind, record)
+        else:
+            kind.write(record, sys.stdout.buffer)
+            sys.stdout.flush()
+        for remark in kind.remarks(record):
+            click.echo(shown(remark), err=True)

@@ -52,7 +52,7 @@ MUTANTS: Mapping[str, Mutant] = {
         "tester.cli.result_commands", "yield {**record, ", 'yield {**record, "valid": record["valid"] + 1, '
     ),
     "show --budget: U of the compound is headed as that of this wheel": Mutant(
-        "tester.cli.budget_lines", 'shown(f"  {line}") for line in others',
+        "tester.cli.result_commands", 'shown(f"  {line}") for line in others',
         'shown(f"  {line}".replace("U compound", "U this wheel")) for line in others',
     ),
     "tables: the column headed mu_as_measured is the coefficient at the temperature asked for": Mutant(

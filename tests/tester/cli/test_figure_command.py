@@ -113,13 +113,14 @@ def test_what_cannot_be_drawn_of_a_law_is_said(
 def test_a_run_on_a_track_has_its_master_curve_and_logarithmic_speeds(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from tester.cli.figure_command import _figures, _results
+    from tester.cli.figure_command import figures_of
+    from tester.cli.options import results_named
     from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 
-    folder = str(made_track_run(home / "track"))
-    assert invoke(["figure", folder, "--list"]) == 0
+    folder = made_track_run(home / "track")
+    assert invoke(["figure", str(folder), "--list"]) == 0
     assert "master: SBR, dry, 20 N: collapses" in capsys.readouterr().out.splitlines()
-    charts = {one.name: one for one in _figures(_results(folder)[1], "", published=False)}
+    charts = {one.name: one for one in figures_of(folder, results_named(str(folder)), "", published=False)}
     assert getattr(charts["track_speed-by-temperature"], "log_x", None) is True
     assert getattr(charts["temperature-by-track_speed"], "log_x", None) is False
 
