@@ -31,7 +31,7 @@ from tester.tui.pages.results_page import ResultsView
 from tester.tui.pages.ring_page import RingPage
 from tester.tui.pages.run_page import RunPage as RunScreen
 from tester.tui.screen_scene import UNDER_WAY
-from tester.tui.theme import CSS, THEMES
+from tester.tui.theme import THEMES
 from tester.tui.widgets.head import RING, TABS, KeyLine, StateLine, TabLine, Tabs
 
 FREE: Final = ("OFFLINE", "IDLE", "INTERRUPTED")
@@ -71,7 +71,6 @@ class TesterApp(HostApp):
     """The operator's screen."""
 
     TITLE = "friction-tester"
-    CSS = CSS
     FIRST: ClassVar[str] = "recipes"
     """The screen shown first."""
     EVERYWHERE: ClassVar[str] = EVERYWHERE

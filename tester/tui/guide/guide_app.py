@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import ClassVar
 
 from textual.app import ComposeResult, SystemCommand
@@ -11,6 +12,7 @@ from textual.containers import Horizontal, Vertical
 from textual.content import Content
 from textual.events import Resize
 from textual.screen import Screen
+from textual.types import CSSPathType
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
@@ -18,7 +20,6 @@ from tester.base import clock, keys
 from tester.base.trouble import in_words
 from tester.machine.commission.person import Asks, Question
 from tester.machine.commission.record import RecordError
-from tester.tui import theme
 from tester.tui.dialogs.dialog import Dialog, TextDialog
 from tester.tui.formatting import clean
 from tester.tui.gone import SMALLEST
@@ -35,31 +36,8 @@ from tester.tui.guide.panels import (
 )
 from tester.tui.screen_scene import ScreenScene
 from tester.tui.stop_line import stopping
-from tester.tui.theme import LookApp
+from tester.tui.theme import STYLES, LookApp
 from tester.tui.widgets.head import KeyLine
-
-CSS = (
-    theme.CSS
-    + """
-#guide { height: 1fr; }
-#guide-steps { width: 30; height: 100%; }
-#guide-right { width: 1fr; height: 100%; }
-#guide-readings { height: 8; }
-#guide-question { height: 8; border: heavy $accent; }
-#guide-text { height: 1fr; }
-#guide-hint { height: 1; }
-#guide-answer { width: 100%; }
-#guide-said { height: 1fr; }
-Screen.-wide #guide-steps { width: 40; }
-Screen.-wide #guide-readings { height: 10; }
-Screen.-wide #guide-question { height: 10; }
-Screen.-ended #guide-readings { display: none; }
-Screen.-ended #guide-question { height: 2fr; }
-Screen.-small #guide-steps, Screen.-small #guide-said, Screen.-small #guide-readings { display: none; }
-Screen.-small #guide-question { height: 1fr; }
-"""
-)
-
 
 DRAWN_S = 0.1
 """Period for reading the engine's state, s."""
@@ -85,7 +63,7 @@ class GuideApp(LookApp):
     """Steps on the left; readings, question and messages on the right."""
 
     TITLE = "friction-tester"
-    CSS = CSS
+    CSS_PATH: ClassVar[CSSPathType | None] = [STYLES, Path(__file__).with_name("guide.tcss")]
     ENABLE_COMMAND_PALETTE = True
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(",".join(keys.STOP.keys), "stop", "STOP", priority=True, show=False),
