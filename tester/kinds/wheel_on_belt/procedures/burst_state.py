@@ -1,4 +1,7 @@
-"""The state of a repeat: its phase, the burst in progress, and what is left of its run-in.
+"""The state of a repeat: phase, burst in progress, what is left of the run-in, where bursts start and end.
+
+A burst begins with the surface below the setpoint and ends as far above it, so that its samples centre on the
+setpoint. How far below is learned: some conditions heat up before the first sample counts.
 
 A rubber's abrasion pattern turns round with the slip. Sliding after a reversal does not count before the run-in is
 over; it comes in pulses, as all sliding, each as long as the surface stays inside its band.
@@ -8,9 +11,44 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from math import isnan, pi
+from typing import Final
 
+from sim.physics.slip import slip_velocity
+from tester.analysis.blocks import BlockCounter
 from tester.analysis.directions import is_reversed
+from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.axes import Held
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
+
+COLDER_K: Final = 0.3
+"""A burst must not start further than this below its target: its samples would be too cold, K [A]."""
+OFFSET_STEP_K: Final = 0.5
+"""How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
+FEW_REVOLUTIONS: Final = 3
+"""A burst with fewer whole turns than this starts the next one lower."""
+SLOW_COOLING_S: Final = 45.0
+SLOW_COOLING_K: Final = 0.15
+"""Cooling by less than this in that time is not worth waiting for, as long as the surface is below the setpoint [A]."""
+CENTRED_K: Final = 0.2
+"""A start this far below the setpoint still lets samples centre on it [A]."""
+MEAN_LIMIT_K: Final = 0.45
+"""A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
+(required: within 0.7 K).
+"""
+ROLLING_START_K: Final = 0.4
+"""Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
+BELOW_K: Final = 0.3
+"""After a burst whose samples are on average further below the setpoint than this, the next one starts higher, K [A].
+"""
+OFFSET_LEAST_K: Final = 0.2
+SPLIT_RISE_K: Final = 0.25
+"""A burst that has warmed by this much ends at half the window, any other at a whole one: a second rise tells
+temperature from time [A]."""
+BLIND_S: Final = 20.0
+"""A burst is given up after this long without a counted sample, s [A]."""
+WARM_SHARE: Final = 1.2
+"""Revolutions that a condition must hold, with the ramp, to count as possible; used for the band that would suffice."""
 
 
 class Phase(Enum):
@@ -66,3 +104,99 @@ def run_in_m(step: WheelCondition, repeat: int) -> float:
     """Return how far a repeat slides before it counts, m: the first of a condition, and each that turns round."""
     turned = repeat == 1 or slides_reversed(step, repeat) is not slides_reversed(step, repeat - 1)
     return step.run_in_m if step.both_directions and turned else 0.0
+
+
+class CentredBursts:
+    """The bursts of a repeat by their temperature: where the next one starts, when it is over, what it teaches."""
+
+    def __init__(self, step: WheelCondition, setpoint: Held, offset_k: float, counter: BlockCounter) -> None:
+        """``offset_k``: how far below the setpoint bursts start, from the repeat before."""
+        self.condition = step
+        self.setpoint = setpoint
+        self.offset_k = offset_k
+        self.counter = counter
+        self.burst = BurstNotes()
+        self.bursts = 0
+        self.warming_k_s = float("nan")
+        self.holdable_band_k = float("nan")
+        """Where the temperature could not be held: the rate seen, and the band that would hold one turn."""
+        self.empty = 0
+        """Bursts without a whole turn since the last one with any."""
+        self.mark_s = 0.0
+        self.mark_c = float("inf")
+        self.surface_sum_k = 0.0
+        self.surface_count = 0
+        self.belt_m_s = setpoint.belt_speed_m_s
+        self.slip_m_s = slip_velocity(setpoint.wheel_speed_m_s, self.belt_m_s, setpoint.sideslip_deg)[2]
+        self.target_c = setpoint.temperature_c
+        self.band_k = step.temperature_band_k
+        self.window_rev = step.window.revolutions
+        self.yawed = setpoint.yawed
+        self.rolling_only = not self.yawed and abs(setpoint.slip_velocity_m_s) < 1e-9
+
+    @property
+    def revolutions(self) -> int:
+        """Whole revolutions that count so far."""
+        return len(self.counter.blocks)
+
+    def _demand_heat(self, ctx: Context) -> None:
+        ctx.demand.surface_c = self.setpoint.temperature_c - (0.0 if self.rolling_only else self.offset_k)
+        ctx.demand.freeze_heat = False
+
+    def _start_now(self, ctx: Context, surface: float, target: float) -> bool:
+        if self.rolling_only:
+            return abs(surface - target) <= min(ROLLING_START_K, self.condition.temperature_band_k)
+        if surface < target - max(self.offset_k, ctx.rig.loops.heat.rolling_offset_k) - COLDER_K:
+            return False
+        if surface <= target - self.offset_k + 0.1:
+            return True
+        if ctx.now - self.mark_s >= SLOW_COOLING_S:
+            slow = self.mark_c - surface < SLOW_COOLING_K
+            self.mark_s, self.mark_c = ctx.now, surface
+            return slow and surface <= target - CENTRED_K
+        return False
+
+    def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
+        if self.rolling_only:
+            return ctx.now - self.burst.counted_s > BLIND_S
+        target, band = self.target_c, self.band_k
+        start = self.burst.began_c
+        below = self.offset_k if isnan(start) else target - start
+        limit = target + min(band, max(below, CENTRED_K) + 0.2)
+        if surface >= limit:
+            return True
+        mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
+        if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
+            return True
+        window = self.window_rev
+        if window is not None and not isnan(start):
+            share = 0.5 if surface - start > SPLIT_RISE_K else 1.0
+            if self.revolutions - self.burst.blocks_before >= share * window:
+                return True
+        return ctx.now - self.burst.counted_s > BLIND_S
+
+    def _learn_offset(self, gained: int, furthest_k: float) -> None:
+        """Start lower after a burst that warmed up too quickly, higher after one that stayed below the setpoint."""
+        count = self.surface_count - self.burst.count_before
+        mean_k = (self.surface_sum_k - self.burst.sum_before_k) / count if count else 0.0
+        if gained < FEW_REVOLUTIONS:
+            self.offset_k = min(self.offset_k + OFFSET_STEP_K, furthest_k)
+        elif mean_k < -BELOW_K:
+            self.offset_k = max(self.offset_k + 0.7 * mean_k, OFFSET_LEAST_K)
+
+    def _band_needed(self, ctx: Context) -> str:
+        """Work out how fast the surface warms and which band would hold one whole revolution; return it as text.
+
+        The trend's filter needs seconds to follow: of a short burst the rise from reading to reading says more.
+        A band in which nothing could be counted is never reported as sufficient.
+        """
+        r, burst = ctx.readings, self.burst
+        turn_s = pi * r.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
+        lag_s = ctx.rig.gates.ir_lag_s
+        elapsed = r.surface_at_s - burst.slid_s
+        rise = (r.surface_c - burst.slid_c) / elapsed if elapsed >= lag_s else 0.0
+        self.warming_k_s = max(burst.peak_rate_k_s, rise)
+        self.holdable_band_k = 0.5 * self.warming_k_s * (WARM_SHARE * turn_s + lag_s)
+        if self.empty:
+            self.holdable_band_k = max(self.holdable_band_k, WARM_SHARE * self.condition.temperature_band_k)
+        return f"surface warms by {self.warming_k_s:.2f} K/s; a band of {self.holdable_band_k:.1f} K would do"

@@ -3,17 +3,13 @@
 Straight running: the wheel stays in rolling contact and the belt brings the slip in and takes it out again (a slip
 pulse). With sideslip there is no matched speed, so every burst lifts, yaws, touches, counts and lifts again
 (docs/decisions/0013). Without slip there is nothing to pulse: one window of rolling.
-
-A burst begins with the surface below the setpoint and ends as far above it, so that its samples centre on the
-setpoint; how far below is learned, because some conditions heat up before the first sample counts.
 """
 
 from __future__ import annotations
 
-from math import isnan, pi
+from math import isnan
 from typing import Final
 
-from sim.physics.slip import slip_velocity
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.judge import ALONE
 from tester.analysis.reduce import collected
@@ -21,7 +17,7 @@ from tester.base.quantities import Quantities
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.procedures.burst_state import BurstNotes, Phase, RunIn
+from tester.kinds.wheel_on_belt.procedures.burst_state import FEW_REVOLUTIONS, BurstNotes, CentredBursts, Phase, RunIn
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
@@ -36,34 +32,8 @@ TARE_FRESH_S: Final = 110.0
 """Age from which the zero is renewed before the first burst, s: when the first sample counts, some seconds later, it
 must be at most 120 s old (the cell's zero moves by 0.1 N/K with its temperature).
 """
-COLDER_K: Final = 0.3
-"""A burst must not start further than this below its target: its samples would be too cold, K [A]."""
-OFFSET_STEP_K: Final = 0.5
-"""How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
 OFFSET_BEYOND_BAND_K: Final = 1.5
 """How far below the band a burst may start, K [A]: it warms up before the first sample counts."""
-FEW_REVOLUTIONS: Final = 3
-"""A burst with fewer whole turns than this starts the next one lower."""
-SLOW_COOLING_S: Final = 45.0
-SLOW_COOLING_K: Final = 0.15
-"""Cooling by less than this in that time is not worth waiting for, as long as the surface is below the setpoint [A]."""
-CENTRED_K: Final = 0.2
-"""A start this far below the setpoint still lets samples centre on it [A]."""
-MEAN_LIMIT_K: Final = 0.45
-"""A burst ends before the mean surface temperature of the repeat's samples is more than this off the setpoint [A]
-(required: within 0.7 K).
-"""
-ROLLING_START_K: Final = 0.4
-"""Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
-BELOW_K: Final = 0.3
-"""After a burst whose samples are on average further below the setpoint than this, the next one starts higher, K [A].
-"""
-OFFSET_LEAST_K: Final = 0.2
-SPLIT_RISE_K: Final = 0.25
-"""A burst that has warmed by this much ends at half the window, any other at a whole one: a second rise tells
-temperature from time [A]."""
-BLIND_S: Final = 20.0
-"""A burst is given up after this long without a counted sample, s [A]."""
 LIFT_TO_COOL_S: Final = 180.0
 """If rolling has not brought the temperature back after this time, the wheel is lifted to cool, s [A]."""
 COOL_AT_MOST_S: Final = 360.0
@@ -71,8 +41,6 @@ COOL_AT_MOST_S: Final = 360.0
 EMPTY_BURSTS: Final = 3
 """After this many bursts in a row without a whole turn, started as low as possible, the condition cannot be held [A].
 """
-WARM_SHARE: Final = 1.2
-"""Revolutions that a condition must hold, with the ramp, to count as possible; used for the band that would suffice."""
 
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
@@ -86,7 +54,7 @@ _COUNT: Final = Phase.COUNT
 _MOVE_OUT: Final = Phase.MOVE_OUT
 
 
-class MeasureRepeat:
+class MeasureRepeat(CentredBursts):
     """State object of one repeat."""
 
     def __init__(
@@ -102,49 +70,22 @@ class MeasureRepeat:
         """``offset_k``: how far below the setpoint its bursts start, from the repeat before; ``quantities``: the run's
         table of channels. ``reversed_slip``: slide the other way than is asked for; ``run_in_m``: slide so far before
         anything counts."""
-        self.condition = step
         held = held_by(step.setpoint)
-        self.setpoint = held.reversed() if reversed_slip else held
+        super().__init__(step, held.reversed() if reversed_slip else held, offset_k, BlockCounter(quantities))
         self.run_in = RunIn(run_in_m)
-        self.offset_k = offset_k
         self.reference = reference_tare
         self.phase = Phase.TARE
         self.moves = Sequence()
         self.tare: TakeTare | None = None
         self.tared_s = float("-inf")
-        self.counter = BlockCounter(quantities)
-        self.burst = BurstNotes()
-        self.bursts = 0
         self.ending: Ending | None = None
         self.detail = ""
-        self.warming_k_s = float("nan")
-        self.holdable_band_k = float("nan")
-        """Where the temperature could not be held: the rate seen, and the band that would hold one turn."""
-        self.empty = 0
-        """Bursts without a whole turn since the last one with any."""
         self.ready_since_s = float("nan")
         """Since when the next burst has been waited for; NaN while none is."""
         self.rolling_since_s = float("nan")
         self.cooling_since_s = float("nan")
-        self.mark_s = 0.0
-        self.mark_c = float("inf")
-        self.surface_sum_k = 0.0
-        self.surface_count = 0
-        sp = self.setpoint
-        self.belt_m_s = sp.belt_speed_m_s
-        self.slip_m_s = slip_velocity(sp.wheel_speed_m_s, self.belt_m_s, sp.sideslip_deg)[2]
-        self.target_c = sp.temperature_c
-        self.band_k = step.temperature_band_k
-        self.window_rev = step.window.revolutions
-        self.yawed = sp.yawed
-        self.rolling_only = not self.yawed and abs(sp.slip_velocity_m_s) < 1e-9
 
     # -- what the step needs ----------------------------------------------------------------------------------
-
-    @property
-    def revolutions(self) -> int:
-        """Whole revolutions that count so far."""
-        return len(self.counter.blocks)
 
     def step(self, ctx: Context) -> bool:
         """Advance by one scan; done when lifted with ``ending`` set."""
@@ -225,19 +166,6 @@ class MeasureRepeat:
             self.phase = Phase.COOL
             self.cooling_since_s = ctx.now
             self.moves = Sequence(Lift())
-
-    def _start_now(self, ctx: Context, surface: float, target: float) -> bool:
-        if self.rolling_only:
-            return abs(surface - target) <= min(ROLLING_START_K, self.condition.temperature_band_k)
-        if surface < target - max(self.offset_k, ctx.rig.loops.heat.rolling_offset_k) - COLDER_K:
-            return False
-        if surface <= target - self.offset_k + 0.1:
-            return True
-        if ctx.now - self.mark_s >= SLOW_COOLING_S:
-            slow = self.mark_c - surface < SLOW_COOLING_K
-            self.mark_s, self.mark_c = ctx.now, surface
-            return slow and surface <= target - CENTRED_K
-        return False
 
     def _cool(self, ctx: Context) -> None:
         """Turn lifted until the surface is back at its temperature, then touch again; the wait keeps counting."""
@@ -325,25 +253,6 @@ class MeasureRepeat:
         alone = self.condition.repeats <= ALONE and not self.rolling_only
         return collected(self.counter, window.revolutions, window.seconds, window.extend_to, alone=alone)
 
-    def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
-        if self.rolling_only:
-            return ctx.now - self.burst.counted_s > BLIND_S
-        target, band = self.target_c, self.band_k
-        start = self.burst.began_c
-        below = self.offset_k if isnan(start) else target - start
-        limit = target + min(band, max(below, CENTRED_K) + 0.2)
-        if surface >= limit:
-            return True
-        mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
-        if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
-            return True
-        window = self.window_rev
-        if window is not None and not isnan(start):
-            share = 0.5 if surface - start > SPLIT_RISE_K else 1.0
-            if self.revolutions - self.burst.blocks_before >= share * window:
-                return True
-        return ctx.now - self.burst.counted_s > BLIND_S
-
     def _end_burst(self, ctx: Context) -> None:
         gained = self.revolutions - self.burst.blocks_before
         ctx.burst = 0
@@ -371,32 +280,6 @@ class MeasureRepeat:
         else:
             self.moves = Sequence(Turn(wheel, wheel))
 
-    def _learn_offset(self, gained: int, furthest_k: float) -> None:
-        """Start lower after a burst that warmed up too quickly, higher after one that stayed below the setpoint."""
-        count = self.surface_count - self.burst.count_before
-        mean_k = (self.surface_sum_k - self.burst.sum_before_k) / count if count else 0.0
-        if gained < FEW_REVOLUTIONS:
-            self.offset_k = min(self.offset_k + OFFSET_STEP_K, furthest_k)
-        elif mean_k < -BELOW_K:
-            self.offset_k = max(self.offset_k + 0.7 * mean_k, OFFSET_LEAST_K)
-
-    def _band_needed(self, ctx: Context) -> str:
-        """Work out how fast the surface warms and which band would hold one whole revolution; return it as text.
-
-        The trend's filter needs seconds to follow: of a short burst the rise from reading to reading says more.
-        A band in which nothing could be counted is never reported as sufficient.
-        """
-        r, burst = ctx.readings, self.burst
-        turn_s = pi * r.diameter_mm * 1e-3 / self.setpoint.wheel_speed_m_s
-        lag_s = ctx.rig.gates.ir_lag_s
-        elapsed = r.surface_at_s - burst.slid_s
-        rise = (r.surface_c - burst.slid_c) / elapsed if elapsed >= lag_s else 0.0
-        self.warming_k_s = max(burst.peak_rate_k_s, rise)
-        self.holdable_band_k = 0.5 * self.warming_k_s * (WARM_SHARE * turn_s + lag_s)
-        if self.empty:
-            self.holdable_band_k = max(self.holdable_band_k, WARM_SHARE * self.condition.temperature_band_k)
-        return f"surface warms by {self.warming_k_s:.2f} K/s; a band of {self.holdable_band_k:.1f} K would do"
-
     def _end(self, ctx: Context, ending: Ending, detail: str) -> None:
         ctx.burst = 0
         self.ending = ending
@@ -407,10 +290,6 @@ class MeasureRepeat:
         self.moves = Sequence(*first, Lift(), Turn(wheel, wheel))
 
     # -- shared -----------------------------------------------------------------------------------------------
-
-    def _demand_heat(self, ctx: Context) -> None:
-        ctx.demand.surface_c = self.setpoint.temperature_c - (0.0 if self.rolling_only else self.offset_k)
-        ctx.demand.freeze_heat = False
 
     def _aim(self, ctx: Context) -> None:
         """Point the gates at this condition."""
