@@ -97,14 +97,14 @@ class Watch(Generic[V]):
 
 @dataclass(frozen=True, slots=True)
 class Interlock(Generic[V]):
-    """One row."""
+    """One row. Where it does not say otherwise, its reaction and its reset are the strict ones."""
 
     name: str
     cause: str
     """What an operator reads when it trips."""
     watch: Watch[V]
-    reaction: Reaction
-    reset: str
+    reaction: Reaction = FAST
+    reset: str = REPAIR
     """What has to be the case before a run may begin again."""
     parameters: tuple[Parameter, ...] = ()
     """What the row compares with beside the limit of its watch, in the order of the rig file (which may name the limit

@@ -8,7 +8,7 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.machine.row import FAST, LOADED, REPAIR, Interlock
+from tester.machine.row import LOADED, Interlock
 from tester.machine.watches import at_most, condition, within
 
 _RADIANS: Final = pi / 180.0
@@ -38,8 +38,6 @@ FRICTION_BEYOND_LOAD: Final[Row] = Interlock(
     parameters=(FRICTION_SHARE, FRICTION_LEAST_N),
     delay=FRICTION_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 CLEAR_SLIP_M_S: Final = Parameter(
@@ -90,8 +88,6 @@ FRICTION_SIGN: Final[Row] = Interlock(
     parameters=(CLEAR_SLIP_M_S, AGAINST_SHARE, AGAINST_LEAST_N),
     delay=AGAINST_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 SHAFT_FRICTION_W: Final = Parameter(
@@ -131,8 +127,6 @@ SHAFT_POWER: Final[Row] = Interlock(
     applies=lambda v: v.confirmed,
     delay=SHAFT_POWER_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 BELT_TORQUE_NM: Final = Parameter(
@@ -186,8 +180,6 @@ BELT_TORQUE: Final[Row] = Interlock(
     applies=_driven,
     delay=BELT_TORQUE_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 BELT_PULL_NM: Final = Parameter(
@@ -228,8 +220,6 @@ BELT_CAUGHT: Final[Row] = Interlock(
     parameters=(CLEAR_SLIP_M_S, AGAINST_LEAST_N, BELT_TORQUE_DELAY_S),
     applies=_driven,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 ROWS: Final[tuple[Row, ...]] = (FRICTION_SIGN, SHAFT_POWER, BELT_TORQUE, BELT_CAUGHT, FRICTION_BEYOND_LOAD)

@@ -8,7 +8,7 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.surface import BLIND_S, JUMP_K, STALE_DELAY_S
-from tester.machine.row import ACK, CONTROLLED, REPAIR, Interlock, always
+from tester.machine.row import ACK, CONTROLLED, Interlock, always
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
@@ -126,7 +126,6 @@ HEATER_STUCK: Final[Row] = Interlock(
     applies=_off_for_long,
     delay=STUCK_DELAY_S,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 OPEN_OUTPUT_PERCENT: Final = Parameter("open_output_percent", "%", "80 %", "output at least this ...")
@@ -141,7 +140,6 @@ HEATER_LINE_OPEN: Final[Row] = Interlock(
     parameters=(OPEN_OUTPUT_PERCENT, OPEN_S, OPEN_BELOW_K, OPEN_RISE_K),
     applies=lambda v: v.readings.now_s - v.jacket.weak_since_s >= v.parameters[OPEN_S],
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 STANDSTILL_HEAT_DELAY_S: Final = Parameter(
@@ -221,7 +219,6 @@ HEAT_NOT_SHOWN: Final[Row] = Interlock(
     parameters=(HEAT_SHARE, HEAT_SHARE_KNOWN, HEAT_LEAK_W, UNSEEN_HEAT_K, JACKET_MARGIN_K),
     applies=lambda v: not v.heat.unseen_k <= 0.0 and _hub_known(v),
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 FROZEN_HUB_K: Final = Parameter(
@@ -254,7 +251,6 @@ HUB_FROZEN: Final[Row] = Interlock(
     parameters=(FROZEN_HUB_K, FROZEN_HUB_SHARE),
     applies=lambda v: not v.heat.still_k <= 0.0 and _hub_known(v),
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 STALE_JACKET_S: Final = Parameter(

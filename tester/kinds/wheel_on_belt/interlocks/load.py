@@ -7,7 +7,7 @@ from typing import Final
 from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, depth_mm
 from tester.kinds.wheel_on_belt.interlocks.inputs import SPEEDS_OLD_S, Inputs, Row
-from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, LOADED, Compared, Interlock
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
@@ -48,7 +48,6 @@ CELL_SILENT: Final[Row] = Interlock(
     parameters=(CELL_SKEW_S,),
     delay=STALE_CELL_DELAY_S,
     when=LOADED,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -59,7 +58,6 @@ CELL_SATURATED: Final[Row] = Interlock(
     unseen=True,
     delay=STALE_CELL_DELAY_S,
     when=LOADED,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -114,8 +112,6 @@ CELL_FROZEN: Final[Row] = Interlock(
     ),
     parameters=(FROZEN_CELL_S, TOUCH_MARGIN_MM),
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 
@@ -128,7 +124,6 @@ OVERLOAD: Final[Row] = Interlock(
     cause="normal force above the rig's limit",
     watch=at_most("Fz > {}", _force_n, "limits.load_n"),
     when=LOADED,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -169,7 +164,6 @@ OVERSHOOT: Final[Row] = Interlock(
     parameters=(OVERLOAD_FACTOR, OVERLOAD_MARGIN_N, PRESSED_N),
     delay=OVERLOAD_DELAY_S,
     when=LOADED,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -206,8 +200,6 @@ TOO_DEEP: Final[Row] = Interlock(
     applies=lambda v: v.pressing and v.contact.in_contact,
     delay=DEPTH_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 CONTACT_SHARE: Final = Parameter(
@@ -247,7 +239,6 @@ CONTACT_LOST: Final[Row] = Interlock(
     applies=_load_watched,
     delay=CONTACT_DELAY_S,
     when=LOADED,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -262,7 +253,6 @@ SLIP_POWER: Final[Row] = Interlock(
     watch=at_most("friction x slip > {}", lambda v: v.friction_w, "limits.slip_power_w"),
     delay=SLIP_POWER_DELAY_S,
     when=LOADED,
-    reaction=FAST,
     reset=ACK,
 )
 

@@ -8,7 +8,7 @@ from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Paramete
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.inputs import STANDING_M_S, Inputs, Row
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
-from tester.machine.row import ACK, FAST, LOADED, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, LOADED, Compared, Interlock
 from tester.machine.watches import at_least, at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
 
@@ -49,7 +49,6 @@ OVERSPEED: Final[Row] = Interlock(
     parameters=(OVERSPEED_SHARE,),
     applies=lambda v: not v.readings.drives_disabled,
     delay=OVERSPEED_DELAY_S,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -82,7 +81,6 @@ WHEEL_SPEED: Final[Row] = Interlock(
     parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
     applies=lambda v: v.confirmed,
     delay=SPEED_ERROR_DELAY_S,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -99,7 +97,6 @@ BELT_SPEED: Final[Row] = Interlock(
     parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
     applies=lambda v: v.confirmed,
     delay=SPEED_ERROR_DELAY_S,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -115,8 +112,6 @@ PRESS_SPEED: Final[Row] = Interlock(
         "further towards the contact than its ramp allows by > {}", lambda v: v.press.ahead_mm, PRESS_ERROR_MM
     ),
     applies=lambda v: v.confirmed,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 PRESS_TRAVEL: Final[Row] = Interlock(
@@ -128,7 +123,6 @@ PRESS_TRAVEL: Final[Row] = Interlock(
         "mm",
     ),
     applies=lambda v: v.demand.enabled and v.readings.drives_enabled,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -175,7 +169,6 @@ STANDING_UNDER_LOAD: Final[Row] = Interlock(
     watch=condition("load > 20 N, one below standing, the other above apart", _one_stands, _slower),
     parameters=(STANDING_M_S, APART_M_S),
     delay=STANDING_DELAY_S,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -226,8 +219,6 @@ BELT_TORN: Final[Row] = Interlock(
     applies=_slides_without_torque,
     delay=TORN_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 ROWS: Final[tuple[Row, ...]] = (

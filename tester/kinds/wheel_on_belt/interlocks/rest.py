@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import (
 )
 from tester.kinds.wheel_on_belt.interlocks.motion import DROPPED_DELAY_S
 from tester.kinds.wheel_on_belt.interlocks.stops import PUSHED_MM
-from tester.machine.row import ENDING, POWER_OFF, REFUSE, REPAIR, Interlock
+from tester.machine.row import ENDING, POWER_OFF, REFUSE, Interlock
 from tester.machine.watches import condition
 
 
@@ -50,7 +50,6 @@ MOVING_AT_REST: Final[Row] = Interlock(
     when=ENDING,
     at_rest=lambda v: not v.readings.drives_disabled,  # without power a hand may turn the belt
     reaction=POWER_OFF,
-    reset=REPAIR,
 )
 
 LOADED_AT_REST: Final[Row] = Interlock(

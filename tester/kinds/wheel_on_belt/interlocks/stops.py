@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import (
     unloaded,
 )
 from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
-from tester.machine.row import CONTROLLED, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock, always
+from tester.machine.row import CONTROLLED, ENDING, POWER_OFF, Compared, Interlock, always
 from tester.machine.watches import at_most, condition
 
 LIFT_LATE_S: Final = Parameter(
@@ -31,8 +31,6 @@ NOT_LIFTED: Final[Row] = Interlock(
     parameters=(SPEEDS_OLD_S, CLEAR_MM),
     applies=lambda v: v.lifting_s >= 0.0 and not unloaded(v),
     when=ENDING,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 LIFT_FAILED_S: Final = Parameter(
@@ -75,7 +73,6 @@ LIFT_FAILED: Final[Row] = Interlock(
     applies=lambda v: not unloaded(v),
     when=ENDING,
     reaction=POWER_OFF,
-    reset=REPAIR,
 )
 
 SLIP_OUT_S: Final = Parameter(
@@ -139,8 +136,6 @@ HEAT_NOT_OFF: Final[Row] = Interlock(
     applies=lambda v: _off_due(v) and not contactor_open(v),
     when=ENDING,
     ends_lease=True,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 OUTPUT_NOT_OFF: Final[Row] = Interlock(
@@ -152,7 +147,6 @@ OUTPUT_NOT_OFF: Final[Row] = Interlock(
     when=ENDING,
     ends_lease=True,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 STOP_TIMEOUT_S: Final = Parameter(
@@ -189,7 +183,6 @@ CONTACTOR_WELDED: Final[Row] = Interlock(
     at_rest=always,
     ends_lease=True,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 ROWS: Final[tuple[Row, ...]] = (

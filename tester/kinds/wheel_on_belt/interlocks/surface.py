@@ -7,7 +7,7 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.machine.row import ACK, CONTROLLED, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
@@ -109,7 +109,6 @@ THERMOMETER_FROZEN: Final[Row] = Interlock(
     applies=_measures,
     delay=FROZEN_DELAY_S,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 MODEL_K: Final = Parameter(
@@ -131,7 +130,6 @@ SURFACE_OFF_MODEL: Final[Row] = Interlock(
     applies=_measures,
     delay=MODEL_DELAY_S,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 STALE_IR_S: Final = Parameter(

@@ -6,7 +6,7 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.machine.row import FAST, LOADED, REPAIR, Interlock
+from tester.machine.row import LOADED, Interlock
 from tester.machine.watches import at_most, within
 
 FORCE_STEP_N: Final = Parameter(
@@ -45,8 +45,6 @@ FORCE_STEP: Final[Row] = Interlock(
     applies=lambda v: v.pressing,
     delay=FORCE_STEP_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 TORQUE_MARGIN_N: Final = Parameter(
@@ -75,8 +73,6 @@ PRESS_TORQUE: Final[Row] = Interlock(
     applies=lambda v: v.confirmed and v.press_band.known,
     delay=TORQUE_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 ROWS: Final[tuple[Row, ...]] = (FORCE_STEP, PRESS_TORQUE)

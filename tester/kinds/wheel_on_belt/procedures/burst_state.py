@@ -116,7 +116,7 @@ class CentredBursts:
         self.offset_k = offset_k
         self.counter = counter
         self.burst = BurstNotes()
-        self.bursts = 0
+        self.bursts: int = 0
         self.warming_k_s = float("nan")
         self.holdable_band_k = float("nan")
         """Where the temperature could not be held: the rate seen, and the band that would hold one turn."""
@@ -124,8 +124,8 @@ class CentredBursts:
         """Bursts without a whole turn since the last one with any."""
         self.mark_s = 0.0
         self.mark_c = float("inf")
-        self.surface_sum_k = 0.0
-        self.surface_count = 0
+        self.surface_sum_k: float = 0.0
+        self.surface_count: int = 0
         self.belt_m_s = setpoint.belt_speed_m_s
         self.slip_m_s = slip_velocity(setpoint.wheel_speed_m_s, self.belt_m_s, setpoint.sideslip_deg)[2]
         self.target_c = setpoint.temperature_c

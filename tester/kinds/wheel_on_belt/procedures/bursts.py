@@ -85,8 +85,6 @@ class MeasureRepeat(CentredBursts):
         self.rolling_since_s = float("nan")
         self.cooling_since_s = float("nan")
 
-    # -- what the step needs ----------------------------------------------------------------------------------
-
     def step(self, ctx: Context) -> bool:
         """Advance by one scan; done when lifted with ``ending`` set."""
         self._show(ctx)
