@@ -19,6 +19,7 @@ from tester.machine.state import ControlState, Mode, StopProgress
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _HOLD: Final = Mode.HOLD
 _RUN: Final = Mode.RUN
+_COOLDOWN: Final = Mode.COOLDOWN
 _IDLE: Final = Mode.IDLE
 _ARMED: Final = Mode.ARMED
 _LATCHED: Final = Mode.LATCHED
@@ -86,7 +87,8 @@ class ScanInputs:
     def note_drives(self, mode: Mode, demand: BaseDemand, readings: BaseReadings) -> bool:
         """Update ``confirmed`` and ``unpowered``; return whether all drives have just come into operation."""
         working, before = mode is _RUN or mode is _HOLD, self.confirmed
-        self.confirmed = working and demand.enabled and (before or readings.drives_enabled)
+        commanded = (working or mode is _COOLDOWN) and demand.enabled
+        self.confirmed = commanded and (before or readings.drives_enabled)
         if self.confirmed or not working:
             self.unpowered = False
         elif not demand.enabled and readings.drives_disabled:

@@ -34,15 +34,9 @@ from tester.kinds.wheel_on_belt.interlocks.witness import (
     FORCE_STEP_UNSEEN_SHARE,
 )
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.state import Mode
 
 _INF: Final = inf
-
-# Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
-_LOAD: Final = Press.LOAD
-_RUN: Final = Mode.RUN
-_HOLD: Final = Mode.HOLD
-_COOLDOWN: Final = Mode.COOLDOWN
+_LOAD: Final = Press.LOAD  # bound once: a look-up on the enum class costs several times as much (CPython 3.11)
 
 
 @dataclass(slots=True)
@@ -80,10 +74,9 @@ class InterlockInputs(Inputs):
         )
         self.heat = _heat_balance(rig, p)
 
-    def look(self, demand: Demand, readings: Readings, scan_s: float, dt: float) -> None:
+    def look(self, demand: Demand, r: Readings, scan_s: float, dt: float) -> None:
         """Take this scan's demand and readings, and work out what several conditions ask for."""
-        self.readings = r = readings
-        self.demand = demand
+        self.demand, self.readings = demand, r
         state = self.state
         self.note_times(state, r.now_s, scan_s)
         self.pressing = pressing = demand.press is _LOAD
@@ -92,7 +85,7 @@ class InterlockInputs(Inputs):
             self.least_n = inf
             contact_mm = state.load.worn_to_mm(r.diameter_mm)
             if not -_INF < contact_mm < _INF:
-                contact_mm = self.rig.geometry.touch_mm + 0.5 * (self.rig.geometry.wheel_diameter_mm - r.diameter_mm)
+                contact_mm = self.rig.geometry.touch_at_mm(r.diameter_mm)
             self.contact_mm = contact_mm
             if r.cell_valid and r.cell_at_s > self.force.stamp_s:
                 self.force.update(r)
@@ -104,7 +97,6 @@ class InterlockInputs(Inputs):
         still = self.parameters[STANDING_M_S]
         self.turning = wheel_m_s > still or wheel_m_s < -still
         self._follow_speeds(demand, r, dt)
-        self._note_rest(demand, r)
         if self.attended is not demand.attended:
             self.attended = demand.attended
             self._forget_readings(r.now_s)
@@ -122,8 +114,7 @@ class InterlockInputs(Inputs):
             observer.step(r.now_s, hub_c, wheel_m_s, r.surface_c)
             self.heat.update(r.now_s, hub_c, r.heat_percent if r.contactor_closed else 0.0, observer.given_j)
         if r.jacket_at_s > self.jacket.stamp_s:
-            out = state.setpoints
-            self.jacket.update(r, out.heat, out.hub_c)
+            self.jacket.update(r, state.setpoints.heat, state.setpoints.hub_c)
         self.model_c = model_c = observer.surface_c
         if r.surface_at_s > self.surface.stamp_s:
             self.surface.update(r, model_c)
@@ -131,33 +122,20 @@ class InterlockInputs(Inputs):
     def _follow_speeds(self, demand: Demand, r: Readings, dt: float) -> None:
         """Bring the speed trackers up to date while the drives are in operation and something commands them.
 
-        A stop has limits of its own: its ramps are steeper, and it says itself what has not come to its end.
+        A stop has limits of its own: its ramps are steeper, and its own rows watch whether it comes to its end.
         """
-        mode = self.state.mode
-        if not demand.enabled or not (mode is _RUN or mode is _HOLD or mode is _COOLDOWN):
-            self.confirmed = False
-            return
-        if not self.confirmed:
-            if not r.drives_enabled:
-                return
-            self.confirmed = True
+        resting = self.unpowered
+        if self.note_drives(self.state.mode, demand, r):
             self.wheel.begin(r.wheel_speed_m_s)
             self.belt.begin(r.belt_speed_m_s)
             self.press.begin(r)
-        out = self.state.setpoints
-        self.wheel.follow(out.wheel_rad_s * r.diameter_mm * 0.5e-3, dt)
-        self.belt.follow(out.belt_m_s, dt)
-        self.press.follow(out.press_mm_s, dt, r)
-
-    def _note_rest(self, demand: Demand, r: Readings) -> None:
-        """Note when a run has its drives off, and where the press stood at most since."""
-        mode = self.state.mode
-        if self.confirmed or not (mode is _RUN or mode is _HOLD):
-            self.unpowered = False
-        elif self.unpowered or (not demand.enabled and r.drives_disabled):
-            if not self.unpowered or r.press_mm < self.rest_mm:
-                self.rest_mm = r.press_mm
-            self.unpowered = True
+        if self.confirmed:
+            out = self.state.setpoints
+            self.wheel.follow(out.wheel_rad_s * r.diameter_mm * 0.5e-3, dt)
+            self.belt.follow(out.belt_m_s, dt)
+            self.press.follow(out.press_mm_s, dt, r)
+        elif self.unpowered and (not resting or r.press_mm < self.rest_mm):
+            self.rest_mm = r.press_mm
 
     def wheel_changed(self, now: float) -> None:
         """Begin anew with a wheel at ambient temperature: nothing is compared with the one before."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
@@ -74,31 +75,27 @@ def _wheel_on_ramp(v: Inputs) -> tuple[float, float, float]:
     return wheel.low_m_s - error, v.readings.wheel_speed_m_s, wheel.high_m_s + error
 
 
-WHEEL_SPEED: Final[Row] = Interlock(
-    name="wheel speed",
-    cause="wheel not at its speed: jammed, slipping coupling, wrong scale",
-    watch=within("off what its ramp allows by > speed_error", _wheel_on_ramp, "m/s"),
-    parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
-    applies=lambda v: v.confirmed,
-    delay=SPEED_ERROR_DELAY_S,
-    reset=ACK,
-)
-
-
 def _belt_on_ramp(v: Inputs) -> tuple[float, float, float]:
     error, belt = v.parameters[SPEED_ERROR_M_S], v.belt
     return belt.low_m_s - error, v.readings.belt_speed_m_s, belt.high_m_s + error
 
 
-BELT_SPEED: Final[Row] = Interlock(
-    name="belt speed",
-    cause="belt not at its speed: jammed, wrong scale",
-    watch=within("off what its ramp allows by > speed_error", _belt_on_ramp, "m/s"),
-    parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
-    applies=lambda v: v.confirmed,
-    delay=SPEED_ERROR_DELAY_S,
-    reset=ACK,
+def _off_ramp(name: str, cause: str, on_ramp: Callable[[Inputs], tuple[float, float, float]]) -> Row:
+    return Interlock(
+        name=name,
+        cause=cause,
+        watch=within("off what its ramp allows by > speed_error", on_ramp, "m/s"),
+        parameters=(RAMP_SHARE, SPEED_ERROR_M_S),
+        applies=lambda v: v.confirmed,
+        delay=SPEED_ERROR_DELAY_S,
+        reset=ACK,
+    )
+
+
+WHEEL_SPEED: Final = _off_ramp(
+    "wheel speed", "wheel not at its speed: jammed, slipping coupling, wrong scale", _wheel_on_ramp
 )
+BELT_SPEED: Final = _off_ramp("belt speed", "belt not at its speed: jammed, wrong scale", _belt_on_ramp)
 
 PRESS_ERROR_MM: Final = Parameter(
     "press_error_mm", "mm", "0.3 mm", "the press further to the contact than its commands allow: 50 N at 200 N [A]",

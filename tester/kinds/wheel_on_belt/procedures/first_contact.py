@@ -50,8 +50,8 @@ class Touch:
         ctx.moving = True
         if not isfinite(self.began_s):
             self.began_s = ctx.now
-        geometry, r = ctx.rig.geometry, ctx.readings
-        expected_mm = geometry.touch_mm + 0.5 * (geometry.wheel_diameter_mm - r.diameter_mm)
+        r = ctx.readings
+        expected_mm = ctx.rig.geometry.touch_at_mm(r.diameter_mm)
         touched_mm = ctx.contact.contact_mm
         place_mm = touched_mm if ctx.contact.in_contact and isfinite(touched_mm) else r.press_mm
         near = ctx.contact.in_contact or not place_mm < expected_mm - NEAR * self.off_mm

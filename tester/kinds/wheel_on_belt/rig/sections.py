@@ -40,6 +40,10 @@ class GeometryConfig:
     touch_mm: Annotated[float, "mm", _POSITIVE]
     """Press travel from fully lifted to touching a new wheel."""
 
+    def touch_at_mm(self, diameter_mm: float) -> float:
+        """Return the press travel to touching a wheel of another diameter."""
+        return self.touch_mm + 0.5 * (self.wheel_diameter_mm - diameter_mm)
+
 
 def _with(base: type, further: Iterable[tuple[str, object]]) -> Any:
     """Return a section with further fields: those of the axes that a drive positions."""
