@@ -10,7 +10,7 @@ import pytest
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
-from tester.kinds.wheel_on_belt.rig import CertificatesConfig
+from tester.kinds.wheel_on_belt.rig.sections import CertificatesConfig
 from tester.kinds.wheel_on_belt.served.left_on_rig import HeatHistory, WheelLeft
 from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.service.preflight import (

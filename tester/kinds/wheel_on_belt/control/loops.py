@@ -15,7 +15,8 @@ from typing import Final
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact_force import STIFFNESS_EXPONENT, UNLOADED_N, Contact
 from tester.kinds.wheel_on_belt.interlocks.inputs import StopStart
-from tester.kinds.wheel_on_belt.rig import HeatLoopConfig, LoadLoopConfig, RigConfig
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.rig.sections import HeatLoopConfig, LoadLoopConfig
 from tester.machine.state import ControlState
 
 _INF: Final = inf

@@ -18,7 +18,7 @@ from tester.kinds.wheel_on_belt.image.process_image import (
     GATE_TEMPERATURE,
     Readings,
 )
-from tester.kinds.wheel_on_belt.rig import GatesConfig
+from tester.kinds.wheel_on_belt.rig.sections import GatesConfig
 
 _INF: Final = inf
 RESTART_SHARE: Final = 0.15

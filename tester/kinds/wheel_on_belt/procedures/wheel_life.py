@@ -14,7 +14,7 @@ from typing import Final
 
 from tester.analysis.wear_rate import WearCheck
 from tester.kinds.wheel_on_belt.image.process_image import Readings
-from tester.kinds.wheel_on_belt.rig import GeometryConfig, WearConfig
+from tester.kinds.wheel_on_belt.rig.sections import GeometryConfig, WearConfig
 
 _INF: Final = inf
 SAME_SIZE_K: Final = 0.25

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
-from tester.kinds.wheel_on_belt.rig import InterlocksConfig, RigConfig, interlock_values
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.rig.sections import InterlocksConfig, interlock_values
 
 SOURCE = Path(__file__).parents[4] / "tester"
 OTHER_KIND = SOURCE / "kinds" / "specimen_on_track"

@@ -14,7 +14,7 @@ from tester.inputs.rig.parameter import Direction, Parameter
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS, TABLE
-from tester.kinds.wheel_on_belt.rig import interlock_values
+from tester.kinds.wheel_on_belt.rig.sections import interlock_values
 from tester.machine.row import Interlock
 
 OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester.machine.drive_rows",

@@ -15,7 +15,7 @@ from tester.kinds.wheel_on_belt.image.process_image import (
     Readings,
 )
 from tester.kinds.wheel_on_belt.procedures.gates import Average, Gates, SurfaceTrend
-from tester.kinds.wheel_on_belt.rig import GatesConfig
+from tester.kinds.wheel_on_belt.rig.sections import GatesConfig
 
 CONFIG = GatesConfig(
     load_percent=2.0, load_filter_s=1.0, speed_percent=1.0, slip_percent=2.0, slip_floor_mm_s=2.0, slip_filter_s=0.2,
