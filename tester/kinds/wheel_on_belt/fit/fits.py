@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
 from sim.physics.friction import MODEL_NAMES
 from tester.analysis.fit.fit_law import FitError, Law, Sourced
 from tester.analysis.fit.fit_part import FitPart, PublishedTable
-from tester.base.axes import Setpoint
-from tester.kinds.wheel_on_belt.fit.data import APPENDICES, appendix
+from tester.kinds.wheel_on_belt.fit import data
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, LOAD, SLIP
 
 
@@ -19,11 +18,13 @@ class WheelFits:
 
     laws: Mapping[str, Law] = LAWS
     cells: tuple[int, ...] = (LOAD, SLIP)
-    packaged: Sequence[str] = tuple(APPENDICES)
+    packaged: Sequence[str] = tuple(data.APPENDICES)
 
-    def packaged_points(self, name: str) -> Sourced:
-        """Return the conditions of an appendix; raises KeyError."""
-        return appendix(name)
+    published_laws: Sequence[str] = MODEL_NAMES
+    packaged_points = staticmethod(data.appendix)
+    published_values = staticmethod(data.published_values)
+    law_caveats = staticmethod(data.law_caveats)
+    law_at = staticmethod(data.law_at)
 
     def run_points(self, folder: Path) -> Sourced:
         """Return the conditions of a run; raises StoreError."""
@@ -37,28 +38,8 @@ class WheelFits:
             raise FitError(f"the law {law.name} is given no surface and no figures")
         return law
 
-    def published_values(self) -> Sequence[tuple[Setpoint, float]]:
-        """Return the readable rows of the appendices."""
-        from tester.kinds.wheel_on_belt.fit.data import published_values
-
-        return published_values()
-
-    published_laws: Sequence[str] = MODEL_NAMES
-
-    def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
-        """Return where a setpoint is outside the paper's data."""
-        from tester.kinds.wheel_on_belt.fit.data import law_caveats
-
-        return law_caveats(setpoint)
-
-    def law_at(self, name: str) -> Callable[[Setpoint], float]:
-        """Return a law of the paper's compounds; raises KeyError."""
-        from tester.kinds.wheel_on_belt.fit.data import law_at
-
-        return law_at(name)
-
     def checked(self, sources: Sequence[str], validation: Sequence[str]) -> bool:
-        """Tell whether this is the paper's own split: fitted to appendix A, seen on B."""
+        """Return whether this is the paper's own split: fitted to appendix A, seen on B."""
         from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION
 
         return [*sources] == [FIT] and [*validation] == [VALIDATION]

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.inputs.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
-from tester.inputs.rig.parameter import SECTION, Direction
+from tester.inputs.rig.ceilings import HIGHER, LOWER, TRUE, Ceiling, ceilings_of
+from tester.inputs.rig.parameter import SECTION
+from tester.inputs.rig.plain_rig import PLAIN_CEILINGS
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-
-LOWER, HIGHER = Direction.LOWER, Direction.HIGHER
 
 _OWN: Final = (
     Ceiling("limits.load", "N", LOWER, "450 N",
@@ -29,25 +28,14 @@ _OWN: Final = (
     Ceiling("limits.surface", "degC", LOWER, "100 degC",
             "the contact is hotter than the surface beside it by some 20 K [A]; harm begins at 130 degC there"),
     *(Ceiling(axis.limit, axis.recipe_unit, LOWER, axis.hardest, axis.because) for axis in POSITIONED),
-    Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
-            "without it there is no proof that the drives stop when this program does"),
+    *(ceiling for ceiling in PLAIN_CEILINGS if ceiling.key != "can.consumer_heartbeat"),
     Ceiling("arming.bump_test", "", HIGHER, TRUE, "without it wheel and belt may be exchanged, or turn the wrong way"),
-    Ceiling("arming.listen", "s", HIGHER, "0.5 s", "another master sends twice a second or oftener [A]"),
-    Ceiling("arming.withhold", "s", HIGHER, "300 ms",
-            "half as long again as the 200 ms after which a drive must report the missing heartbeat"),
     Ceiling("arming.creep", "m/s", LOWER, "0.1 m/s", "nothing is proven yet: a wheel turns once in three seconds"),
     Ceiling("arming.unloaded", "N", LOWER, "30 N",
             "450 N, the most that is asked for, and 30 N of a wrong zero are 480 N; harm begins at 500 N"),
     Ceiling("scan.sliding", "Hz", HIGHER, "50 Hz", "a delay of 50 ms is two scans and a half: fewer are one reading"),
-    Ceiling("scan.enabled", "Hz", HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
-    Ceiling("scan.idle", "Hz", HIGHER, "5 Hz", "the inputs are too old after 250 ms: one scan at least looks at them"),
-    Ceiling("can.heartbeat", "s", LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that the drives wait"),
-    Ceiling("can.drive_heartbeat", "s", LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
     Ceiling("can.consumer_heartbeat", "s", LOWER, "300 ms",
             "without heartbeat a drive keeps its setpoint: another 0.1 s at 400 W (limits.slip_power) are 40 J: harm"),
-    Ceiling(f"{AXES}heartbeat", "s", LOWER, "100 ms", "as can.drive_heartbeat"),
-    Ceiling(f"{AXES}consumer_heartbeat", "s", LOWER, "300 ms", "as can.consumer_heartbeat"),
-    Ceiling(f"{AXES}proves_watchdog", "", HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
     *(Ceiling(f"axes.{name}.rpdo_deadline", "s", LOWER, "250 ms",
               "a drive that hears no setpoint costs 3# 45 J without it; harm is 40 J", zero_is_off=True)
       for name in VELOCITY_AXES),
