@@ -11,28 +11,11 @@ from tester.inputs.rig.parameter import Values
 from tester.kinds.wheel_on_belt.control.loops import WheelState
 from tester.kinds.wheel_on_belt.control.observer import ThermalObserver
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings
+from tester.kinds.wheel_on_belt.interlocks import hub, motion, surface, witness
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance, KnownRatio
-from tester.kinds.wheel_on_belt.interlocks.hub import (
-    HEAT_LEAK_W,
-    HEAT_SHARE,
-    HEAT_SHARE_KNOWN,
-    OPEN_BELOW_K,
-    OPEN_OUTPUT_PERCENT,
-    OPEN_RISE_K,
-    RATE_FILTER_S,
-    RATE_SETTLE_S,
-    RATE_WINDOW_S,
-)
 from tester.kinds.wheel_on_belt.interlocks.inputs import STANDING_M_S, Inputs, PressBand, RigLimits
 from tester.kinds.wheel_on_belt.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
-from tester.kinds.wheel_on_belt.interlocks.motion import RAMP_SHARE
-from tester.kinds.wheel_on_belt.interlocks.surface import BLIND_S
-from tester.kinds.wheel_on_belt.interlocks.witness import (
-    FORCE_STEP_CROSS_SHARE,
-    FORCE_STEP_SEEN_SHARE,
-    FORCE_STEP_UNSEEN_SHARE,
-)
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 _INF: Final = inf
@@ -60,17 +43,17 @@ class InterlockInputs(Inputs):
         self.hub_setpoints = state.hub_ceiling
         self.observer = ThermalObserver(rig)
         self.jacket = _jacket_monitor(p)
-        self.surface = SurfaceMonitor(p[BLIND_S])
+        self.surface = SurfaceMonitor(p[surface.BLIND_S])
         radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
-        self.wheel = SpeedTracker(p[RAMP_SHARE] * rig.axes.wheel.acceleration * radius_m)
-        self.belt = SpeedTracker(p[RAMP_SHARE] * rig.axes.belt.acceleration)
-        self.press = PressTracker(p[RAMP_SHARE] * rig.loops.load.acceleration_mm_s2)
+        self.wheel = SpeedTracker(p[motion.RAMP_SHARE] * rig.axes.wheel.acceleration * radius_m)
+        self.belt = SpeedTracker(p[motion.RAMP_SHARE] * rig.axes.belt.acceleration)
+        self.press = PressTracker(p[motion.RAMP_SHARE] * rig.loops.load.acceleration_mm_s2)
         self.press_band = _press_band(rig)
         self.force = ForceObserver(
             self.limits.stiffness_n_per_mm,
-            p[FORCE_STEP_UNSEEN_SHARE],
-            p[FORCE_STEP_SEEN_SHARE],
-            p[FORCE_STEP_CROSS_SHARE],
+            p[witness.FORCE_STEP_UNSEEN_SHARE],
+            p[witness.FORCE_STEP_SEEN_SHARE],
+            p[witness.FORCE_STEP_CROSS_SHARE],
         )
         self.heat = _heat_balance(rig, p)
 
@@ -144,7 +127,7 @@ class InterlockInputs(Inputs):
 
     def know_heat(self, known: KnownRatio) -> None:
         """Take over what the rig's own heatings have shown, before the first scan."""
-        widest, beyond = self.parameters[HEAT_SHARE], self.parameters[HEAT_SHARE_KNOWN]
+        widest, beyond = self.parameters[hub.HEAT_SHARE], self.parameters[hub.HEAT_SHARE_KNOWN]
         self.heat.share = known.share(widest, beyond)
         self.heat_known = known.told(widest, beyond)
 
@@ -191,17 +174,18 @@ def _press_band(rig: RigConfig) -> PressBand:
 def _heat_balance(rig: RigConfig, p: Values) -> HeatBalance:
     thermal = rig.observer.thermal
     return HeatBalance(
-        thermal.hub_capacity, thermal.hub_to_shaft, thermal.jacket_power, rig.ambient_c, p[HEAT_SHARE], p[HEAT_LEAK_W]
-    )
+        thermal.hub_capacity, thermal.hub_to_shaft, thermal.jacket_power, rig.ambient_c, p[hub.HEAT_SHARE],
+        p[hub.HEAT_LEAK_W],
+    )  # fmt: skip
 
 
 def _jacket_monitor(p: Values) -> JacketMonitor:
     return JacketMonitor(
-        blind_s=p[BLIND_S],
-        rate_filter_s=p[RATE_FILTER_S],
-        rate_window_s=p[RATE_WINDOW_S],
-        rate_settle_s=p[RATE_SETTLE_S],
-        open_output_percent=p[OPEN_OUTPUT_PERCENT],
-        open_below_k=p[OPEN_BELOW_K],
-        open_rise_k=p[OPEN_RISE_K],
+        blind_s=p[surface.BLIND_S],
+        rate_filter_s=p[hub.RATE_FILTER_S],
+        rate_window_s=p[hub.RATE_WINDOW_S],
+        rate_settle_s=p[hub.RATE_SETTLE_S],
+        open_output_percent=p[hub.OPEN_OUTPUT_PERCENT],
+        open_below_k=p[hub.OPEN_BELOW_K],
+        open_rise_k=p[hub.OPEN_RISE_K],
     )

@@ -31,29 +31,6 @@ class ThermalObserver:
     the heat that it let flow from hub to rubber, J.
     """
 
-    __slots__ = (
-        "_air_rotating",
-        "_air_stopped",
-        "_ambient_c",
-        "_belt_j_k",
-        "_belt_to_air",
-        "_cell_j_k",
-        "_contact_s",
-        "_energy_j",
-        "_last_s",
-        "_links",
-        "_outer",
-        "_rotating_above",
-        "_share",
-        "_sides",
-        "_touching",
-        "belt_c",
-        "cells_c",
-        "due_s",
-        "given_j",
-        "surface_c",
-    )
-
     def __init__(self, rig: RigConfig) -> None:
         """Work out the conductances (W/K) and heat capacities (J/K) from the rig file's ``observer`` section."""
         observer, thermal, wheel = rig.observer, rig.observer.thermal, rig.observer.wheel

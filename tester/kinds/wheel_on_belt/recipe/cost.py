@@ -19,7 +19,6 @@ from tester.base.axes import Setpoint
 from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, expected, repeats_each
 from tester.inputs.recipe.time_estimate import StepEstimate
 from tester.kinds.wheel_on_belt.image.axes import Held, held_by
-from tester.kinds.wheel_on_belt.recipe.body import Body
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
@@ -73,7 +72,7 @@ class ConditionCosts:
     """Costs of conditions on one rig; specimens and replicates share theirs."""
 
     def __init__(
-        self, rig: RigConfig, constants: EstimateConstants, body: Body, repeatability: Mapping[str, float] | None = None
+        self, rig: RigConfig, constants: EstimateConstants, repeatability: Mapping[str, float] | None = None
     ) -> None:
         """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
         self.repeatability = repeatability or {}
@@ -84,7 +83,6 @@ class ConditionCosts:
         effusivity = math.sqrt(thermal.conductivity * thermal.density * thermal.heat_capacity)
         area_m2 = math.pi * diameter_m * width_m
         self.constants = constants
-        self.body = body
         self.ambient_c = rig.ambient_c
         self.turn_m = math.pi * diameter_m
         # K per W of friction and per sqrt(s): the heat spreads over the whole tread, which turns below it.

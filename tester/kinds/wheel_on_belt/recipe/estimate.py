@@ -75,7 +75,7 @@ class WheelEstimator:
         """Each specimen, and each replicate of it, is a part of the run, on a rig of its own."""
         self.person_s = 0.0 if rig.simulated else constants.person_s
         self.body = Body(rig)
-        self.costs = ConditionCosts(rig, constants, self.body, repeatability)
+        self.costs = ConditionCosts(rig, constants, repeatability)
         self.order = OrderCosts(rig, constants, self.body)
 
     def walk(self, plan: Plan) -> list[StepEstimate]:

@@ -10,7 +10,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, count
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
@@ -32,9 +32,6 @@ from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, mount_again
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
-
-_ONE: Final[dict[str, bool]] = {}
-_BOTH: Final = {"both_directions": True}
 
 
 def expand(recipe: WheelRecipe, rig: RigConfig, estimator: WheelEstimator | None = None) -> WheelPlan:
@@ -251,31 +248,14 @@ class _Expansion:
         else:
             row += (wheel.specimen - 1) * len(self.conditions)
             self.references.since += 1
-        # By position: with names the call costs twice as much, and there may be 250,000 of them.
         steps.append(
             WheelCondition(
-                len(steps),
-                self.count,
-                row,
-                wheel.specimen,
-                wheel.replicate,
-                grid,
-                setpoint,
-                how.repeats,
-                how.min_valid,
-                how.window,
-                how.temperature_band_k,
-                how.soak,
-                how.at_most,
-                how.until_percent,
-                wheel.number,
-                how.max_bursts,
-                how.wear_check,
-                how.run_in_m,
-                reference,
-                **(_BOTH if how.both_directions else _ONE),
+                len(steps), self.count, row, wheel.specimen, wheel.replicate, grid, setpoint, how.repeats,
+                how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most, how.until_percent,
+                wheel.number, how.max_bursts, how.wear_check, how.run_in_m, reference,
+                both_directions=how.both_directions,
             )
-        )
+        )  # fmt: skip
 
     def _prompts(self, texts: list[str]) -> None:
         for text in texts:

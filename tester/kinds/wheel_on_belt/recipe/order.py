@@ -23,8 +23,6 @@ NEAR_K = 2.0
 class Before:
     """State after the last steps: the surface before heating up, degC, or the heat of the condition before, W."""
 
-    __slots__ = ("from_c", "heat_w", "pooled", "rolled")
-
     def __init__(self, surface_c: float) -> None:
         """A wheel at one temperature, degC."""
         self.pooled = 0
@@ -83,14 +81,7 @@ class OrderCosts:
                 waiting_s += min(c.sunk_s_w * (before.heat_w - c.sunk_from_w), c.sunk_most_s)
         before.heat_w = heat_w
         before.rolled = heat_w <= 0.0
-        if waiting_s == 0.0:
-            return one
-        # Not _replace, which takes three times as long: plans have 100,000 conditions.
-        seconds, sliding_m, loss_mm, friction_j, peak_c, bursts, held, waited_s, _, repeats = one
-        seconds, waited_s = seconds + waiting_s, waited_s + waiting_s
-        return StepEstimate(
-            seconds, sliding_m, loss_mm, friction_j, peak_c, bursts, held, waited_s, heat_w, repeats
-        )  # fmt: skip
+        return one._replace(seconds=one.seconds + waiting_s, waiting_s=one.waiting_s + waiting_s)
 
     def _settle_s(self, from_c: float, to_c: float) -> float:
         """Return the seconds in contact from reaching a temperature until it is stable."""
