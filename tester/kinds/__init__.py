@@ -111,7 +111,7 @@ def packaged_keys(source: str | Path, overrides: Sequence[str] = ()) -> tuple[st
 
     As ``interlocks.pushed``, in the order of the packaged file. Raises InvalidSource for a file that cannot be read.
     """
-    from tester.inputs.rig.missing import lacking
+    from tester.inputs.rig.packaged import lacking
 
     kind, tree = _opened(source)
     given = {text.partition("=")[0].strip() for text in overrides}

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from drivers.profiles import ProfileError
+from drivers.profiles.model import DeviceProfile
 from tester.base.source import Location
 from tester.inputs.rig.config import DeviceConfig, OwnDevice, Rig
 from tester.inputs.rig.further_sensors import parts_of, title_of
@@ -13,14 +14,14 @@ from tester.inputs.rig.profiles import profile_of
 _Found = Iterator[tuple[Location, str]]
 
 
-def problems_of_cells(rig: Rig) -> _Found:
+def problems_of_cells(rig: Rig, profiles: Mapping[str, DeviceProfile]) -> _Found:
     """Yield the faults of the machine's own devices with required channels, and of parts of devices."""
     for name, part in rig.devices.items():
         if part.part_of:
             yield from _belongs(rig, name, part)
     for name, own in rig.own.items():
         if own.channels:
-            yield from _measures(rig, name, own)
+            yield from _measures(rig, name, own, profiles)
 
 
 def _belongs(rig: Rig, name: str, part: DeviceConfig) -> _Found:
@@ -34,17 +35,16 @@ def _belongs(rig: Rig, name: str, part: DeviceConfig) -> _Found:
         yield place, f"devices has {whole} itself, too: a load cell is one device, or its transmitters are devices"
 
 
-def _measures(rig: Rig, name: str, own: OwnDevice) -> _Found:
+def _measures(rig: Rig, name: str, own: OwnDevice, profiles: Mapping[str, DeviceProfile]) -> _Found:
     """Yield the channels that no transmitter measures, and those that two do."""
     parts = parts_of(rig, name) if own.joined else {}
     single = rig.devices.get(name)
     asked = {name: single} if single is not None else parts
+    if not asked.keys() <= profiles.keys():
+        return  # reported elsewhere
     by_channel: dict[str, str] = {}
     for key, device in asked.items():
-        try:
-            profile = profile_of(device.profile)
-        except ProfileError:
-            return  # reported elsewhere
+        profile = profiles[key]
         for channel in profile.channels:
             channel_name = device.channels.get(channel, channel)
             if channel_name in by_channel:

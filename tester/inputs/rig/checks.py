@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from drivers.drive_settings import plan
 from drivers.profiles import ProfileError
@@ -12,7 +12,7 @@ from drivers.profiles.model import DeviceProfile
 from tester.base.source import Location, Problem, Tree
 from tester.inputs.rig.cells import problems_of_cells
 from tester.inputs.rig.config import DeviceConfig, Rig
-from tester.inputs.rig.further_sensors import channels_of, further_channels, further_sensors, parts_of
+from tester.inputs.rig.further_sensors import channels_of, further_sensors, parts_of
 from tester.inputs.rig.profiles import profile_of
 
 MAX_BUS_LOAD = 0.5
@@ -29,8 +29,10 @@ _Found = Iterator[tuple[Location, str]]
 
 def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
     """Return the contradictions, including the kind's own, with positions."""
-    faults = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_profiles(rig)]
-    faults += [*_channels(rig), *_watched(rig), *problems_of_cells(rig), *_simulation(rig), *rig.problems()]
+    profiles, unread = _read(rig)
+    faults = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_missing(rig), *unread]
+    faults += [*_profiles(rig, profiles), *_channels(rig, profiles), *problems_of_cells(rig, profiles)]
+    faults += [*_simulation(rig), *rig.problems()]
     return [tree.problem(location, message) for location, message in faults]
 
 
@@ -94,16 +96,27 @@ def _lines(rig: Rig) -> _Found:
             yield ("lines", name, "baud"), "expected a baud rate above 0"
 
 
-def _profiles(rig: Rig) -> _Found:
+def _missing(rig: Rig) -> _Found:
     for name, own in rig.own.items():
         if name not in rig.devices and not own.optional and not (own.joined and parts_of(rig, name)):
             yield ("devices",), f"{name} is missing"
+
+
+def _read(rig: Rig) -> tuple[dict[str, DeviceProfile], list[tuple[Location, str]]]:
+    """Return the profile of each device, and a fault for each that has none."""
+    profiles: dict[str, DeviceProfile] = {}
+    unread: list[tuple[Location, str]] = []
     for name, device in rig.devices.items():
         try:
-            profile = profile_of(device.profile)
+            profiles[name] = profile_of(device.profile)
         except ProfileError as error:
-            yield ("devices", name, "profile"), str(error)
-            continue
+            unread.append((("devices", name, "profile"), str(error)))
+    return profiles, unread
+
+
+def _profiles(rig: Rig, profiles: Mapping[str, DeviceProfile]) -> _Found:
+    for name, profile in profiles.items():
+        device = rig.devices[name]
         whole = device.part_of or name
         expected = rig.own[whole].profile if whole in rig.own else "sensor"
         if profile.kind != expected and (whole in rig.own or profile.kind in COMMANDED):
@@ -138,50 +151,42 @@ def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own:
             yield ("devices", name), f"{key} is missing"
 
 
-def _channels(rig: Rig) -> _Found:
-    """Check that every channel of a further sensor has a unique name that can become a column."""
+def _channels(rig: Rig, profiles: Mapping[str, DeviceProfile]) -> _Found:
+    """Check that every further channel has a unique name that can become a column, and that interlocks find theirs."""
     taken: dict[str, str] = {}
-    for name, device in further_sensors(rig).items():
-        try:
-            measured, profile_channels = channels_of(device), profile_of(device.profile).channels
-        except ProfileError:
-            continue
-        for place, known in (("channels", device.channels), ("simulated", device.simulated)):
-            for key in known:
-                if key not in profile_channels:
-                    yield (
-                        ("devices", name, place, key),
-                        f"no such channel (the profile has {', '.join(profile_channels)})",
-                    )
-        for channel in measured:
-            if _is_own(rig, channel):
-                yield ("devices", name), f"channel {channel} is one of the machine's own: rename it by `channels`"
-            if channel in taken:
-                message = f"channel {channel} is one of {taken[channel]} already: rename it by `channels`"
-                yield ("devices", name), message
-            taken.setdefault(channel, name)
-    for name, node in rig.can.nodes.items():
-        for channel in node.channels:
-            if _is_own(rig, channel):
-                yield ("can", "nodes", name), f"channel {channel} is one of the machine's own"
-            if channel in taken:
-                yield ("can", "nodes", name), f"channel {channel} is one of {taken[channel]} already"
-            taken.setdefault(channel, name)
-    for channel, name in taken.items():
+    sensors = further_sensors(rig)
+    measured = {name: channels_of(device, profiles[name]) for name, device in sensors.items() if name in profiles}
+    for name in measured:
+        yield from _known(name, sensors[name], profiles[name])
+    places = [(("devices", name), channel) for name, channels in measured.items() for channel in channels]
+    places += [(("can", "nodes", name), channel) for name, node in rig.can.nodes.items() for channel in node.channels]
+    for place, channel in places:
+        remedy = ": rename it by `channels`" if place[0] == "devices" else ""  # a node's channels have their names here
+        if _is_own(rig, channel):
+            yield place, f"channel {channel} is one of the machine's own{remedy}"
+        if channel in taken:
+            yield place, f"channel {channel} is one of {taken[channel]} already{remedy}"
         if not re.fullmatch("[a-z][a-z0-9_]*", channel):
-            place = ("devices", name) if name in rig.devices else ("can", "nodes", name)
             yield place, f"channel {channel}: expected small letters, digits and _"
+        taken.setdefault(channel, place[-1])
+    if sensors.keys() <= profiles.keys():  # else any of them may measure it
+        yield from _watched(rig, list(taken))
 
 
-def _watched(rig: Rig) -> _Found:
-    """Check that a further sensor measures every channel of an interlock."""
-    try:
-        there = [further_channel.name for further_channel in further_channels(rig)]
-    except ProfileError:
-        return
+def _known(name: str, device: DeviceConfig, profile: DeviceProfile) -> _Found:
+    """Yield the keys of a sensor that name no channel of its profile."""
+    for place, keys in (("channels", device.channels), ("simulated", device.simulated)):
+        for key in keys:
+            if key not in profile.channels:
+                expected = f"no such channel (the profile has {', '.join(profile.channels)})"
+                yield ("devices", name, place, key), expected
+
+
+def _watched(rig: Rig, measured: list[str]) -> _Found:
+    """Yield the channels of interlocks that no further sensor measures."""
     for name in rig.watched:
-        if name not in there:
-            known = f"there are {', '.join(there)}" if there else "there is none"
+        if name not in measured:
+            known = f"there are {', '.join(measured)}" if measured else "there is none"
             message = f"an interlock looks at the channel {name}, which no further sensor measures"
             yield ("devices",), f"{message} (expected a device or a node with it; {known})"
 

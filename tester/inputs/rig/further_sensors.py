@@ -8,7 +8,7 @@ from math import ceil, isfinite, log10
 from typing import Final
 
 from drivers.canopen.node_config import NodeChannel
-from drivers.profiles.model import Signal
+from drivers.profiles.model import DeviceProfile, Signal
 from tester.base.config_reader import SUFFIXES
 from tester.base.quantities import FURTHER, Channel, Figure, Quantities, Screen
 from tester.inputs.rig.config import DeviceConfig, Rig
@@ -103,7 +103,6 @@ def quantities_on(rig: Rig) -> Quantities:
     )
 
 
-def channels_of(device: DeviceConfig) -> Mapping[str, str]:
-    """Return the units of a sensor's channels by their recorded names; raises ProfileError."""
-    profile = profile_of(device.profile)
+def channels_of(device: DeviceConfig, profile: DeviceProfile) -> Mapping[str, str]:
+    """Return the units of a sensor's channels by their recorded names."""
     return {device.channels.get(name, name): profile.signal(name).unit for name in profile.channels}

@@ -1,14 +1,23 @@
-"""Packaged rig files, with a laboratory's own interlocks, and the commented file for a real machine made from one."""
+"""Packaged rig files, with a laboratory's own interlocks: what a file takes from one, and the file for a real machine.
+
+A key that a file lacks takes the packaged value where its kind allows that (``Rig.may_lack``); some keys it must state
+itself (``Rig.stated``).
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
+from copy import deepcopy
 from functools import cache
 from importlib.resources import files
 
-from tester.base.source import Tree, load_tree
+from tester.base.source import Tree, Value, load_tree
 from tester.inputs.rig.config import Rig
 from tester.inputs.rig.parameter import SECTION, key_line
+
+Place = tuple[str, ...]
+"""Place of a key: the names of its sections, and its own."""
 
 
 def packaged_name(kind: type[Rig], like: str = "") -> str:
@@ -44,6 +53,90 @@ def new_tree(kind: type[Rig], like: str = "") -> Tree:
     """Return a packaged file as data that the caller may change."""
     name = packaged_name(kind, like)
     return load_tree(packaged_text(kind, like), kind.packaged[name].replace(":", "/"))
+
+
+def lacking(kind: type[Rig], tree: Tree) -> tuple[Place, ...]:
+    """Return the missing keys that a file may lack, in the packaged file's order; a missing section as its keys."""
+    return tuple(_lacking(kind, _packaged(kind, tree), _section(tree.data), ()))
+
+
+def complete(kind: type[Rig], tree: Tree) -> tuple[Place, ...]:
+    """Write the packaged values of the missing keys that a file may lack into a tree.
+
+    Returns the missing keys that it must state itself, of sections that it has (``Rig.stated``).
+    """
+    packaged, stated = _packaged(kind, tree), _section(tree.data)
+    for place in tuple(_lacking(kind, packaged, stated, ())):
+        value, section = packaged, stated
+        for key in place[:-1]:
+            if section.get(key) is None:
+                section[key] = {}
+            value, section = _section(value[key]), _section(section[key])
+        section[place[-1]] = deepcopy(value[place[-1]])
+    return tuple(_unstated(kind, packaged, stated))
+
+
+def _unstated(kind: type[Rig], packaged: Value, stated: Value) -> Iterator[Place]:
+    for place in (tuple(key_path.split(".")) for key_path in kind.stated):
+        due, present = packaged, stated
+        for key in place:
+            due = due.get(key) if isinstance(due, dict) else None
+            present = present.get(key) if isinstance(present, dict) else None
+        if isinstance(due, dict) and isinstance(present, dict):
+            yield from ((*place, key) for key in due if key not in present)
+
+
+def like(tree: Tree) -> str:
+    """Return the packaged rig that a file names in ``like``, "" for the first of its kind."""
+    named = _section(tree.data).get("like")
+    return named if isinstance(named, str) else ""
+
+
+def _packaged(kind: type[Rig], tree: Tree) -> dict[str, Value]:
+    """Return the packaged file that a file is like; not to be changed."""
+    return _section(packaged_tree(kind, like(tree)).data)
+
+
+def _section(value: Value) -> dict[str, Value]:
+    """Return a section; an empty one for anything else, which is refused where it is read."""
+    return value if isinstance(value, dict) else {}
+
+
+def _lacking(kind: type[Rig], packaged: Mapping[str, Value], own: Mapping[str, Value], above: Place) -> Iterator[Place]:
+    for key, value in packaged.items():
+        place = (*above, key)
+        inner = own.get(key)
+        if isinstance(value, dict):
+            if inner is None and _leads_to_some(kind, place) and (key not in own or _may_lack(kind, place)):
+                inner = dict[str, Value]()  # a section that is missing, or present but empty
+            if isinstance(inner, dict) and not _by_hand(kind, place, inner):
+                yield from _lacking(kind, value, inner, place)
+        elif key not in own and _may_lack(kind, place):
+            yield place
+
+
+def _may_lack(kind: type[Rig], place: Place) -> bool:
+    """Return whether a file may lack a key, or a section above it."""
+    return any(
+        len(parts) <= len(place) and _alike(parts, place) for parts in (pattern.split(".") for pattern in kind.may_lack)
+    )
+
+
+def _leads_to_some(kind: type[Rig], place: Place) -> bool:
+    """Return whether a section has keys that a file without it may lack. An axis or a device is never completed."""
+    return _may_lack(kind, place) or any(
+        len(parts) > len(place) and "*" not in parts[: len(place)] and _alike(parts, place)
+        for parts in (pattern.split(".") for pattern in kind.may_lack)
+    )
+
+
+def _alike(parts: list[str], place: Place) -> bool:
+    return all(part in ("*", key) for part, key in zip(parts, place, strict=False))
+
+
+def _by_hand(kind: type[Rig], place: Place, section: Mapping[str, Value]) -> bool:
+    """Return whether a section is that of an axis without a drive."""
+    return place[0] == "axes" and place[-1] in kind.manual and section.get("manual") is True
 
 
 HEADER = """\

@@ -14,8 +14,7 @@ from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
 from tester.inputs.rig.ceilings import Risk, beyond, counts_as_simulated, loosened
 from tester.inputs.rig.checks import problems_of
 from tester.inputs.rig.config import Rig
-from tester.inputs.rig.missing import complete, unstated
-from tester.inputs.rig.packaged import new_tree
+from tester.inputs.rig.packaged import complete, new_tree
 from tester.inputs.rig.profiles import extension_drive, extension_law
 
 OneRig = TypeVar("OneRig", bound=Rig)
@@ -88,9 +87,9 @@ def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> On
 
 def checked(kind: type[OneRig], tree: Tree) -> OneRig:
     """Return a tree as a rig whose sections fit together, risks or not; changes the tree. Raises InvalidSource."""
-    complete(kind, tree)
+    unstated = complete(kind, tree)
     _resolve(kind, tree)
-    unstated_keys = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated(kind, tree)]
+    unstated_keys = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated]
     try:
         rig = read(kind, tree, MISSING).settled()
     except InvalidSource as error:

@@ -10,8 +10,7 @@ from tempfile import NamedTemporaryFile
 
 from tester.base.source import InvalidSource, Tree, Value, load_tree
 from tester.inputs.rig.config import Rig
-from tester.inputs.rig.missing import Place, complete, lacking, like
-from tester.inputs.rig.packaged import packaged_tree
+from tester.inputs.rig.packaged import Place, complete, lacking, like, packaged_tree
 
 
 def upgrade(kind: type[Rig], path: Path) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tester.base.config_reader import read
 from tester.base.source import Tree, load_tree
-from tester.inputs.rig.missing import complete
+from tester.inputs.rig.packaged import complete
 from tester.kinds.specimen_on_track.rig import HeatConfig, TrackConfig
 from tester.results.run_results import Measured
 from tester.store.records import RunInfo
