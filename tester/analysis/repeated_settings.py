@@ -24,7 +24,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from tester.analysis.difference import RIG, Difference
 from tester.analysis.kelvin import TEMPERATURE_SENSITIVITY, SurfaceWarmth
@@ -34,10 +34,7 @@ from tester.analysis.reference import COUNTERFACE
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.terms import Acts, Term
 from tester.analysis.uncertainty import Contribution, effective_df
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from tester.base.arrays import Array
 
 LEVEL: Final = 0.002
 """Probability of a false alarm for a setting whose measurements do agree."""
@@ -209,11 +206,11 @@ def agreement(measurements: Sequence[SettingMeasurement]) -> SettingAgreement | 
     )
 
 
-Estimated = tuple["NDArray[np.float64]", float]
+Estimated = tuple[Array, float]
 """Covariance by one estimate, and its degrees of freedom."""
 
 
-def _covariance(used: Sequence[SettingMeasurement]) -> tuple[NDArray[np.float64], list[Estimated]]:
+def _covariance(used: Sequence[SettingMeasurement]) -> tuple[Array, list[Estimated]]:
     """Return the covariance of measurements, and its parts whose size is an estimate."""
     import numpy as np
 
@@ -243,7 +240,7 @@ def _named(of: SettingMeasurement, cause: str, common: str) -> ErrorPart | None:
     return next((error for error in of.errors if (error.cause, error.common) == (cause, common)), None)
 
 
-def _known_df(covariance: NDArray[np.float64], parts: Sequence[Estimated]) -> float:
+def _known_df(covariance: Array, parts: Sequence[Estimated]) -> float:
     """Return the degrees of freedom of the test due to estimated variances.
 
     The greatest share of an estimate in the variance of any contrast is the greatest eigenvalue of that estimate's

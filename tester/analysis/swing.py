@@ -18,16 +18,11 @@ may be stick-slip beside an order.
 from __future__ import annotations
 
 from math import inf, sqrt
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 from tester.analysis.results import NAN, Swing
 from tester.analysis.trace import Trace
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 LOWEST_HZ: Final = 0.8
 """Slower swings are drift, which other tests judge [A]."""

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from array import array
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from tester.base.arrays import Array
 from tester.base.quantities import TIME, Quantities
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 REVOLUTIONS: Final = "rev"
 """Unit of the position that counts blocks where it is a rotation angle."""
@@ -39,11 +36,11 @@ class Trace:
         """Return the number of samples."""
         return len(self.time_s)
 
-    def contacts(self) -> list[dict[str, NDArray[np.float64]]]:
+    def contacts(self) -> list[dict[str, Array]]:
         """Return the columns of each contact as arrays, by name."""
         import numpy as np
 
-        columns: dict[str, NDArray[np.float64]] = {
+        columns: dict[str, Array] = {
             "time_s": np.array(self.time_s, dtype=np.float64),
             "position": np.array(self.position, dtype=np.float64),
             "along": np.array(self.along, dtype=np.float64),

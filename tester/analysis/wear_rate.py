@@ -15,14 +15,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot, pi, sqrt
-from typing import TYPE_CHECKING
 
 from tester.analysis.results import NAN
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+from tester.base.arrays import Array
 
 NO_CONDITION = 0
 
@@ -160,7 +155,7 @@ def condition_wear(checks: Sequence[WearCheck], condition: int) -> ConditionWear
 
 def _volumes(
     checks: Sequence[WearCheck], first: dict[float, WearCheck]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Return the volume that each has lost since the first of its series, mm3, and the covariance of them all."""
     import numpy as np
 

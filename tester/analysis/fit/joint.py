@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -16,11 +16,7 @@ from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.resample import RESAMPLES, SEED, Resamples, resample, without_cells
 from tester.analysis.fit.solve import solve
 from tester.analysis.fit.trends import Interval, Trends, trends_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 OPEN: Final = 1e6
 """Condition number above which the data leave a combination of parameters open [A]: they carry six digits."""

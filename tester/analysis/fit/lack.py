@@ -13,18 +13,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isfinite, sqrt
 from statistics import fmean
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from tester.analysis.fit.fit_law import NAN, FitPoint, Source
 from tester.analysis.fit.problem import FitProblem
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
+from tester.base.arrays import Array, Places
 
 LEVEL: Final = 0.01
 """Level of all tests together: one in a hundred right laws is refused."""

@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import log, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from tester.analysis.fit.fit_law import FitError, FitPoint, Law, Source
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 ROBUST: Final = 0.05
 """Residual in ln mu above which a condition counts less than its square (soft L1): 5 % [A]."""

@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from tester.analysis.fit.check import place_of
 from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.solve import solve_many
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Booleans = NDArray[np.bool_]
+from tester.base.arrays import Array, Booleans
 
 RESAMPLES: Final = 999
 SEED: Final = 0

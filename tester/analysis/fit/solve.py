@@ -6,19 +6,14 @@ Both minimise the same sum: soft L1 of the weighted residuals, ``2 f^2 (sqrt(1 +
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
 from tester.analysis.fit.fit_law import FitError
 from tester.analysis.fit.problem import ROBUST, FitProblem
+from tester.base.arrays import Array, Booleans
 from tester.base.plugins import MissingExtraError, needs
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Booleans = NDArray[np.bool_]
 
 MOST_EVALUATIONS: Final = 2000
 MOST_STEPS: Final = 60

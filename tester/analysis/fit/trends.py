@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import fmean
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -14,11 +14,7 @@ from tester.analysis.drift import PER_KELVIN_PERCENT
 from tester.analysis.fit.check import levels
 from tester.analysis.fit.fit_law import NAN, FitPoint, Law, Variable
 from tester.analysis.fit.resample import Resamples
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 _GRID: Final = 401
 """Points of the search for a peak, over the range of the data."""

@@ -13,19 +13,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf, log, sqrt
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from sim.physics.wlf import C2_K, log10_shift
 from tester.analysis.master_curve.points import MasterError, MasterSet
 from tester.analysis.master_curve.spline import basis, left_over, orthonormal, quantile_knots, slopes
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Places = NDArray[np.intp]
+from tester.base.arrays import Array, Places
 
 BELOW_K: Final = 100.0
 """Lower end of the search for Ts, K below the lowest temperature [A]; the constants are stated to hold to Ts + 50 K."""

@@ -8,17 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, nan, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from tester.analysis.master_curve.collapse import Collapse, shifts
 from tester.analysis.master_curve.points import MasterSet
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 CUBIC_SPEEDS: Final = 5
 """Least number of speeds for a cubic of a temperature's own: one more than the cubic has coefficients."""

@@ -11,18 +11,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import nan, pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from sim.physics.materials import OutsideError, ShearModulus
 from sim.physics.wlf import PoleError
 from tester.analysis.master_curve.collapse import Collapse, Curve, curve_through, padded, shifts
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 JUMP_M: Final = 6e-9
 GRIT_M: Final = 150e-6

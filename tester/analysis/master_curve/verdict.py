@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
 from math import log
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -25,12 +25,7 @@ from tester.analysis.master_curve.overlap import TemperaturePair
 from tester.analysis.master_curve.points import MasterPoint
 from tester.analysis.master_curve.spline import left_over, orthonormal
 from tester.analysis.quantiles import f_quantile
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-
+from tester.base.arrays import Array
 
 LEVEL: Final = 1e-4
 """Level of each test: one in ten thousand sets that do collapse is refused [A]."""

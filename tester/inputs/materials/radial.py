@@ -6,14 +6,11 @@ C(q) = (2 pi)^-2 int <h h> exp(-iqx) d2x in m^4, so that <h^2> = 2 pi int q C dq
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 Detrend = Literal["mean", "plane"]
 PER_DECADE = 20

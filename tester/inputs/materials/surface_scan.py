@@ -11,19 +11,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 
+from tester.base.arrays import Array
 from tester.base.plugins import MissingExtraError, needs
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.materials.files import Findings, decoded
 from tester.inputs.materials.radial import Detrend, RadialSpectrum, detrended, radial_spectrum
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 MAX_BYTES = 512 * 1024 * 1024
 TEXT_SUFFIXES = frozenset({"", ".csv", ".txt", ".tsv", ".dat", ".asc"})

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from math import pi
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -14,14 +14,10 @@ from sim.physics.greta import Greta, contact_slope, greta
 from sim.physics.materials import OutsideError, Rubber, Surface
 from sim.physics.wlf import PoleError
 from tester.analysis.fit.fit_law import FitError, Law
+from tester.base.arrays import Array
 from tester.kinds.specimen_on_track.fit.laws import GRETA, below_glass
 from tester.kinds.specimen_on_track.fit.nodes import GridAxis, GridNodes
 from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED, TEMPERATURE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 CELSIUS: Final = GridAxis(-150.0, 250.0, 0.5)
 DECADES: Final = GridAxis(-9.0, 4.0, 0.05)

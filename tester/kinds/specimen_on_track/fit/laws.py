@@ -7,17 +7,12 @@ before it is fitted (``tester.kinds.specimen_on_track.fit.bound``).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import Final, NoReturn
 
 from sim.physics.wlf import C1, C2_K, FITTED_K, GLASS_TO_REFERENCE_K
 from tester.analysis.fit.fit_law import Band, FitError, Law, LawParameter, Variable
+from tester.base.arrays import Array
 from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED, TEMPERATURE, VARIABLES
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 FITTED: Final[tuple[Variable, ...]] = VARIABLES[:3]
 """Speed, temperature, load: conditions of different interfaces are of different groups."""

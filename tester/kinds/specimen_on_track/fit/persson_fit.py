@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from math import log
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -19,14 +19,10 @@ from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
 from sim.physics.wlf import PoleError
 from tester.analysis.fit.fit_law import Band, FitError, Law
+from tester.base.arrays import Array
 from tester.kinds.specimen_on_track.fit.laws import PERSSON, below_glass
 from tester.kinds.specimen_on_track.fit.nodes import GridAxis, GridNodes
 from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED, TEMPERATURE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 AREA_MM2: Final = 100.0
 """Of the contact, over which the load is spread evenly, where nothing else is given [A]."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import asin, atan, pi, sin, sqrt
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,13 +12,9 @@ from sim.physics.greta import Dynamic, Greta
 from sim.physics.materials import Components, Rubber, Sinusoid
 from sim.physics.scratch import DEPTHS, FADE, HARMONICS, Scratch, harmonics, normal_x, shear_x
 from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight, unjudged
+from tester.base.arrays import Array
 from tester.kinds.specimen_on_track.papers.adhesion import MACRO_M, MACRO_RA_M, PREDICT, PRESSURE_PA, WARM_C, modulus_pa
 from tester.kinds.specimen_on_track.papers.paper_parts import Stiffer, load_n, rubber, surface, tread_on_road
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 STRESS_PA: Final = 125e3
 """Of Figures 11 to 14."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 from math import log10
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -14,13 +14,8 @@ from sim.physics.greta import Greta
 from sim.physics.materials import Rubber, ShearModulus, Spectrum, Surface
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
+from tester.base.arrays import Array, Complex
 from tester.inputs.materials.library import Library
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-    Complex = NDArray[np.complex128]
 
 ROOM_C: Final = 20.0
 PRESSURE_PA: Final = 1e5

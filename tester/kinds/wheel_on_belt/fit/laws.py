@@ -10,16 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from math import exp
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from sim.physics.friction import COMPOUNDS, V2, V2_LOAD_N, V2_SLIP_M_S, V2_TEMPERATURE_C, PaperParameters, V2Parameters
 from tester.analysis.fit.fit_law import Band, Law, LawParameter, Variable
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from tester.base.arrays import Array
 
 TEMPERATURE, LOAD, SLIP = range(3)
 """Places of the variables."""

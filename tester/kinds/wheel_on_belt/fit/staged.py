@@ -9,18 +9,12 @@ coefficient, but Eq 6 has it at the term of speed alone: hence its errors at 100
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from sim.physics.friction import V2_LOAD_N, V2_SLIP_M_S, V2_TEMPERATURE_C, PaperParameters
 from tester.analysis.fit.fit_law import FitPoint, by_group
 from tester.analysis.fit.solve import least_squares_of
+from tester.base.arrays import Array
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE, joint_of
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 _REFERENCE = (V2_TEMPERATURE_C, V2_LOAD_N, V2_SLIP_M_S)
 

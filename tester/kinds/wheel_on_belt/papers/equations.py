@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from math import exp, log
 from statistics import fmean
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -14,16 +14,12 @@ from tester.analysis.fit.check import Errors, errors_of
 from tester.analysis.fit.fit_law import FitPoint, by_group
 from tester.analysis.fit.joint import fit_only, predict
 from tester.analysis.papers.item import PaperFinding, PaperItem, judged, slight, unjudged
+from tester.base.arrays import Array
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE
 from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, fitted, of_table_3
 from tester.kinds.wheel_on_belt.fit.staged import staged_table_3
 from tester.kinds.wheel_on_belt.papers.paper_rows import COMPOUND_NAMES, errors_on, readable
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 COLD_C: Final = 25.0
 CELSIUS_0_K, GAS_J_MOL_K = 273.15, 8.314
