@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Set
+from dataclasses import dataclass, field
 from math import inf, isfinite, sqrt
 from statistics import median
 from typing import Final, NamedTuple
 
-from tester.analysis.fit.fit_law import Common, FitPoint, Source
+from tester.analysis.fit.fit_law import Common, FitPoint, Source, Sourced
 from tester.analysis.flags import REFERENCE, flags_in
 from tester.analysis.kelvin import TEMPERATURE_SENSITIVITY
 from tester.analysis.measurand import REPEATABILITY
@@ -31,24 +32,45 @@ class Scatter(NamedTuple):
 
 
 Labelled = list[tuple[str, Measured]]
-LeftOut = tuple[tuple[str, str], ...]
 
 
-def sorted_out(name: str, results: RunResults, refused: Callable[[Measured], str]) -> tuple[Labelled, LeftOut]:
+def _no_heat(measured: Measured) -> float:
+    return 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionReader:
+    """What a kind reads off a condition for a fit; values of variables are in a law's own units."""
+
+    temperature: int
+    """Place of the temperature among the variables."""
+    nominal: Callable[[Measured], tuple[float, ...]]
+    measured: Callable[[Measured], tuple[float, ...]]
+    refused: Callable[[Measured], str]
+    """Why the kind rejects a condition that has a value without doubt, "" where it accepts it."""
+    scatter: Mapping[str, Scatter] = field(default_factory=dict[str, Scatter])
+    """Declared standard deviation between conditions by compound; "": of any other."""
+    own_heat_k: Callable[[Measured], float] = _no_heat
+    """Warming of the contact by friction above the measured temperature, K."""
+
+
+def points_of(name: str, results: RunResults, by: ConditionReader) -> Sourced:
     """Return the reliable conditions of a run of this name, and the others with the reason.
 
-    ``refused``: returns why a kind rejects a condition that has a value without doubt, "" where it accepts it.
+    Pieces of replicates are conditions of their own.
     """
+    info = results.run.info
     kept: Labelled = []
     left_out: list[tuple[str, str]] = []
     for condition in results.conditions():
         label = f"{name}/{condition.info.condition}"
-        reason = _doubt(condition) or refused(condition)
+        reason = _doubt(condition) or by.refused(condition)
         if reason:
             left_out.append((f"{label} ({condition_words(condition.info.setpoint)})", reason))
         else:
             kept.append((label, condition))
-    return kept, tuple(left_out)
+    source = _source_of(name, info, kept, by)
+    return Sourced(tuple(_point_of(label, condition, source, info, by) for label, condition in kept), tuple(left_out))
 
 
 def _doubt(measured: Measured) -> str:
@@ -65,14 +87,11 @@ def standard_of(terms: Iterable[Term], acts: Acts) -> float:
     return sqrt(sum(term.standard**2 for term in terms if term.acts is acts))
 
 
-def source_of(
-    name: str, info: RunInfo, kept: Labelled, *, temperature: int, worn: str, scatter: Callable[[str], Scatter]
-) -> Source:
+def _source_of(name: str, info: RunInfo, kept: Labelled, by: ConditionReader) -> Source:
     """Return a run as a source of conditions, with the errors that they share.
 
     These are a factor of all, which is the budget without the contributions of repeats and temperature (the median over
-    the conditions); the difference from piece to piece, called ``worn``; and the thermometer's bias, which moves the
-    variable ``temperature``. ``scatter``: returns a compound's declared scatter between conditions.
+    the conditions); the difference from piece to piece; and the thermometer's bias, which moves the temperature.
     """
     terms = with_settings(info.terms, info.metadata)
     factors = [_rest(condition, _apart(terms), own=False) for _, condition in kept]
@@ -80,46 +99,42 @@ def source_of(
     pieces = sorted({_piece(condition) for _, condition in kept})
     common = (
         Common("calibration and alignment", median(factors) if factors else 0.0),
-        *(Common(f"{worn} to {worn}", between, piece=piece) for piece in pieces),
-        Common("thermometer", standard_of(terms, Acts.TEMPERATURE), temperature),
+        *(Common(f"{info.worn} to {info.worn}", between, piece=piece) for piece in pieces),
+        Common("thermometer", standard_of(terms, Acts.TEMPERATURE), by.temperature),
     )
     repeats = next((_repeatability(condition, info.metadata).source for _, condition in kept), "")
     compounds = dict.fromkeys(condition.info.compound for _, condition in kept)
-    declared = dict.fromkeys(scatter(compound).source for compound in compounds)
-    return Source(name, common, repeats, "; ".join(condition for condition in declared if condition))
+    declared = dict.fromkeys(_scatter(compound, info, by).source for compound in compounds)
+    return Source(name, common, repeats, "; ".join(source for source in declared if source))
 
 
-def point_of(
-    label: str, one: Measured, source: Source, nominal: tuple[float, ...], measured: tuple[float, ...], between: float,
-    info: RunInfo,
-) -> FitPoint:  # fmt: skip
-    """Return a condition as a point, with the scatter of its repeats; ``between``: scatter of conditions, as a
-    share."""
-    result = one.result
-    known = _repeatability(one, info.metadata)
+def _point_of(label: str, condition: Measured, source: Source, info: RunInfo, by: ConditionReader) -> FitPoint:
+    """Return a condition as a point, with the scatter of its repeats."""
+    known = _repeatability(condition, info.metadata)
     return FitPoint(
         label=label,
-        group=one.info.setpoint.compound,
-        nominal=nominal,
-        measured=measured,
-        value=result.mu_resultant,
+        group=condition.info.setpoint.compound,
+        nominal=by.nominal(condition),
+        measured=by.measured(condition),
+        value=condition.result.mu_resultant,
         source=source,
         type_a=known.standard,
         df=known.df,
-        own=_rest(one, _apart(info.terms), own=True),
-        between=between,
-        piece=_piece(one),
+        own=_rest(condition, _apart(info.terms), own=True),
+        between=_scatter(condition.info.compound, info, by).standard,
+        piece=_piece(condition),
+        own_heat_k=by.own_heat_k(condition),
     )
 
 
-def declared_scatter(compound: str, metadata: Mapping[str, str], declared: Mapping[str, Scatter]) -> Scatter:
+def _scatter(compound: str, info: RunInfo, by: ConditionReader) -> Scatter:
     """Return the standard deviation by which conditions of a compound miss any smooth law: the recipe's, or the kind's
-    declared one for the compound, else for any ("").
+    declared one for the compound, else for any.
     """
-    text = metadata.get(PREFIX + BETWEEN)
+    text = info.metadata.get(PREFIX + BETWEEN)
     if text is not None:
         return Scatter(setting_of(PREFIX + BETWEEN, text), f"the recipe's {PREFIX}{BETWEEN}")
-    return declared.get(compound, declared.get("", Scatter(0.0, "")))
+    return by.scatter.get(compound, by.scatter.get("", Scatter(0.0, "")))
 
 
 def _repeatability(measured: Measured, metadata: Mapping[str, str]) -> Scatter:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from tester.analysis.fit.check import Errors
-from tester.analysis.fit.fit_law import Law, Sourced
+from tester.analysis.fit.fit_law import FitError, Law, Sourced
 from tester.base.axes import Setpoint
 
 
@@ -54,31 +53,25 @@ class PublishedTable:
         return [line.way for line in self.lines if not line.met]
 
 
-class FitPart(Protocol):
-    """A kind's contribution to fitting."""
+class FitPart:
+    """A kind's contribution to fitting. Defaults: no conditions ship with the program, and nothing is published."""
 
-    @property
-    def laws(self) -> Mapping[str, Law]:
-        """Return the laws that can be fitted, by name, the default first."""
-        ...
-
-    @property
-    def cells(self) -> tuple[int, ...]:
-        """Return the places of the variables that make a cell: each cell is left out in turn."""
-        ...
-
-    @property
-    def packaged(self) -> Sequence[str]:
-        """Return the names of conditions that ship with the program."""
-        ...
+    laws: Mapping[str, Law]
+    """Laws that can be fitted, by name, the default first."""
+    cells: tuple[int, ...]
+    """Places of the variables that make a cell: each cell is left out in turn."""
+    packaged: Sequence[str] = ()
+    """Names of conditions that ship with the program."""
+    published_laws: Sequence[str] = ()
+    """Names of laws with published parameters: those that ``law_at`` accepts."""
 
     def packaged_points(self, name: str) -> Sourced:
         """Return packaged conditions; raises KeyError."""
-        ...
+        raise KeyError(name)
 
     def run_points(self, folder: Path) -> Sourced:
         """Return the conditions of a run; raises StoreError where it cannot be read."""
-        ...
+        raise NotImplementedError
 
     def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
         """Return a law as it applies to a group; raises FitError.
@@ -86,29 +79,26 @@ class FitPart(Protocol):
         A law based on moduli becomes that of the group's compound on ``surface`` ("": that of the run), with
         ``figures`` that are not fitted, by name. Others are returned unchanged, and take no figures.
         """
-        ...
+        if surface or figures:
+            raise FitError(f"the law {law.name} takes no surface and no figures")
+        return law
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
         """Return published coefficients, each with its setpoint, for display beside measured ones."""
-        ...
-
-    @property
-    def published_laws(self) -> Sequence[str]:
-        """Return the names of laws with published parameters: those that ``law_at`` accepts."""
-        ...
+        return ()
 
     def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
         """Return caveats on the value of a law with published parameters at a setpoint."""
-        ...
+        return ()
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
         """Return a law with published parameters over setpoints; raises KeyError for no such law."""
-        ...
+        raise KeyError(name)
 
     def checked(self, sources: Sequence[str], validation: Sequence[str]) -> bool:
         """Return whether the result of a fit to these sources, validated on others, is known in advance."""
-        ...
+        return False
 
     def published_table(self) -> PublishedTable:
-        """Return the publication's table, fitted anew; raises MissingExtraError without what fits need."""
-        ...
+        """Return the publication's table, fitted anew; raises FitError for none, MissingExtraError."""
+        raise FitError("nothing is published of this kind of rig")

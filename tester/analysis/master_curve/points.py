@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
@@ -102,13 +101,15 @@ def set_of(points: Sequence[MasterPoint]) -> MasterSet:
     )
 
 
-class MasterPart(Protocol):
+def _none_packaged(name: str) -> MasterRun:
+    raise KeyError(name)
+
+
+@dataclass(frozen=True, slots=True)
+class MasterPart:
     """A kind's contribution to master curves."""
 
-    def run(self, folder: Path) -> MasterRun:
-        """Return the conditions of a run; raises StoreError where it cannot be read."""
-        ...
-
-    def packaged(self, name: str) -> MasterRun:
-        """Return conditions that ship with the program; raises KeyError."""
-        ...
+    run: Callable[[Path], MasterRun]
+    """Returns the conditions of a run; raises StoreError where it cannot be read."""
+    packaged: Callable[[str], MasterRun] = _none_packaged
+    """Returns conditions that ship with the program; raises KeyError."""

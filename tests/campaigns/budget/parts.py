@@ -132,9 +132,8 @@ _FIT_OTHERS: Final = (
     (_POINTS, "repeats count twice", "return {REPEATABILITY, TEMPERATURE_SENSITIVITY,",
      "return {TEMPERATURE_SENSITIVITY,"),
     (_POINTS, "a calibration is no common error", "median(factors) if factors else 0.0", "0.0"),
-    (_POINTS, "pieces do not differ", 'Common(f"{worn} to {worn}", between, piece=piece)',
-     'Common(f"{worn} to {worn}", 0.0, piece=piece)'),
-    (_POINTS, "a thermometer is right", "standard_of(terms, Acts.TEMPERATURE), temperature)", "0.0, temperature)"),
+    (_POINTS, "pieces do not differ", 'to {info.worn}", between, piece=piece)', 'to {info.worn}", 0.0, piece=piece)'),
+    (_POINTS, "a thermometer is right", "standard_of(terms, Acts.TEMPERATURE), by", "0.0, by"),
     (_POINTS, "a doubt is no reason", 'return ", ".join(result.doubts)', 'return ""'),
 )  # fmt: skip
 _COLLAPSE, _VERDICT = "tester/analysis/master_curve/collapse.py", "tester/analysis/master_curve/verdict.py"

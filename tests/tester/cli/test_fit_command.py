@@ -241,7 +241,7 @@ def tread(temperature_c: float, speed_m_s: float) -> float:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--law", "power", "--given", "area=50"], "is given no figures"),
+        (["--law", "power", "--given", "area=50"], "takes no figures"),
         (["--law", "greta", "--surface", "road", "--given", "area=wide"], "--given area=wide: 'wide' is no number"),
         (["--law", "greta", "--surface", "rod"], "did you mean"),
         (["--law", "persson", "--surface", "road"], "no spectrum of heights"),

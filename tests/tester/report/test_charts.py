@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sim.physics.materials import Components
-from tester.kinds.wheel_on_belt.fit.data import law_at, law_caveats, published_values
+from tester.kinds.wheel_on_belt.fit.fits import FITS
 from tester.report.chart import Chart, ChartSurface, Figure, Series
 from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
 from tester.report.law_charts import components_chart
@@ -19,7 +19,7 @@ from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 from tests.tester.store.build import CONDITION
 
-PUBLISHED = [ChartValue(held, mu) for held, mu in published_values()]
+PUBLISHED = [ChartValue(held, mu) for held, mu in FITS.published_values()]
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> RunResults:
 
 @pytest.fixture(scope="module")
 def charts(results: RunResults) -> dict[str, Figure]:
-    material = Material(values_of(results), PUBLISHED, law_at("v2"), "law v2")
+    material = Material(values_of(results), PUBLISHED, FITS.law_at("v2"), "law v2")
     return {one.name: one for one in charts_of(material)}
 
 
@@ -76,7 +76,7 @@ def test_a_law_is_a_curve_through_the_same_conditions(charts: dict[str, Figure])
     curve = next(s for s in found.panels[0].series if s.look == "law")
     assert (curve.x[0], curve.x[-1]) == (25.0, 85.0)
     held = CONDITION.setpoint.but("1#", load=100.0, temperature=25.0, slip_velocity=0.3)
-    assert curve.y[0] == pytest.approx(law_at("v2")(held))
+    assert curve.y[0] == pytest.approx(FITS.law_at("v2")(held))
     assert "lines: law v2" in found.note
 
 
@@ -85,7 +85,7 @@ def test_a_speed_is_told_and_asked_for_in_its_own_units(charts: dict[str, Figure
     curve = next(s for s in found.panels[0].series if s.look == "law")
     assert (found.x_label, curve.x[-1]) == ("slip velocity (mm/s)", 400.0)
     held = CONDITION.setpoint.but("1#", load=200.0, temperature=25.0, slip_velocity=0.4)
-    assert curve.y[-1] == pytest.approx(law_at("v2")(held))
+    assert curve.y[-1] == pytest.approx(FITS.law_at("v2")(held))
 
 
 def test_the_surface_has_a_value_for_each_pair_that_was_measured(charts: dict[str, Figure]) -> None:
@@ -151,9 +151,9 @@ def test_a_repeat_that_is_left_out_is_drawn_apart(tmp_path: Path) -> None:
 
 
 def test_a_law_says_nothing_of_other_compounds_and_of_names_that_are_none() -> None:
-    assert isnan(law_at("paper")(CONDITION.setpoint.but("NR 60")))
+    assert isnan(FITS.law_at("paper")(CONDITION.setpoint.but("NR 60")))
     with pytest.raises(KeyError):
-        law_at("wlf_bell")
+        FITS.law_at("wlf_bell")
 
 
 def test_published_values_have_the_rows_with_an_angle_but_no_suspect_or_inferred_ones() -> None:
@@ -186,6 +186,6 @@ def test_a_law_that_is_drawn_beyond_its_data_is_named_with_what_it_is_beyond(res
     held = values_of(results)
     far = [replace(one, held=one.held.but(load=2.0 * one.held.number("load"))) for one in held]
     for values, beyond in ((held, False), (far, True)):
-        material = Material(values, (), law_at("v2"), "law v2", law_caveats)
+        material = Material(values, (), FITS.law_at("v2"), "law v2", FITS.law_caveats)
         found = chart({one.name: one for one in charts_of(material)}, "load-by-temperature")
         assert ("load 800 N is outside the paper's data, 100 to 400 N: an extrapolation" in found.note) is beyond

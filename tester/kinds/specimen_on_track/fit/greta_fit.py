@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from math import pi
@@ -35,12 +35,8 @@ def bound(rubber: Rubber, surface: Surface, figures: Mapping[str, float]) -> Law
     """
     law = greta(rubber, surface, figures)
     assert rubber.shear is not None  # a law has been made of it
-    beyond = partial(_beyond, rubber.glass_c)
+    beyond = partial(below_glass, rubber.glass_c)
     return replace(GRETA, value=_ManyGreta(law, rubber.shear.ratio).value, beyond=beyond)
-
-
-def _beyond(glass_c: float | None, _: Sequence[float], measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
-    yield from below_glass(glass_c, measured)
 
 
 class _ManyGreta:

@@ -1,4 +1,4 @@
-"""The laws that are fitted to a specimen on a track: of measurements alone, and those that moduli and a surface bear.
+"""Laws fitted to a specimen on a track: two of measurements alone, two based on moduli and a surface.
 
 v is the sliding speed in m/s, T in degC, the load F in N. A law of materials is bound to a compound and a surface
 before it is fitted (``tester.kinds.specimen_on_track.fit.bound``).
@@ -15,9 +15,9 @@ from tester.base.arrays import Array
 from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED, TEMPERATURE, VARIABLES
 
 FITTED: Final[tuple[Variable, ...]] = VARIABLES[:3]
-"""Speed, temperature, load: conditions of different interfaces are of different groups."""
+"""Speed, temperature, load: each interface has groups of its own."""
 V0_M_S, N0_N = 0.1, 10.0
-"""Where the factor of the power law is told."""
+"""Speed and load at which the factor of the power law is the coefficient."""
 
 
 def _bell(p: Array, x: Array) -> Array:
@@ -37,7 +37,7 @@ def _power(p: Array, x: Array) -> Array:
 
 
 _GLASS_C: Final = (-110.0, 10.0)
-"""Between these temperatures lie the glass transitions of rubbers, of butadiene at the lower end [A]."""
+"""Range of the glass transitions of rubbers, butadiene at the lower end [A]."""
 NEAR_K: Final = 15.0
 """Most that the t_ref of a bell is off Tg + 50 K of the compound's file [A]: Tg by two methods differs by 5 to 10 K."""
 _RUBBER: Final = "[A] rubber on a hard track"
@@ -48,19 +48,19 @@ def _generic(low: float, high: float) -> Band:
 
 
 def reference_band(glass_c: float | None) -> Band:
-    """Return between which temperatures the t_ref of a bell lies, of a compound with this glass transition, degC."""
+    """Return the range of the t_ref of a bell for a compound with this glass transition, degC."""
     if glass_c is not None:
         middle_c = glass_c + GLASS_TO_REFERENCE_K
         source = f"Tg {glass_c:g} degC of the compound's file + 50 +- {NEAR_K:g} K [A]"
         return Band(middle_c - NEAR_K, middle_c + NEAR_K, source)
-    low, high = (one + GLASS_TO_REFERENCE_K for one in _GLASS_C)
+    low, high = (glass_c + GLASS_TO_REFERENCE_K for glass_c in _GLASS_C)
     return Band(low, high, "Tg + 50 K of any rubber [A]")
 
 
 def _beyond_shift(parameters: Sequence[float], measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
-    """Yield at which conditions the shift of the bell does not hold."""
+    """Yield how many conditions are outside the validity of the bell's shift."""
     glass_c = parameters[4] - GLASS_TO_REFERENCE_K
-    beyond = sum(not glass_c <= one[TEMPERATURE] <= glass_c + FITTED_K for one in measured)
+    beyond = sum(not glass_c <= condition[TEMPERATURE] <= glass_c + FITTED_K for condition in measured)
     if beyond:
         yield (
             f"{beyond} conditions are outside {glass_c:.0f} to {glass_c + FITTED_K:.0f} degC: the shift of WLF holds"
@@ -128,13 +128,15 @@ PERSSON: Final = Law(
 )
 
 
-def below_glass(glass_c: float | None, measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
-    """Yield how many conditions of a law of moduli are below the compound's glass transition, degC."""
-    below = sum(one[TEMPERATURE] < glass_c for one in measured) if glass_c is not None else 0
+def below_glass(
+    glass_c: float | None, parameters: Sequence[float], measured: Sequence[tuple[float, ...]]
+) -> Iterator[str]:
+    """Yield how many conditions of a law of moduli are below the compound's glass transition, degC (``Law.beyond``)."""
+    below = sum(condition[TEMPERATURE] < glass_c for condition in measured) if glass_c is not None else 0
     if below:
         yield f"{below} conditions are below the glass transition, {glass_c:g} degC: rubber is a glass there"
 
 
 LAWS: Final[Mapping[str, Law]] = {law.name: law for law in (WLF_BELL, POWER, PERSSON, GRETA)}
-"""By name; the bell first: it needs nothing but what was measured."""
+"""By name; the bell first: it needs measurements alone."""
 OF_MATERIALS: Final = frozenset({PERSSON.name, GRETA.name})

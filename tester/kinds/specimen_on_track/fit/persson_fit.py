@@ -6,7 +6,7 @@ them: the coefficient of any lower q1 is that integral so far.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from math import log
@@ -53,11 +53,7 @@ def bound(rubber: Rubber, surface: Surface, figures: Mapping[str, float]) -> Law
     first, last = spectrum.band_1_m
     band = Band(END * first, last / END, f"the spectrum of surface {surface.name}")
     q1 = replace(PERSSON.parameters[0], start=start, band=band)
-    return replace(PERSSON, value=many.value, parameters=(q1,), beyond=partial(_beyond, rubber.glass_c))
-
-
-def _beyond(glass_c: float | None, _: Sequence[float], measured: Sequence[tuple[float, ...]]) -> Iterator[str]:
-    yield from below_glass(glass_c, measured)
+    return replace(PERSSON, value=many.value, parameters=(q1,), beyond=partial(below_glass, rubber.glass_c))
 
 
 class _ManyPersson:

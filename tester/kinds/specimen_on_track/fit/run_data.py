@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from functools import partial
 from math import isfinite
 from pathlib import Path
 from typing import Final
 
 from tester.analysis.fit.fit_law import Sourced, Variable
+from tester.base.config_reader import read
+from tester.base.source import Tree, load_tree
+from tester.inputs.rig.missing import complete
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
-from tester.kinds.specimen_on_track.fit.friction_heat import beyond_band, rise_of, warmed_k
-from tester.results.fit_points import Scatter, declared_scatter, point_of, sorted_out, source_of
+from tester.kinds.specimen_on_track.rig import HeatConfig, TrackConfig
+from tester.results import fit_points
 from tester.results.run_results import Measured, RunResults, results_of
+from tester.store.records import RunInfo
 from tester.store.run_reader import RunReader
 
 SPEED, TEMPERATURE, LOAD, INTERFACE = range(4)
@@ -22,10 +26,11 @@ VARIABLES: Final = (
     Variable("load", "N"),
     Variable("interface", "", ratio=False),
 )
+BEYOND_BAND: Final = "friction warms the contact beyond its band of temperature"
 
 
 def run_points(folder: Path) -> Sourced:
-    """Return the conditions of a run that have a value to rely on; raises StoreError where it cannot be read."""
+    """Return the conditions of a run with a reliable value; raises StoreError where it cannot be read."""
     with RunReader(folder) as reader:
         return points_of(folder.name, results_of(reader))
 
@@ -33,49 +38,58 @@ def run_points(folder: Path) -> Sourced:
 def points_of(name: str, results: RunResults) -> Sourced:
     """Return the conditions of the results of a run of this name: speed in m/s, temperature in degC, load in N.
 
-    Left out: conditions without a value, those with one that is to be taken with care, and those in which friction
-    warms the contact beyond its band of temperature. Specimens of replicates are conditions of their own.
+    Left out: conditions without a value, those with a value that needs care, and those in which friction warms the
+    contact beyond its band of temperature.
     """
-    info = results.run.info
-    rise_k_w = rise_of(info)
-
-    def reason(one: Measured) -> str:
-        return _reason(one) or beyond_band(one, rise_k_w)
-
-    def scatter(compound: str) -> Scatter:
-        return declared_scatter(compound, info.metadata, {})
-
-    kept, left_out = sorted_out(name, results, reason)
-    source = source_of(name, info, kept, temperature=TEMPERATURE, worn="specimen", scatter=scatter)
-    points = (
-        replace(
-            point_of(
-                label, one, source, _nominal(one), _measured(one), scatter(one.info.compound).standard, info
-            ),
-            own_heat_k=warmed_k(one, rise_k_w),
-        )
-        for label, one in kept
+    rise_k_w = rise_of(results.run.info)
+    reader = fit_points.ConditionReader(
+        TEMPERATURE,
+        _nominal,
+        _measured,
+        lambda condition: _unmeasured(condition) or beyond_band(condition, rise_k_w),
+        own_heat_k=partial(warmed_k, rise_k_w=rise_k_w),
     )
-    return Sourced(tuple(points), left_out)
+    return fit_points.points_of(name, results, reader)
 
 
-def _reason(one: Measured) -> str:
-    """Return why a condition that has a value is left out, "" where it is not."""
-    value, measured = one.result.mu_resultant, _measured(one)
-    if value > 0.0 and all(map(isfinite, measured)) and measured[0] > 0.0:
+def rise_of(info: RunInfo) -> float:
+    """Return the rig's assumed ``heat.rise``, K/W, from a run's record; raises InvalidSource.
+
+    Only this section of the rig file is read: its law of friction may no longer be installed.
+    """
+    tree = load_tree(info.rig_text, "rig.yaml")
+    complete(TrackConfig, tree)
+    section = tree.data.get("heat") if isinstance(tree.data, dict) else None
+    return read(HeatConfig, Tree(tree.name, tree.text, section)).rise
+
+
+def warmed_k(condition: Measured, rise_k_w: float) -> float:
+    """Return the steady warming of a condition's contact by friction, K."""
+    means = condition.result.measured
+    return rise_k_w * condition.result.mu_resultant * means.normal * abs(means.sliding)
+
+
+def beyond_band(condition: Measured, rise_k_w: float) -> str:
+    """Return the reason against a condition whose contact friction warms beyond its band, "" where it does not."""
+    return BEYOND_BAND if warmed_k(condition, rise_k_w) > condition.info.temperature_band_k else ""
+
+
+def _unmeasured(condition: Measured) -> str:
+    measured = _measured(condition)
+    if condition.result.mu_resultant > 0.0 and all(map(isfinite, measured)) and measured[SPEED] > 0.0:
         return ""
     return "no measured speed, temperature or load"
 
 
-def _measured(one: Measured) -> tuple[float, float, float, float]:
-    means = one.result.measured
-    return abs(means.sliding), means.temperature, means.normal, _interface(one)
+def _measured(condition: Measured) -> tuple[float, float, float, float]:
+    means = condition.result.measured
+    return abs(means.sliding), means.temperature, means.normal, _interface(condition)
 
 
-def _interface(one: Measured) -> float:
-    return float(INTERFACES.index(held_by(one.info.setpoint).interface))
+def _interface(condition: Measured) -> float:
+    return float(INTERFACES.index(held_by(condition.info.setpoint).interface))
 
 
-def _nominal(one: Measured) -> tuple[float, float, float, float]:
-    held = held_by(one.info.setpoint)
-    return held.track_m_s, held.temperature_c, held.load_n, _interface(one)
+def _nominal(condition: Measured) -> tuple[float, float, float, float]:
+    held = held_by(condition.info.setpoint)
+    return held.track_m_s, held.temperature_c, held.load_n, _interface(condition)

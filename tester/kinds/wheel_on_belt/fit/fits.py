@@ -1,54 +1,84 @@
-"""What this machine says about fitting (``tester.analysis.fit.fit_part``)."""
+"""What this machine contributes to fitting: its laws, the paper's appendices, and published values and laws."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
-from sim.physics.friction import MODEL_NAMES
-from tester.analysis.fit.fit_law import FitError, Law, Sourced
+from sim.physics.data_range import caveats
+from sim.physics.friction import MODEL_NAMES, UnknownCompoundError
+from sim.physics.slip import predict
+from tester.analysis.fit.fit_law import Sourced
 from tester.analysis.fit.fit_part import FitPart, PublishedTable
-from tester.kinds.wheel_on_belt.fit import data
+from tester.base.axes import Setpoint
+from tester.kinds.wheel_on_belt.fit.data import APPENDICES, READABLE, appendix, rows
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, LOAD, SLIP
+from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 
 
-class WheelFits:
+class WheelFits(FitPart):
     """Laws of a wheel on a belt, the paper's appendices, and the conditions of runs."""
 
-    laws: Mapping[str, Law] = LAWS
-    cells: tuple[int, ...] = (LOAD, SLIP)
-    packaged: Sequence[str] = tuple(data.APPENDICES)
+    laws = LAWS
+    cells = (LOAD, SLIP)
+    packaged = tuple(APPENDICES)
+    published_laws = MODEL_NAMES
 
-    published_laws: Sequence[str] = MODEL_NAMES
-    packaged_points = staticmethod(data.appendix)
-    published_values = staticmethod(data.published_values)
-    law_caveats = staticmethod(data.law_caveats)
-    law_at = staticmethod(data.law_at)
+    def packaged_points(self, name: str) -> Sourced:
+        return appendix(name)
 
     def run_points(self, folder: Path) -> Sourced:
-        """Return the conditions of a run; raises StoreError."""
         from tester.kinds.wheel_on_belt.fit.run_data import run_points
 
         return run_points(folder)
 
-    def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
-        """Return the law as it is; raises FitError for figures: a wheel's laws are given none."""
-        if surface or figures:
-            raise FitError(f"the law {law.name} is given no surface and no figures")
-        return law
+    def published_values(self) -> Sequence[tuple[Setpoint, float]]:
+        """Return the readable rows of the paper's appendices, including those with sideslip, each once."""
+        values: dict[Setpoint, float] = {}
+        for name in APPENDICES:
+            for row in rows(name):
+                if row["quality"] in READABLE:
+                    setpoint = AXES.setpoint(
+                        row["formula"],
+                        slip_velocity=1e-3 * float(row["slip_mm_s"]),
+                        load=float(row["load_N"]),
+                        sideslip=float(row["angle_deg"]),
+                        temperature=float(row["temp_C"]),
+                    )
+                    values.setdefault(setpoint, float(row["mu"]))
+        return list(values.items())
+
+    def law_caveats(self, setpoint: Setpoint) -> Sequence[str]:
+        held = held_by(setpoint)
+        at = abs(held.slip_velocity_m_s), held.load_n, held.temperature_c, held.sideslip_deg
+        return [*caveats(held.compound, *at)]
+
+    def law_at(self, name: str) -> Callable[[Setpoint], float]:
+        """Return a law over setpoints, NaN for compounds that are not the paper's; raises KeyError for no such law."""
+        if name not in MODEL_NAMES:
+            raise KeyError(name)
+
+        def value(setpoint: Setpoint) -> float:
+            held = held_by(setpoint)
+            try:
+                return predict(held.compound, held.slip_velocity_m_s, held.load_n, held.temperature_c,
+                               held.sideslip_deg, held.wheel_speed_m_s, name)  # fmt: skip
+            except UnknownCompoundError:
+                return float("nan")
+
+        return value
 
     def checked(self, sources: Sequence[str], validation: Sequence[str]) -> bool:
-        """Return whether this is the paper's own split: fitted to appendix A, seen on B."""
+        """Return whether this is the paper's own split: fitted to appendix A, validated on B."""
         from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION
 
         return [*sources] == [FIT] and [*validation] == [VALIDATION]
 
     def published_table(self) -> PublishedTable:
-        """Return the paper's table; raises MissingExtraError."""
         from tester.kinds.wheel_on_belt.fit.published import published_table
 
         return published_table()
 
 
-FITS: Final[FitPart] = WheelFits()
+FITS: Final = WheelFits()

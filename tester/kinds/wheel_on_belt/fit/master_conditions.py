@@ -23,48 +23,45 @@ COOL_W: Final = 1.0
 """Power of friction below which a surface is taken to stay as warm as it was made [A]: a slow block has less."""
 
 
-class WheelMasters:
-    """Conditions of a wheel, and why they are refused."""
+def _run(folder: Path) -> MasterRun:
+    from tester.kinds.wheel_on_belt.fit.run_data import run_points
 
-    def run(self, folder: Path) -> MasterRun:
-        """Return the conditions of a run with the reason against them; raises StoreError."""
-        from tester.kinds.wheel_on_belt.fit.run_data import run_points
-
-        return _refused(run_points(folder))
-
-    def packaged(self, name: str) -> MasterRun:
-        """Return the conditions of an appendix with the reason against them; raises KeyError."""
-        return _refused(appendix(name))
+    return _refused(run_points(folder))
 
 
-def _refused(found: Sourced) -> MasterRun:
-    sliding = [one for one in found.points if one.measured[SLIP] > 0.0]
-    rolling = [(one.label, "rolls without slip") for one in found.points if not one.measured[SLIP] > 0.0]
-    points = tuple(_point(one) for one in sliding)
-    powers = [one.value * one.measured[LOAD] * one.measured[SLIP] for one in sliding]
+def _packaged(name: str) -> MasterRun:
+    return _refused(appendix(name))
+
+
+def _refused(sourced: Sourced) -> MasterRun:
+    """Return conditions with the reason against a master curve of them."""
+    sliding = [point for point in sourced.points if point.measured[SLIP] > 0.0]
+    rolling = [(point.label, "rolls without slip") for point in sourced.points if not point.measured[SLIP] > 0.0]
+    points = tuple(_point(point) for point in sliding)
+    powers = [point.value * point.measured[LOAD] * point.measured[SLIP] for point in sliding]
     hot = [power for power in powers if power > COOL_W]
     refusal = ""
     if hot:
-        told = [
+        reasons = [
             f"friction heats the surface of the wheel with {median(hot):.0f} W (up to {max(hot):.0f} W), so a condition"
             " is a stretch of a warming surface and its temperature not that of the rubber"
         ]
         signs = signs_of(points)
         if signs.same:
-            told.append(
+            reasons.append(
                 f"mu changes the same way with speed and with temperature in {signs.same} of {signs.cells} places where"
                 " both are clear, which no shift of time against temperature allows"
             )
-        refusal = "; ".join(told)
-    return MasterRun(points, (*found.left_out, *rolling), refusal)
+        refusal = "; ".join(reasons)
+    return MasterRun(points, (*sourced.left_out, *rolling), refusal)
 
 
-def _point(one: FitPoint) -> MasterPoint:
-    held: Mapping[str, str] = {"load": f"{one.nominal[LOAD]:g} N"}
+def _point(point: FitPoint) -> MasterPoint:
+    held: Mapping[str, str] = {"load": f"{point.nominal[LOAD]:g} N"}
     return MasterPoint(
-        one.label, one.group, one.measured[SLIP], one.measured[TEMPERATURE], one.nominal[TEMPERATURE], one.value,
-        MasterSource(one.source.name), held,
+        point.label, point.group, point.measured[SLIP], point.measured[TEMPERATURE], point.nominal[TEMPERATURE],
+        point.value, MasterSource(point.source.name), held,
     )  # fmt: skip
 
 
-MASTERS: Final[MasterPart] = WheelMasters()
+MASTERS: Final = MasterPart(_run, _packaged)

@@ -1,4 +1,4 @@
-"""The conditions of a run, as a fit takes them: measured temperature, load and slip, with what they scatter."""
+"""The conditions of a run, as a fit takes them: measured temperature, load and slip, with their scatter."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from tester.analysis.fit.fit_law import Sourced
 from tester.analysis.kelvin import CONDITION_SCATTER
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
 from tester.kinds.wheel_on_belt.image.axes import held_by
-from tester.results.fit_points import Scatter, declared_scatter, point_of, sorted_out, source_of
+from tester.results.fit_points import ConditionReader, Scatter, points_of
 from tester.results.run_results import Measured, results_of
 from tester.store.run_reader import RunReader
 
 _KNOWN = frozenset({"temperature", "load", "slip_velocity", "wheel_speed"})
-"""Axes that a law knows; of the wheel's speed only the slip counts. Any other has to be at its default."""
+"""Axes in a law; of the wheel's speed only the slip counts. Any other has to be at its default."""
 
-_PUBLISHED: Final = "what the best separable law leaves of the data of doi 10.3390/polym16050596"
+_PUBLISHED: Final = "residuals of the best separable law for the data of doi 10.3390/polym16050596"
 BETWEEN_CONDITIONS: Final[Mapping[str, Scatter]] = {
     "1#": Scatter(0.032, f"3.2 %, {_PUBLISHED}"),
     "2#": Scatter(0.042, f"4.2 %, {_PUBLISHED}"),
@@ -31,41 +31,30 @@ BETWEEN_CONDITIONS: Final[Mapping[str, Scatter]] = {
 def run_points(folder: Path) -> Sourced:
     """Return the conditions of a run that a law can be fitted to; raises StoreError where it cannot be read.
 
-    Left out: conditions without a value, with one that is to be taken with care, with an angle (the laws know none).
-    Wheels of replicates are conditions of their own.
+    Left out: conditions without a value, with a value that needs care, with an angle (no law has one).
     """
     with RunReader(folder) as reader:
-        results = results_of(reader)
-    info = results.run.info
-    kept, left_out = sorted_out(folder.name, results, _reason)
-
-    def scatter(compound: str) -> Scatter:
-        return declared_scatter(compound, info.metadata, BETWEEN_CONDITIONS)
-
-    source = source_of(folder.name, info, kept, temperature=TEMPERATURE, worn="wheel", scatter=scatter)
-    points = (
-        point_of(label, one, source, _nominal(one), _measured(one), scatter(one.info.compound).standard, info)
-        for label, one in kept
-    )
-    return Sourced(tuple(points), left_out)
+        return points_of(folder.name, results_of(reader), _READER)
 
 
-def _reason(one: Measured) -> str:
-    """Return why a condition that has a value is left out, "" where it is not."""
-    result, held = one.result, one.info.setpoint
-    unknown = [axis.name for axis in held.axes if axis.name not in _KNOWN and not axis.at_default(held)]
+def _refused(condition: Measured) -> str:
+    setpoint = condition.info.setpoint
+    unknown = [axis.name for axis in setpoint.axes if axis.name not in _KNOWN and not axis.at_default(setpoint)]
     if unknown:
         return f"{', '.join(unknown)}: the laws know none"
-    if not (result.mu_resultant > 0.0 and all(isfinite(value) for value in _measured(one))):
+    if not (condition.result.mu_resultant > 0.0 and all(map(isfinite, _measured(condition)))):
         return "no measured load, slip or temperature"
     return ""
 
 
-def _measured(one: Measured) -> tuple[float, float, float]:
-    means = one.result.measured
+def _measured(condition: Measured) -> tuple[float, float, float]:
+    means = condition.result.measured
     return means.temperature, means.normal, abs(means.sliding)
 
 
-def _nominal(one: Measured) -> tuple[float, float, float]:
-    held = held_by(one.info.setpoint)
+def _nominal(condition: Measured) -> tuple[float, float, float]:
+    held = held_by(condition.info.setpoint)
     return held.temperature_c, held.load_n, abs(held.slip_velocity_m_s)
+
+
+_READER: Final = ConditionReader(TEMPERATURE, _nominal, _measured, _refused, BETWEEN_CONDITIONS)

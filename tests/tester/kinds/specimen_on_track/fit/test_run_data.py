@@ -9,8 +9,7 @@ import pytest
 
 from tester.analysis.terms import Acts
 from tester.kinds.specimen_on_track.budget import TERMS
-from tester.kinds.specimen_on_track.fit.friction_heat import BEYOND_BAND
-from tester.kinds.specimen_on_track.fit.run_data import INTERFACE, LOAD, SPEED, TEMPERATURE, run_points
+from tester.kinds.specimen_on_track.fit.run_data import BEYOND_BAND, INTERFACE, LOAD, SPEED, TEMPERATURE, run_points
 from tester.store.record_schema import StoreError
 from tests.tester.kinds.specimen_on_track.fit.made import WARM_K, law, made_track_run
 
