@@ -6,11 +6,9 @@ channel that counts (``Roles.turn``) and the size of a block on it (``Roles.bloc
 
 A *stretch* is a series of accepted samples (gate 0, in a burst) of the same burst and repeat in which no step of that
 position exceeds ``MAX_STEP`` of a block. The position p0 of its first sample is its origin; block k holds the samples
-with k <=
-p - p0
-/ block < k + 1, and exists once an accepted sample of the same stretch lies beyond its end. The remainder at the end of
-a stretch, less than a block, is not counted. Blocks are anchored to the stretch's origin, so rounding to whole samples
-does not accumulate.
+with k <= abs(p - p0) / block < k + 1, and exists once an accepted sample of the same stretch lies beyond its end. The
+remainder at the end of a stretch, less than a block, is not counted. Blocks are anchored to the stretch's origin, so
+rounding to whole samples does not accumulate.
 
 Two implementations of this definition: ``BlockCounter`` takes sample by sample in the scan (plain Python),
 ``blocks_from_samples`` works on stored arrays (NumPy).

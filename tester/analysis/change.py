@@ -20,7 +20,7 @@ from tester.analysis.blocks import Block
 from tester.analysis.drift import PER_KELVIN_PERCENT
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN, RepeatResult
-from tester.analysis.stability import MIN_BLOCKS
+from tester.analysis.stability import MIN_BLOCKS, centred
 from tester.base.quantities import temperatures
 
 LIMIT_PERCENT: Final = 5.0
@@ -43,9 +43,7 @@ def change_within(blocks: Sequence[Block]) -> float:
         return NAN
     mean = sum(mu) / n
     y = [value / mean - 1.0 for value in mu]
-    surface = temperatures(block.means for block in blocks)
-    middle = sum(surface) / n
-    c = [celsius - middle for celsius in surface]
+    c = centred(temperatures(block.means for block in blocks))
     # Differences of neighbours estimate the noise: a step appears in only one of them.
     noise = sum((b - a) ** 2 for a, b in pairwise(y)) / (2.0 * (n - 1))
     information = sum(kelvin * kelvin for kelvin in c) + noise / (0.01 * PER_KELVIN_PERCENT) ** 2

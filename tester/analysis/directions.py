@@ -20,7 +20,7 @@ from math import hypot, isfinite
 from tester.analysis.change import greatest
 from tester.analysis.flags import flags_in, joined
 from tester.analysis.reduce import standard_deviation, without_value
-from tester.analysis.results import RepeatResult, RepeatStatus, most_swinging
+from tester.analysis.results import RepeatResult, RepeatStatus, greatest_swing
 from tester.base.quantities import Means, mean_of
 
 
@@ -139,7 +139,7 @@ def _as_one(results: Sequence[RepeatResult], pair: int) -> RepeatResult:
     forward, backward = there
     along = 0.5 * (forward.mu_longitudinal - backward.mu_longitudinal)
     across = 0.5 * (forward.mu_lateral - backward.mu_lateral)
-    swings = most_swinging((forward, backward))
+    swing_percent, swing_hz = greatest_swing((half.swing_percent, half.swing_hz) for half in there)
     return RepeatResult(
         status=status,
         reason=reason,
@@ -153,8 +153,8 @@ def _as_one(results: Sequence[RepeatResult], pair: int) -> RepeatResult:
         drift_percent=0.5 * (forward.drift_percent + backward.drift_percent),
         bound_percent=max(forward.bound_percent, backward.bound_percent),
         change_percent=greatest((forward.change_percent, backward.change_percent)),
-        swing_percent=swings.swing_percent,
-        swing_hz=swings.swing_hz,
+        swing_percent=swing_percent,
+        swing_hz=swing_hz,
         revolutions=forward.revolutions + backward.revolutions,
         truncated=forward.truncated + backward.truncated,
         window_s=forward.window_s + backward.window_s,

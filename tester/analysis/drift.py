@@ -18,15 +18,10 @@ independent block: ``inflation``, the mean over bursts of m blocks of 1 + 2 sum_
 blocks themselves, phi = rho_1, takes 2.95 for 2.43 at 0.35 s and 0.3 s.) Bursts are apart by seconds and independent;
 with sideslip each is a contact of its own. The residual degrees of freedom are N / inflation - (repeats + 2).
 
-The condition is stable when
-d
-+ t(0.9875) se(d) <= 2 %, an equivalence test that is repeated with every further repeat: each of four looks has a
-quarter of the level of 5 %. A repeat is refused only where it drifts significantly by itself (
-d_r
-> 2 %,
-d_r
-- t(0.95) se_r > 0), or differs from three or more siblings (F test, 0.1 %); after a refusal the fit is done again
-without it.
+The condition is stable when abs(d) + t(0.9875) se(d) <= 2 %, an equivalence test that is repeated with every further
+repeat: each of four looks has a quarter of the level of 5 %. A repeat is refused only where it drifts significantly by
+itself (abs(d_r) > 2 %, abs(d_r) - t(0.95) se_r > 0), or differs from three or more siblings (F test, 0.1 %); after a
+refusal the fit is done again without it.
 
 Plain Python: it runs once a repeat, in at most 2 ms.
 """
@@ -42,7 +37,7 @@ from operator import mul
 from tester.analysis.blocks import Block
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN
-from tester.analysis.stability import MIN_BLOCKS
+from tester.analysis.stability import MIN_BLOCKS, centred
 from tester.base.quantities import temperatures
 
 DRIFT_LIMIT_PERCENT = 2.0
@@ -155,11 +150,6 @@ def _dot(a: list[float], b: list[float]) -> float:
     return sum(map(mul, a, b))
 
 
-def _centred(values: list[float]) -> list[float]:
-    mean = sum(values) / len(values)
-    return [value - mean for value in values]
-
-
 def burst_lengths(blocks: Sequence[Block]) -> list[int]:
     """Return the number of blocks in each burst, in order."""
     lengths: list[int] = []
@@ -185,8 +175,8 @@ def _series(blocks: Sequence[Block], revolutions: float | None, seconds: float |
     per_block = elapsed / len(blocks)
     window_s = revolutions * per_block if revolutions is not None else seconds or elapsed
     y = [value / mean - 1.0 for value in mu]
-    t = [time / window_s for time in _centred(times)]
-    c = _centred(temperatures(block.means for block in blocks))
+    t = [time / window_s for time in centred(times)]
+    c = centred(temperatures(block.means for block in blocks))
     return _Series(y, t, c, burst_lengths(blocks), _dot(t, t), _dot(t, c), _dot(c, c), _dot(t, y), _dot(c, y))
 
 

@@ -17,10 +17,10 @@ from math import inf, isfinite, sqrt
 from tester.analysis.blocks import Block
 from tester.analysis.drift import CONFIDENCE, LOOK_CONFIDENCE, Drift, fit_drift, refusals
 from tester.analysis.flags import CARRY_OVER, NOT_SHOWN, flags_in, joined
+from tester.analysis.left_out import REPEATABILITY, counting
 from tester.analysis.quantiles import t_quantile
-from tester.analysis.repeats import REPEATABILITY, counting
 from tester.analysis.results import NAN, NOT_JUDGED, Judgement, RepeatResult, RepeatStatus
-from tester.analysis.stability import seconds_of
+from tester.analysis.stability import centred, seconds_of
 from tester.base.quantities import temperatures
 
 ALONE = 2
@@ -182,16 +182,11 @@ def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tupl
     carries = max(signs.count(True), signs.count(False)) >= 2
     if len(seen) < 2:
         return NAN, carries
-    x = [middles[i] for i in seen]
-    at = sum(x) / len(x)
-    x = [value - at for value in x]
+    x = centred([middles[i] for i in seen])
     span = x[-1] - x[0]
     kelvin = per_kelvin_percent if isfinite(per_kelvin_percent) else 0.0
-    surface = temperatures(results[i].means for i in seen)
-    middle = sum(surface) / len(surface)
-    values = [
-        results[i].mu_resultant * (1.0 - 0.01 * kelvin * (at_c - middle)) for i, at_c in zip(seen, surface, strict=True)
-    ]
+    off_k = centred(temperatures(results[i].means for i in seen))
+    values = [results[i].mu_resultant * (1.0 - 0.01 * kelvin * k) for i, k in zip(seen, off_k, strict=True)]
     mean = sum(values) / len(values)
     y = [100.0 * (value / mean - 1.0) for value in values]
     per_m = sum(a * b for a, b in zip(x, y, strict=True)) / sum(a * a for a in x)

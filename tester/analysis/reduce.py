@@ -16,6 +16,7 @@ is larger (AR(1) noise of 1 % and 0.3 s).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import isfinite, isnan, sqrt
 
@@ -24,7 +25,7 @@ from tester.analysis.change import change_within
 from tester.analysis.drift import Drift, fit_drift
 from tester.analysis.flags import EXTENDED, NOT_SHOWN, ROLLING, STICK_SLIP, STICK_SLIP_UNKNOWN, TRUNCATED, joined
 from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus, Swing
-from tester.analysis.stability import REPEAT_WINDOWS, enough, filled, left_out
+from tester.analysis.stability import REPEAT_WINDOWS, enough, filled, left_out, seconds_of
 from tester.analysis.swing import LIMIT_PERCENT
 from tester.base.quantities import mean_of
 
@@ -96,39 +97,45 @@ def reduce_repeat(
     if not blocks:
         return without_value(RepeatStatus.TOO_FEW, "not one whole accepted revolution")
     used = counted(blocks, revolutions, seconds)
-    n = len(used)
     drift = fit_drift([used], revolutions, seconds)
+    result = _averaged(blocks, used, drift)
+    status, reason = _status(blocks, used, revolutions, seconds)
+    if not isfinite(result.mu_resultant) or not (result.mu_resultant > 0.0 or rolling):
+        status, reason = RepeatStatus.REFUSED, "coefficient without a value"
+    flags = _flags(blocks, used, revolutions, seconds)
+    result = replace(result, status=status, reason=reason)
+    if rolling:
+        return replace(result, flags=joined([ROLLING, *flags]))
+    if alone and not drift.stable:
+        flags.append(NOT_SHOWN)
+    if swing is not None:
+        flags += _swing_flags(swing)
+        result = replace(result, swing_percent=swing.percent, swing_hz=swing.hz, swing_skewness=swing.skewness)
+    return replace(
+        result,
+        flags=joined(flags),
+        drift_percent=drift.drift_percent,
+        bound_percent=drift.bound_percent,
+        change_percent=change_within(blocks),
+    )
+
+
+def _averaged(blocks: Sequence[Block], used: Sequence[Block], drift: Drift) -> RepeatResult:
+    """Return a repeat's coefficient from the blocks that count (``used``), with its uncertainty and their number."""
     means = mean_of(block.means for block in used)
     batches = batch_means(used)
-    mu, load, spread = _resultant(used), means.normal, standard_deviation(batches)
-    status, reason = _status(blocks, used, revolutions, seconds)
-    if not isfinite(mu) or not (mu > 0.0 or rolling):
-        status, reason = RepeatStatus.REFUSED, "coefficient without a value"
-    flags = _flags(blocks, used, revolutions, seconds, rolling)
-    if alone and not rolling and not drift.stable:
-        flags.append(NOT_SHOWN)
-    seen = swing if swing is not None and not rolling else Swing()
-    if seen is swing:
-        flags += _swing_flags(seen)
+    mu, load = _resultant(used), means.normal
     return RepeatResult(
-        status=status,
-        reason=reason,
-        flags=joined(flags),
+        status=RepeatStatus.VALID,
         mu_resultant=mu,
         mu_longitudinal=means.along / load if load > 0.0 else NAN,
         mu_lateral=means.across / load if load > 0.0 else NAN,
         uncertainty=_uncertainty(used, batches, drift),
-        fluctuation_percent=100.0 * spread / mu if mu > 0.0 else NAN,
+        fluctuation_percent=100.0 * standard_deviation(batches) / mu if mu > 0.0 else NAN,
         batches=len(batches),
-        drift_percent=NAN if rolling else drift.drift_percent,
-        bound_percent=NAN if rolling else drift.bound_percent,
-        change_percent=NAN if rolling else change_within(blocks),
-        swing_percent=seen.percent,
-        swing_hz=seen.hz,
-        swing_skewness=seen.skewness,
-        revolutions=n,
-        truncated=len(blocks) - n,
-        window_s=sum(block.ended_s - block.started_s for block in used),
+        revolutions=len(used),
+        truncated=len(blocks) - len(used),
+        window_s=seconds_of(used),
         bursts=len(bursts_of(used)),
         started_s=blocks[0].started_s,
         ended_s=blocks[-1].ended_s,
@@ -164,14 +171,10 @@ def _status(
 
 
 def _flags(
-    blocks: Sequence[Block],
-    used: Sequence[Block],
-    revolutions: float | None,
-    seconds: float | None,
-    rolling: bool,
+    blocks: Sequence[Block], used: Sequence[Block], revolutions: float | None, seconds: float | None
 ) -> list[str]:
     wanted = revolutions and REPEAT_WINDOWS * revolutions, seconds and REPEAT_WINDOWS * seconds
-    flags = [ROLLING] if rolling else []
+    flags: list[str] = []
     if any(wanted) and len(used) > 1 and enough(used[:-1], *wanted):
         flags.append(EXTENDED)
     if len(used) < len(blocks):

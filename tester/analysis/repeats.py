@@ -1,27 +1,27 @@
-"""From repeats to a condition's coefficient, and from replicates on several wheels to a common one.
-
-A repeat is left out automatically only on objective grounds: a gate or the drift test (module ``judge``) made it
-invalid, or it fluctuates in excess, by Cochran's C (1 %) and by a variation within its window of more than three times
-its siblings' median and of more than 1 %. A value far from the others is flagged and stays: leaving out values that
-disagree makes any machine look precise (the closest two of three show a third of the true scatter). Both means are
-reported. Repeats that a person leaves out, with the reason on record, are flagged ``excluded``.
-"""
+"""From repeats to a condition's coefficient, and from replicates on several wheels to a common one."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
-from math import isfinite, sqrt
-from statistics import median
-from types import MappingProxyType
+from math import sqrt
 
-from tester.analysis import closest
 from tester.analysis.change import LIMIT_PERCENT, change_of, greatest
-from tester.analysis.closest import Combining, taken
 from tester.analysis.counts import NO_COUNTS, REPEATS, REPLICATES, Counts, make_ups_of
 from tester.analysis.directions import BothWays, mean_of_both_ways
 from tester.analysis.flags import CHANGED, CLOSEST_TWO, DOUBTS, EXCLUDED, OUTLIER, SHORT, flags_in, joined
-from tester.analysis.quantiles import f_quantile, t_quantile
+from tester.analysis.left_out import (
+    CLOSEST_STANDARD,
+    NONE_BY_HAND,
+    NOT_CLOSEST,
+    REPEATABILITY,
+    Combining,
+    Exclusion,
+    exclusions,
+    outliers,
+    taken,
+)
+from tester.analysis.quantiles import t_quantile
 from tester.analysis.reduce import standard_deviation
 from tester.analysis.results import (
     NAN,
@@ -31,38 +31,10 @@ from tester.analysis.results import (
     Judgement,
     RepeatResult,
     RepeatStatus,
-    most_swinging,
+    greatest_swing,
 )
 from tester.analysis.uncertainty import CONFIDENCE, NO_BUDGET, STEADY, Budget, Unsteadiness, unsteadiness
 from tester.base.quantities import Means, mean_of
-
-COCHRAN_ALPHA = 0.01
-"""Level at which ISO 5725-2 calls a variance an outlier."""
-
-EXCESS_FACTOR = 3.0
-"""A repeat fluctuates in excess if it varies by more than this times its siblings' median [A] ..."""
-
-EXCESS_PERCENT = 1.0
-"""... and by more than this, per cent: on a quiet rig three times next to nothing is nothing [A]."""
-
-BY_HAND = "excluded by hand"
-"""Begins the reason of a person's exclusion."""
-NOT_CLOSEST = "not one of the closest two of three"
-"""Why a valid repeat is in no mean where the recipe combines the paper's way."""
-
-_NOTHING: Mapping[int, str] = MappingProxyType({})
-
-OUTLIER_SIGMAS = 3.5
-REPEATABILITY = 0.02
-"""Historic standard deviation between repeats as a share of the coefficient [A]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Exclusion:
-    """A repeat left out of the mean: its position in the sequence, from 0, and the reason."""
-
-    position: int
-    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,63 +135,6 @@ class ConditionResult:
         return tuple(flag for flag in flags_in(self.flags) if flag in DOUBTS)
 
 
-def cochran_critical(groups: int, df: float, alpha: float = COCHRAN_ALPHA) -> float:
-    """Return the critical value of Cochran's C for ``groups`` (>= 2) variances of ``df`` degrees of freedom."""
-    f = f_quantile(1.0 - alpha / groups, df, (groups - 1) * df)
-    return f / (f + groups - 1.0)
-
-
-def excess_fluctuation(results: Sequence[RepeatResult]) -> int | None:
-    """Return the position of the repeat that fluctuates in excess of its siblings, None if there is none.
-
-    Needs three repeats: of two, neither can be identified as the odd one.
-    """
-    spreads = [result.fluctuation_percent * result.mu_resultant for result in results]
-    df = min((result.batches for result in results), default=0) - 1
-    if len(results) < 3 or df < 1 or not all(map(isfinite, spreads)):
-        return None
-    worst = max(range(len(spreads)), key=spreads.__getitem__)
-    total = sum(spread * spread for spread in spreads)
-    if total <= 0.0 or spreads[worst] ** 2 / total <= cochran_critical(len(spreads), df):
-        return None
-    siblings = [result.fluctuation_percent for i, result in enumerate(results) if i != worst]
-    limit = max(EXCESS_FACTOR * median(siblings), EXCESS_PERCENT)
-    return worst if results[worst].fluctuation_percent > limit else None
-
-
-def counting(results: Sequence[RepeatResult]) -> list[int]:
-    """Return the positions of the repeats that count: valid, and not fluctuating in excess of the others."""
-    left_out = {exclusion.position for exclusion in _exclusions(results, _NOTHING)}
-    return [i for i in range(len(results)) if i not in left_out]
-
-
-def _exclusions(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> list[Exclusion]:
-    excluded = [Exclusion(i, f"{BY_HAND}: {reason}") for i, reason in by_hand.items()]
-    excluded += [
-        Exclusion(i, f"{result.status.value}{': ' + result.reason if result.reason else ''}")
-        for i, result in enumerate(results)
-        if not result.valid and i not in by_hand
-    ]
-    kept = [i for i, result in enumerate(results) if result.valid and i not in by_hand]
-    # Excess fluctuation is relative to the siblings, so the test is repeated after each exclusion.
-    while True:
-        worst = excess_fluctuation([results[i] for i in kept])
-        if worst is None:
-            return sorted(excluded, key=lambda exclusion: exclusion.position)
-        position = kept.pop(worst)
-        percent = results[position].fluctuation_percent
-        excluded.append(Exclusion(position, f"fluctuates by {percent:.1f} %, in excess of the other repeats"))
-
-
-def outliers(values: Sequence[float], repeatability: float = REPEATABILITY) -> list[int]:
-    """Return the positions of values more than 3.5 historic standard deviations from the median."""
-    if len(values) < 3:
-        return []
-    middle = median(values)
-    limit = OUTLIER_SIGMAS * repeatability * abs(middle)
-    return [i for i, value in enumerate(values) if abs(value - middle) > limit]
-
-
 def combine_repeats(
     results: Sequence[RepeatResult],
     planned: int,
@@ -228,8 +143,7 @@ def combine_repeats(
     reason: str = "",
     *,
     judged: Judgement = NOT_JUDGED,
-    by_hand: Mapping[int, str] = _NOTHING,
-    repeatability: float = REPEATABILITY,
+    by_hand: Mapping[int, str] = NONE_BY_HAND,
     combining: Combining = "mean",
     changed_percent: float | None = None,
     counted: str = REPEATS,
@@ -240,59 +154,72 @@ def combine_repeats(
     that a person left out are not missed, as long as ``min_valid`` remain, the least for a value without that flag.
     Where all repeats were refused for their drift, the value is theirs, flagged. ``ended`` and ``reason`` are the
     status with which the run left the condition (None: it has not), ``judged`` the judgement of its drift. ``by_hand``:
-    positions that a person has left out, each with the reason. ``repeatability`` is the historic standard deviation
-    between repeats as a share of mu. ``combining``: the mean of all that count, or the paper's way
-    (``tester.analysis.closest``). ``changed_percent``: the greatest sudden change, where it is not that between
-    ``results`` (pairs of repeats). ``counted``: the unit of ``results``, of ``tester.analysis.counts``.
+    positions that a person has left out, each with the reason. ``combining``: the mean of all that count, or the
+    paper's way. ``changed_percent``: the greatest sudden change, where it is not that between ``results`` (pairs of
+    repeats). ``counted``: the unit of ``results``, of ``tester.analysis.counts``.
     """
-    refused = {exclusion.position for exclusion in _exclusions(results, _NOTHING)}
-    counts = Counts(planned, len(results), make_ups=make_ups_of(planned, len(results), refused), of=counted)
-    excluded = _exclusions(results, by_hand)
+    kept, excluded = _kept(results, by_hand)
+    counts = _counts(results, planned, counted)
+    status, why = _condition_status(results, excluded, counts, ended, reason)
+    if not kept:
+        return ConditionResult(status, why, EXCLUDED if by_hand else "", counts=counts, excluded=tuple(excluded))
+    if changed_percent is None:
+        changed_percent = change_of(with_coefficient(results, by_hand), REPEATABILITY)
+    shell = ConditionResult(status, why, counts=counts, excluded=tuple(excluded), change_percent=changed_percent)
+    result = _of_kept(shell, results, kept, judged, combining)
+    asked = planned - sum(results[i].valid for i in by_hand if i < len(results))
+    short = result.ok and len(kept) < max(asked, min_valid)
+    marks = ((EXCLUDED, by_hand), (SHORT, short), (CHANGED, abs(changed_percent) > LIMIT_PERCENT))
+    return replace(result, flags=joined([*flags_in(result.flags), *(word for word, on in marks if on)]))
+
+
+def _counts(results: Sequence[RepeatResult], planned: int, counted: str) -> Counts:
+    refused = {exclusion.position for exclusion in exclusions(results)}
+    return Counts(planned, len(results), make_ups=make_ups_of(planned, len(results), refused), of=counted)
+
+
+def _kept(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> tuple[list[int], list[Exclusion]]:
+    """Return the positions of the repeats with a value for the condition, and the others."""
+    excluded = exclusions(results, by_hand)
     left_out = {exclusion.position for exclusion in excluded}
     kept = [i for i in range(len(results)) if i not in left_out]
     if not kept:
         # No repeat is steady: a flagged value is better than none.
         kept = [i for i, result in enumerate(results) if result.drifts and i not in by_hand]
         excluded = [exclusion for exclusion in excluded if exclusion.position not in kept]
-    status, why = _condition_status(results, excluded, counts, ended, reason)
-    if not kept:
-        return ConditionResult(status, why, EXCLUDED if by_hand else "", counts=counts, excluded=tuple(excluded))
-    asked = planned - sum(results[i].valid for i in by_hand if i < len(results))
-    short = status is ConditionStatus.OK and len(kept) < max(asked, min_valid)
-    values = [results[i].mu_resultant for i in kept]
-    flagged = outliers(values, repeatability)
-    flags = {flag for i in kept for flag in flags_in(results[i].flags)} | set(flags_in(judged.flags))
-    used = taken(values, combining)
-    fewer = len(used) < len(values)
-    if changed_percent is None:
-        changed_percent = change_of(with_coefficient(results, by_hand), repeatability)
-    changed = abs(changed_percent) > LIMIT_PERCENT
-    marks = ((OUTLIER, flagged), (EXCLUDED, by_hand), (SHORT, short), (CLOSEST_TWO, fewer), (CHANGED, changed))
-    flags |= {word for word, on in marks if on}
-    in_mean = [results[kept[i]] for i in used]
-    excluded += [Exclusion(place, NOT_CLOSEST) for i, place in enumerate(kept) if i not in used]
-    shell = ConditionResult(
-        status=status,
-        reason=why,
-        flags=joined(flags),
-        mu_longitudinal=_mean([result.mu_longitudinal for result in in_mean]),
-        mu_lateral=_mean([result.mu_lateral for result in in_mean]),
-        counts=replace(counts, valid=len(in_mean)),
-        measured=mean_of(result.means for result in in_mean),
-        excluded=tuple(sorted(excluded, key=lambda exclusion: exclusion.position)),
+    return kept, excluded
+
+
+def _of_kept(
+    shell: ConditionResult,
+    results: Sequence[RepeatResult],
+    kept: Sequence[int],
+    judged: Judgement,
+    combining: Combining,
+) -> ConditionResult:
+    """Return ``shell`` with the mean of the repeats at the positions ``kept``, their flags and their drift."""
+    repeats = [results[i] for i in kept]
+    values = [repeat.mu_resultant for repeat in repeats]
+    flagged, used = outliers(values), taken(values, combining)
+    not_taken = [Exclusion(place, NOT_CLOSEST) for i, place in enumerate(kept) if i not in used]
+    marks = ((OUTLIER, flagged), (CLOSEST_TWO, not_taken))
+    flags = [flag for text in (judged.flags, *(repeat.flags for repeat in repeats)) for flag in flags_in(text)]
+    shell = replace(
+        shell,
+        flags=joined([*flags, *(word for word, on in marks if on)]),
+        counts=replace(shell.counts, valid=len(used)),
+        measured=mean_of(repeats[i].means for i in used),
+        excluded=tuple(sorted([*shell.excluded, *not_taken], key=lambda exclusion: exclusion.position)),
         flagged=tuple(kept[i] for i in flagged),
         drift_percent=judged.drift_percent,
         drift_bound_percent=judged.drift_bound_percent,
         trend_percent=judged.trend_percent,
-        change_percent=changed_percent,
+        unsteady=unsteadiness(judged),
     )
-    shell = replace(shell, unsteady=unsteadiness(judged))
-    swings = most_swinging(results[i] for i in kept)
-    shell = replace(shell, swing_percent=swings.swing_percent, swing_hz=swings.swing_hz)
-    return _with_statistics(shell, values, flagged, used)
+    return _with_mean(shell, repeats, flagged, used)
 
 
-def with_coefficient(results: Sequence[RepeatResult], by_hand: Mapping[int, str] = _NOTHING) -> list[RepeatResult]:
+def with_coefficient(results: Sequence[RepeatResult], by_hand: Mapping[int, str] = NONE_BY_HAND) -> list[RepeatResult]:
     """Return the repeats that show friction: those that count, and those refused for their drift."""
     return [result for i, result in enumerate(results) if (result.valid or result.drifts) and i not in by_hand]
 
@@ -319,8 +246,6 @@ def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
         status=status,
         reason=reason,
         flags=joined(flag for result in kept for flag in flags_in(result.flags)),
-        mu_longitudinal=_mean([result.mu_longitudinal for result in kept]),
-        mu_lateral=_mean([result.mu_lateral for result in kept]),
         counts=counts,
         measured=mean_of(result.measured for result in kept),
         # Wheels run in alike: a drift on one appears on the others, in the same direction.
@@ -328,9 +253,7 @@ def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:
         both_ways=_both_ways(kept),
         change_percent=greatest(result.change_percent for result in kept),
     )
-    swings = most_swinging(kept)
-    shell = replace(shell, swing_percent=swings.swing_percent, swing_hz=swings.swing_hz)
-    return _with_statistics(shell, [result.mu_resultant for result in kept], [])
+    return _with_mean(shell, kept)
 
 
 def _both_ways(kept: Sequence[ConditionResult]) -> BothWays | None:
@@ -342,27 +265,35 @@ def _mean(values: Sequence[float]) -> float:
     return sum(values) / len(values)
 
 
-def _with_statistics(
-    shell: ConditionResult, values: Sequence[float], flagged: Sequence[int], used: Sequence[int] | None = None
+def _with_mean(
+    shell: ConditionResult,
+    items: Sequence[RepeatResult] | Sequence[ConditionResult],
+    flagged: Sequence[int] = (),
+    used: Sequence[int] | None = None,
 ) -> ConditionResult:
-    """Return ``shell`` with mean and scatter of ``values``; a single value shows no scatter.
+    """Return ``shell`` with mean and scatter of ``items``, and their greatest swing; a single item shows no scatter.
 
-    ``used``: positions of those in the mean, where not all are; the scatter is that of all.
+    ``used``: positions of those in the mean, where not all are; the scatter is that of all. ``flagged``: positions of
+    outliers.
     """
-    n = len(values)
+    values, n = [item.mu_resultant for item in items], len(items)
     used = range(n) if used is None else used
-    mu, s = _mean([values[i] for i in used]), standard_deviation(values)
-    type_a = s / sqrt(n) if len(used) == n else s * closest.STANDARD
+    s = standard_deviation(values)
+    type_a = s / sqrt(n) if len(used) == n else s * CLOSEST_STANDARD
     others = [value for i, value in enumerate(values) if i not in flagged]
-    df = float(max(n - 1, 1))
+    swing_percent, swing_hz = greatest_swing((item.swing_percent, item.swing_hz) for item in items)
     return replace(
         shell,
-        mu_resultant=mu,
+        mu_resultant=_mean([values[i] for i in used]),
+        mu_longitudinal=_mean([items[i].mu_longitudinal for i in used]),
+        mu_lateral=_mean([items[i].mu_lateral for i in used]),
         mu_without_flagged=_mean(others) if others else NAN,
         s=s,
         n_valid=n,
-        interval=t_quantile(0.5 + 0.5 * CONFIDENCE, df) * type_a,
+        interval=t_quantile(0.5 + 0.5 * CONFIDENCE, float(max(n - 1, 1))) * type_a,
         type_a=type_a,
+        swing_percent=swing_percent,
+        swing_hz=swing_hz,
     )
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
-from typing import Final, Protocol, TypeVar
+from typing import Final
 
 from tester.analysis.flags import DOUBTS, flags_in
 from tester.base.quantities import Means
@@ -117,26 +117,12 @@ class RepeatResult:
         return self.status is RepeatStatus.REFUSED and isfinite(self.drift_percent) and self.mu_resultant > 0.0
 
 
-class Swings(Protocol):
-    """Anything with a swing of friction: a repeat, or a condition."""
+def greatest_swing(swings: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    """Return the greatest of several swings, each per cent of the mean and Hz; an unknown one ranks last.
 
-    @property
-    def swing_percent(self) -> float:
-        """Return the amplitude, per cent of the mean."""
-        ...
-
-    @property
-    def swing_hz(self) -> float:
-        """Return the frequency, Hz."""
-        ...
-
-
-SwingsT = TypeVar("SwingsT", bound=Swings)
-
-
-def most_swinging(items: Iterable[SwingsT]) -> SwingsT:
-    """Return the item whose friction swings most; an unknown swing ranks last. Needs at least one item."""
-    return max(items, key=lambda item: item.swing_percent if item.swing_percent >= 0.0 else -1.0)
+    Needs at least one.
+    """
+    return max(swings, key=lambda swing: swing[0] if swing[0] >= 0.0 else -1.0)
 
 
 @dataclass(frozen=True, slots=True)

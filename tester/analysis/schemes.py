@@ -1,97 +1,51 @@
 """How a condition's repeats make its values: each repeat by itself, or each pair of repeats that slide opposite ways.
 
-Code that measures, stores and shows a condition calls a scheme and need not know which.
+Code that measures, stores and shows a condition calls a scheme and need not know which. Opposite directions also reveal
+the misalignment of the load cell's axes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from math import hypot
-from typing import Final, Protocol
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import degrees, hypot, isfinite, sqrt
+from typing import Final
 
 from tester.analysis.blocks import Block
 from tester.analysis.change import change_of, greatest
-from tester.analysis.closest import Combining
 from tester.analysis.counts import PAIRS as COUNTED
 from tester.analysis.directions import as_pairs, both_ways, halves, is_reversed
 from tester.analysis.flags import flags_in, joined
 from tester.analysis.judge import judge
-from tester.analysis.repeats import (
-    BY_HAND,
-    REPEATABILITY,
-    ConditionResult,
-    Exclusion,
-    combine_repeats,
-    counting,
-    with_coefficient,
-)
-from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
+from tester.analysis.left_out import BY_HAND, NONE_BY_HAND, REPEATABILITY, Combining, Exclusion, counting
+from tester.analysis.quantiles import t_quantile
+from tester.analysis.repeats import ConditionResult, combine_repeats, with_coefficient
+from tester.analysis.results import NAN, NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
+from tester.analysis.uncertainty import CONFIDENCE
 
-_NOTHING: Final[Mapping[int, str]] = {}
 OTHER_HALF: Final = "the other repeat of its pair does not count"
 HALF: Final = "the other repeat of its pair is not made"
 
 
-class Scheme(Protocol):
-    """Turns a condition's repeats, in order, into its values."""
+class Scheme:
+    """Turns a condition's repeats, in order, into its values: each repeat is a value."""
 
-    repeats_each: int
+    repeats_each = 1
     """Repeats behind one value."""
 
     def valid(self, results: Sequence[RepeatResult]) -> int:
         """Return the number of values from valid repeats."""
-        ...
+        return sum(result.valid for result in results)
 
     def values(self, results: Sequence[RepeatResult]) -> list[float]:
         """Return the coefficients that count."""
-        ...
-
-    def judge(
-        self,
-        results: Sequence[RepeatResult],
-        blocks: Sequence[Sequence[Block]],
-        planned: int,
-        revolutions: float | None,
-        seconds: float | None,
-    ) -> tuple[list[RepeatResult], Judgement]:
-        """Return repeats as judged, and the judgement on all of them (``tester.analysis.judge``)."""
-        ...
-
-    def combine(
-        self,
-        results: Sequence[RepeatResult],
-        planned: int,
-        min_valid: int = 3,
-        ended: ConditionStatus | None = None,
-        reason: str = "",
-        *,
-        judged: Judgement = NOT_JUDGED,
-        by_hand: Mapping[int, str] = _NOTHING,
-        combining: Combining = "mean",
-    ) -> ConditionResult:
-        """Return the condition's result (``tester.analysis.repeats``)."""
-        ...
-
-
-class EachRepeat:
-    """Each repeat is a value."""
-
-    repeats_each = 1
+        return [results[i].mu_resultant for i in counting(results)]
 
     judge = staticmethod(judge)
     combine = staticmethod(combine_repeats)
 
-    def valid(self, results: Sequence[RepeatResult]) -> int:
-        """Return how many repeats are valid."""
-        return sum(result.valid for result in results)
 
-    def values(self, results: Sequence[RepeatResult]) -> list[float]:
-        """Return the coefficients of the repeats that count."""
-        return [results[i].mu_resultant for i in counting(results)]
-
-
-class OppositePairs:
+class OppositePairs(Scheme):
     """A value is half the difference of a repeat in the requested direction and a reversed one; planned and least are
     pairs.
 
@@ -102,11 +56,9 @@ class OppositePairs:
     repeats_each = 2
 
     def valid(self, results: Sequence[RepeatResult]) -> int:
-        """Return how many whole pairs are valid."""
         return sum(pair.valid for pair in as_pairs(results, whole=True))
 
     def values(self, results: Sequence[RepeatResult]) -> list[float]:
-        """Return the coefficients of the pairs that count."""
         pairs = as_pairs(results, whole=True)
         return [pairs[i].mu_resultant for i in counting(pairs)]
 
@@ -140,7 +92,7 @@ class OppositePairs:
         reason: str = "",
         *,
         judged: Judgement = NOT_JUDGED,
-        by_hand: Mapping[int, str] = _NOTHING,
+        by_hand: Mapping[int, str] = NONE_BY_HAND,
         combining: Combining = "mean",
     ) -> ConditionResult:
         """Return the result of a condition from its pairs; ``by_hand`` and the exclusions are places of repeats."""
@@ -209,10 +161,59 @@ def _together(judgements: Sequence[Judgement]) -> Judgement:
     )
 
 
-EACH: Final[Scheme] = EachRepeat()
-PAIRS: Final[Scheme] = OppositePairs()
+EACH: Final = Scheme()
+PAIRS: Final = OppositePairs()
 
 
 def scheme_of(*, both_directions: bool) -> Scheme:
     """Return how repeats make values."""
     return PAIRS if both_directions else EACH
+
+
+@dataclass(frozen=True, slots=True)
+class Misalignment:
+    """An apparent angle of the load cell's axes and its standard uncertainty, degrees, with the degrees of freedom and
+    the number of pairs.
+
+    Crosstalk between load and friction looks the same, and is part of it: the angle is the budget's misalignment and
+    crosstalk together. It corrects nothing; coefficients from both directions are free of it.
+    """
+
+    deg: float = NAN
+    standard_deg: float = NAN
+    df: int = 0
+    pairs: int = 0
+
+    @property
+    def expanded_deg(self) -> float:
+        """Return the expanded uncertainty (95 %), degrees; NaN where no scatter is known."""
+        return t_quantile(0.5 + 0.5 * CONFIDENCE, float(self.df)) * self.standard_deg if self.df else NAN
+
+
+NOT_KNOWN = Misalignment()
+
+
+def misalignment(results: Iterable[ConditionResult]) -> Misalignment:
+    """Return the angle pooled over conditions; those without a value, or of one direction, are ignored.
+
+    Half the sum of a pair's signed coefficients is theta (1 + mu^2) (``tester.analysis.directions``). One condition of
+    three pairs resolves it to some 0.2 degrees, because repeats differ by 2 %; so it is pooled over the session, in
+    which the cell is not moved. Each condition weighs by its uncertainty, for which the relative scatter between pairs
+    is pooled:
+
+      u_i = s mu_i / ((1 + mu_i^2) sqrt(n_i)),      theta = sum(theta_i / u_i^2) / sum(1 / u_i^2),
+      u^-2 = sum u_i^-2
+    """
+    valued = [
+        (result.mu_resultant, result.both_ways) for result in results if result.ok and result.both_ways is not None
+    ]
+    valued = [(mu, ways) for mu, ways in valued if mu > 0.0]
+    if not valued:
+        return NOT_KNOWN
+    df = sum(ways.pairs - 1 for _, ways in valued)
+    squares = sum((ways.pairs - 1) * (ways.half_sum_s / mu) ** 2 for mu, ways in valued if isfinite(ways.half_sum_s))
+    weights = [ways.pairs * ((1.0 + mu * mu) / mu) ** 2 for mu, ways in valued]
+    angles = [ways.half_sum / (1.0 + mu * mu) for mu, ways in valued]
+    angle = sum(w * a for w, a in zip(weights, angles, strict=True)) / sum(weights)
+    standard = sqrt(squares / df / sum(weights)) if df else NAN
+    return Misalignment(degrees(angle), degrees(standard), df, sum(ways.pairs for _, ways in valued))

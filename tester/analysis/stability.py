@@ -50,6 +50,12 @@ def truncation(values: Sequence[float]) -> int | None:
     return None if best_at == last and last > 0 else best_at
 
 
+def centred(values: Sequence[float]) -> list[float]:
+    """Return values less their mean."""
+    mean = sum(values) / len(values)
+    return [value - mean for value in values]
+
+
 def seconds_of(blocks: Sequence[Block]) -> float:
     """Return the accepted seconds in blocks."""
     return sum(block.ended_s - block.started_s for block in blocks)
@@ -85,16 +91,13 @@ def left_out(blocks: Sequence[Block], revolutions: float | None, seconds: float 
 
 def _transient(blocks: Sequence[Block], mu: list[float]) -> int:
     n = len(blocks)
-    mean = sum(mu) / n
-    values = [value - mean for value in mu]
+    values = centred(mu)
     # Bursts differ in surface temperature: its effect must not look like a transient.
     if blocks[0].burst != blocks[-1].burst:
-        surface = temperatures(block.means for block in blocks)
-        middle = sum(surface) / n
-        surface = [celsius - middle for celsius in surface]
+        surface = centred(temperatures(block.means for block in blocks))
         squares = sum(kelvin * kelvin for kelvin in surface)
         if squares > 0.0:
             per_kelvin = sum(a * b for a, b in zip(surface, values, strict=True)) / squares
             values = [value - per_kelvin * kelvin for value, kelvin in zip(values, surface, strict=True)]
     cut = truncation(values) or 0
-    return 0 if abs(sum(values[cut:])) <= MATERIAL * mean * (n - cut) else cut
+    return 0 if abs(sum(values[cut:])) <= MATERIAL * (sum(mu) / n) * (n - cut) else cut

@@ -89,10 +89,8 @@ def unsteadiness(judged: Judgement) -> Unsteadiness:
     """Return the additions from a condition's judgement: its drift always, with its error; its trend where it carries
     over.
 
-    The coefficient moves by (
-    d
-    + se(d)) times the windows of a repeat during the measurement, and by the trend over the repeats; a mean from
-    somewhere in that range is off by 1 / sqrt(12) of it (GUM 4.3.7).
+    The coefficient moves by (abs(d) + se(d)) times the windows of a repeat during the measurement, and by the trend
+    over the repeats; a mean from somewhere in that range is off by 1 / sqrt(12) of it (GUM 4.3.7).
     """
     drift = (abs(judged.drift_percent) + judged.drift_error_percent) * judged.repeat_windows * _SPREAD
     carried = abs(judged.trend_percent) * _SPREAD if CARRY_OVER in flags_in(judged.flags) else 0.0

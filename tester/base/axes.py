@@ -100,6 +100,10 @@ class Setpoint(NamedTuple):
         """Return the values of the numeric axes, in their ``recipe_unit``, by name."""
         return {axis.name: self.number(axis.name) for axis in self.axes if not axis.choices}
 
+    def key(self, without: str = "") -> tuple[str, tuple[AxisValue, ...]]:
+        """Return the compound and the values of the axes, as shown to people, except that of an axis ``without``."""
+        return self.compound, tuple(axis.of(self) for axis in self.axes if axis.name != without)
+
     def but(self, compound: str | None = None, /, **values: AxisValue) -> Setpoint:
         """Return the setpoint with other values, by axis name; raises KeyError."""
         changed = list(self.values)

@@ -17,7 +17,8 @@ from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
     from tester.results.formats import Format
-    from tester.results.run_results import ReferenceWatch, RunResults, TableRow
+    from tester.results.run_results import ReferenceWatch, RunResults
+    from tester.results.table_rows import TableRow
     from tester.store.records import Change, SessionInfo, StoredEvent, StoredExclusion, StoredTrip
 
 

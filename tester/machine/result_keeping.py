@@ -8,9 +8,9 @@ from math import isfinite
 from typing import Generic, Protocol, TypeVar
 
 from tester.analysis.blocks import Block
-from tester.analysis.closest import Combining
 from tester.analysis.flags import IMPRECISE, NOT_SHOWN, flags_in, joined
 from tester.analysis.judge import ALONE
+from tester.analysis.left_out import Combining
 from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_value
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus

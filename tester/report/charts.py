@@ -14,7 +14,8 @@ from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 from tester.report.layout import labelled, name_of
 from tester.results.columns import unit_of
-from tester.results.run_results import Measured, RunResults
+from tester.results.run_results import RunResults
+from tester.results.table_rows import Measured
 
 NAN = float("nan")
 Y_LABEL = "friction coefficient"

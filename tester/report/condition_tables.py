@@ -21,7 +21,8 @@ from tester.report.layout import (
 from tester.report.record_section import RunRecord
 from tester.results.columns import Column, Output, Table
 from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table, recipe_rows
-from tester.results.run_results import RunResults, remedy
+from tester.results.run_results import RunResults
+from tester.results.table_rows import remedy
 from tester.results.tally import flag_lines, tally_of
 
 SHORT_ROWS = 20

@@ -10,7 +10,8 @@ from tester.base.axes import condition_words
 from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, Series
 from tester.report.layout import labelled
-from tester.results.run_results import Measured, RunResults
+from tester.results.run_results import RunResults
+from tester.results.table_rows import Measured
 from tester.store.records import StoredRepeat
 
 MINUTES = 1.0 / 60.0

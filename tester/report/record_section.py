@@ -11,7 +11,8 @@ from tester.analysis.results import RepeatStatus
 from tester.analysis.ring_runs import RingRun
 from tester.results.manifest import MANIFEST
 from tester.results.ring_part import RingPart
-from tester.results.run_results import Measured, RunResults, results_of
+from tester.results.run_results import RunResults, results_of
+from tester.results.table_rows import Measured
 from tester.results.verify import Verification, verify
 from tester.store.records import (
     Change,

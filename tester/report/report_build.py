@@ -26,7 +26,7 @@ from tester.report.run_sections import (
     trips_section,
 )
 from tester.report.several_runs import runs_chapter
-from tester.results.run_results import Measured
+from tester.results.table_rows import Measured
 
 Showing = Callable[[RunRecord], Material]
 """Returns the content of a run's figures: its values, and published ones and a law beside them."""

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from tester.results.formats import FORMATS, Format, Record
 from tester.results.manifest import MANIFEST, manifest_text
-from tester.results.run_results import TableRow, results_of
+from tester.results.run_results import results_of
+from tester.results.table_rows import TableRow
 from tester.store.disk import write_whole
 from tester.store.run_reader import RunReader
 

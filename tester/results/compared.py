@@ -11,7 +11,8 @@ from tester.analysis.difference import Difference, difference
 from tester.analysis.results import NAN, mark_of
 from tester.base.axes import AxisValue
 from tester.results.columns import Column, Output, Table, axis_column
-from tester.results.run_results import RunResults, TableRow
+from tester.results.run_results import RunResults
+from tester.results.table_rows import TableRow
 from tester.store.records import ConditionInfo, StoredRun
 
 Held: TypeAlias = tuple[str, tuple[AxisValue, ...], int]
@@ -125,8 +126,8 @@ def _by_setting(rows: Iterable[TableRow], compounds: tuple[str, str] | None) -> 
     rows_found: dict[Held, TableRow] = {}
     count: Counter[tuple[str, tuple[AxisValue, ...]]] = Counter()
     for row in rows:
-        setpoint = row.info.setpoint
-        setting = "" if compounds else setpoint.compound, tuple(axis.of(setpoint) for axis in setpoint.axes)
+        compound, values = row.info.setpoint.key()
+        setting = "" if compounds else compound, values
         count[setting] += 1
         rows_found[(*setting, count[setting])] = row
     return rows_found

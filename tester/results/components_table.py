@@ -7,8 +7,9 @@ from typing import Final, NamedTuple, TypeAlias
 
 from tester.analysis.components import ByFilm, PartValue, by_film, mean_of
 from tester.analysis.kelvin import UNKNOWN, Slope, slope_of_pairs
-from tester.base.axes import AxisValue, Setpoint
-from tester.results.run_results import Measured, RunResults
+from tester.base.axes import AxisValue
+from tester.results.run_results import RunResults
+from tester.results.table_rows import Measured
 
 AXIS: Final = "interface"
 """Axis of the conditions; a machine without it has no components to separate."""
@@ -81,6 +82,4 @@ def _slope(measured: Measured, valued: Sequence[Measured]) -> Slope:
 
 
 def _key(measured: Measured, without: str) -> _Key:
-    setpoint: Setpoint = measured.info.setpoint
-    values = tuple(axis.of(setpoint) for axis in setpoint.axes if axis.name != without)
-    return measured.info.specimen, measured.info.replicate, setpoint.compound, values
+    return measured.info.specimen, measured.info.replicate, *measured.info.setpoint.key(without)

@@ -20,7 +20,8 @@ from tester.analysis.wear_rate import ConditionWear
 from tester.base.axes import Axis
 from tester.base.quantities import Means
 from tester.results.columns import Column, Output, Table, Value, mean_column, setting_columns
-from tester.results.run_results import Measured, RunResults, TableRow
+from tester.results.run_results import RunResults
+from tester.results.table_rows import Measured, TableRow
 from tester.store.records import ConditionInfo
 
 CONDITION: Final = "condition"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tester.analysis.directions import BothWays, SlidingWay
-from tester.analysis.misalignment import Misalignment, misalignment
+from tester.analysis.schemes import Misalignment, misalignment
 from tester.results.columns import Column, Table, Value
 from tester.results.conditions_table import conditions_table
 from tester.results.run_results import RunResults
@@ -28,7 +28,7 @@ def directions_table(results: RunResults) -> Table[DirectionRow]:
     """Return a row for each condition measured in both directions, and a last one for the whole run.
 
     ``mu_difference_percent``: excess of the requested direction over the reverse. The angle is that of the cell's axes
-    including crosstalk of load and friction (``tester.analysis.misalignment``); the row ``run`` has it pooled over all
+    including crosstalk of load and friction (``tester.analysis.schemes``); the row ``run`` has it pooled over all
     conditions.
     """
     conditions = conditions_table(results)

@@ -11,11 +11,12 @@ from typing import Final, NamedTuple
 from tester.analysis.fit.fit_law import Common, FitPoint, Source, Sourced
 from tester.analysis.flags import REFERENCE, flags_in
 from tester.analysis.kelvin import TEMPERATURE_SENSITIVITY
+from tester.analysis.left_out import REPEATABILITY as STATED
 from tester.analysis.measurand import REPEATABILITY
-from tester.analysis.repeats import REPEATABILITY as STATED
 from tester.analysis.terms import PREFIX, Acts, Term, setting_of, with_settings
 from tester.base.axes import condition_words
-from tester.results.run_results import Measured, RunResults
+from tester.results.run_results import RunResults
+from tester.results.table_rows import Measured
 from tester.store.records import RunInfo
 
 REPEATS: Final = "repeatability"

@@ -9,7 +9,8 @@ from typing import Final
 
 from tester.analysis.reference import ControlChart, ControlPoint, CounterfaceDrift, Reference
 from tester.results.columns import Column, Output, Table, Value, axis_column, piece_key
-from tester.results.run_results import RunResults, TableRow
+from tester.results.run_results import RunResults
+from tester.results.table_rows import TableRow
 from tester.store.records import ConditionInfo
 
 

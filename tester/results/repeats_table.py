@@ -10,7 +10,8 @@ from tester.analysis.flags import flags_in
 from tester.analysis.results import RepeatResult
 from tester.base.quantities import Means
 from tester.results.columns import Column, Output, Table, mean_column, piece_key, setting_columns
-from tester.results.run_results import Measured, RunResults
+from tester.results.run_results import RunResults
+from tester.results.table_rows import Measured
 from tester.store.records import ConditionInfo, StoredRepeat
 
 AS_ASKED: Final = "as asked"

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from math import isfinite
 
-from tester.analysis.closest import Combining, combining_of
-from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, THERMOMETER, flags_in, joined, remedy_of
+from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, THERMOMETER, flags_in, joined
+from tester.analysis.left_out import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
-from tester.analysis.misalignment import Misalignment, misalignment
 from tester.analysis.reference import (
     RESERVED,
     ControlChart,
@@ -21,86 +20,19 @@ from tester.analysis.reference import (
     doubted,
     is_reference,
 )
-from tester.analysis.repeats import ConditionResult, combine_replicates
-from tester.analysis.results import ConditionStatus, SoakCheck
+from tester.analysis.repeats import combine_replicates
+from tester.analysis.schemes import Misalignment, misalignment
 from tester.analysis.wear_rate import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
-from tester.base.axes import Axes, condition_words
+from tester.base.axes import Axes
 from tester.base.quantities import Quantities
 from tester.base.words import coefficient
-from tester.results.settings_compared import RepeatedSetting, SettingsOf, in_doubt
-from tester.results.surroundings import Reduced, SurroundingsOf
+from tester.results.settings_compared import RepeatedSetting, settings_of
+from tester.results.surroundings import SurroundingsOf
+from tester.results.table_rows import Measured, TableRow
 from tester.store.amend import standing
-from tester.store.records import ConditionInfo, PieceInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
+from tester.store.records import PieceInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
 from tester.store.run_folders import RunStatus, run_status, under_way
 from tester.store.run_reader import RunReader
-
-
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """One condition of the plan with its repeats and their result."""
-
-    condition: StoredCondition
-    repeats: tuple[StoredRepeat, ...]
-    result: ConditionResult
-    by_hand: Mapping[int, StoredExclusion]
-    """Exclusions by a person, by position in ``repeats``."""
-    soak: SoakCheck | None = None
-    """The surface's thermometer after the soak; None without a record of it."""
-
-    @property
-    def info(self) -> ConditionInfo:
-        """Return the condition's setpoints."""
-        return self.condition.info
-
-    def exclusion(self, repeat: StoredRepeat) -> str:
-        """Return why a repeat is not in the mean, an empty text if it is."""
-        position = self.repeats.index(repeat)
-        return next((e.reason for e in self.result.excluded if e.position == position), "")
-
-    @property
-    def make_ups(self) -> list[StoredRepeat]:
-        """Return the repeats made in place of refused ones; of pairs, both repeats of each."""
-        each = self.result.repeats_each
-        return [repeat for i, repeat in enumerate(self.repeats) if i // each in self.result.counts.make_ups]
-
-    def left_out_by(self, repeat: StoredRepeat) -> StoredExclusion | None:
-        """Return a person's exclusion of a repeat, None without one."""
-        return self.by_hand.get(self.repeats.index(repeat))
-
-
-@dataclass(frozen=True, slots=True)
-class TableRow:
-    """A row of the recipe's table: its replicates, and their value."""
-
-    replicates: tuple[Measured, ...]
-    result: ConditionResult
-
-    @property
-    def info(self) -> ConditionInfo:
-        """Return the setpoints, those of the first replicate."""
-        return self.replicates[0].info
-
-    @property
-    def tried(self) -> bool:
-        """Return whether the run came to this row: a repeat is on record, or why there is none."""
-        return self.result.status is not ConditionStatus.PENDING or any(m.repeats for m in self.replicates)
-
-    def describe(self) -> str:
-        """Return the row's setpoints and why it has no value, as a line for people."""
-        parts = [self.result.status.value, self.result.reason]
-        for measured in self.replicates:
-            c = measured.condition
-            if not measured.result.ok and isfinite(c.warming_k_s) and not c.reason:
-                parts.append(f"warming {c.warming_k_s:.2g} K/s; {c.holdable_band_k:.2g} K of band would do")
-        return ": ".join([condition_words(self.info.setpoint), *[part for part in parts if part]])
-
-    def advise(self) -> str:
-        """Return the row's problem or doubts, and the remedy, for people."""
-        sentence = self.describe()
-        if self.result.ok:
-            sentence = f"{sentence}: {', '.join(self.result.doubts)}"
-        advice = remedy(self.result)
-        return f"{sentence}: {advice}" if advice else sentence
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,21 +53,6 @@ class ReferenceWatch:
             outside = [f"{point.number}" for point in chart.points if isfinite(point.mu) and not point.within]
             limits = f"references of {chart.compound}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
             yield f"{limits}; outside: {', '.join(outside)}" if outside else f"{limits}; all inside"
-
-
-_WHAT_TO_DO: Mapping[ConditionStatus, str] = {
-    ConditionStatus.CANNOT_HOLD: "a wider temperature_band, a lower load or a lower speed would help",
-    ConditionStatus.NOT_REACHED: "check heating and cooling, or allow more time (soak.at_most)",
-    ConditionStatus.INSUFFICIENT: "a wider temperature_band or more max_bursts would help",
-    ConditionStatus.PENDING: "tester resume continues the run",
-}
-
-
-def remedy(result: ConditionResult) -> str:
-    """Return the remedy for a condition without a value, or with one that needs care; "" where none is needed."""
-    if not result.ok:
-        return _WHAT_TO_DO.get(result.status, "")
-    return remedy_of(result.doubts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,81 +160,71 @@ class RunResults:
 
 def results_of(reader: RunReader) -> RunResults:
     """Return the results of a run's committed repeats; raises StoreError where the record cannot be read."""
-    run = reader.run()
-    combining = combining_of(run.info.metadata)
-    left_out = standing(reader.exclusions())
-    repeats: dict[int, list[StoredRepeat]] = {}
-    for repeat in reader.repeats():
-        repeats.setdefault(repeat.condition, []).append(repeat)
-    stored = reader.conditions()
-    conditions = [
-        _measured(condition, repeats.get(condition.info.condition, []), left_out, combining) for condition in stored
-    ]
-    soaks = reader.soaks()
-    conditions = [replace(condition, soak=soaks.get(condition.info.condition)) for condition in conditions]
-    conditions = [
-        condition if condition.soak is None or condition.soak.agrees else _flagged(condition, THERMOMETER)
-        for condition in conditions
-    ]
-    pieces, checks = tuple(reader.pieces()), tuple(reader.wear_checks())
+    run, pieces, checks = reader.run(), tuple(reader.pieces()), tuple(reader.wear_checks())
+    conditions = _combined(reader, run)
     surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([condition.result for condition in conditions]))
-    watching = [is_reference(condition.info.grid, run.info.metadata) for condition in conditions]
-    for condition, watches in zip(conditions, watching, strict=True):
-        if not watches:
-            surroundings.add(condition.info.setpoint, condition.result)
+    references = [condition for condition in conditions if _watches(condition, run)]
+    ordinary = [condition for condition in conditions if not _watches(condition, run)]
+    for condition in ordinary:
+        surroundings.add(condition.info.setpoint, condition.result)
     watch = None
-    if any(watching):
-        references = [condition for condition, watches in zip(conditions, watching, strict=True) if watches]
+    if references:
         watch = watch_of(references, surroundings, run)
         surroundings.watched(watch.drift)
-        ordinary = [
-            condition.info.condition for condition, watches in zip(conditions, watching, strict=True) if not watches
-        ]
-        doubts = doubted(watch.charts, ordinary)
+        doubts = doubted(watch.charts, [condition.info.condition for condition in ordinary])
         conditions = [
-            _flagged(condition, REFERENCE if watches else OUT_OF_LIMITS)
-            if watches or condition.info.condition in doubts
+            _flagged(condition, REFERENCE if _watches(condition, run) else OUT_OF_LIMITS)
+            if _watches(condition, run) or condition.info.condition in doubts
             else condition
-            for condition, watches in zip(conditions, watching, strict=True)
+            for condition in conditions
         ]
     conditions, settings = _budgeted(conditions, surroundings)
     rows = _rows(conditions, surroundings)
-    missing = any(not row.result.ok for row in rows)
-    ours = [row for row in rows if not is_reference(row.info.grid, run.info.metadata)]
-    references = [row for row in rows if is_reference(row.info.grid, run.info.metadata)]
     in_use = under_way(reader.path.parent) is not None
-    status = run_status(run.status, held=in_use, missing=missing)
     return RunResults(
         run,
-        tuple(ours),
-        status,
+        tuple(row for row in rows if not _watches(row, run)),
+        run_status(run.status, held=in_use, missing=any(not row.result.ok for row in rows)),
         reader.quantities(),
         pieces,
         checks,
-        tuple(references),
+        tuple(row for row in rows if _watches(row, run)),
         watch,
         settings,
         reader.record_head(),
     )
 
 
+def _watches(measured: Measured | TableRow, run: StoredRun) -> bool:
+    """Return whether a condition, or a row, is a reference."""
+    return is_reference(measured.info.grid, run.info.metadata)
+
+
+def _combined(reader: RunReader, run: StoredRun) -> list[Measured]:
+    """Return the conditions with their repeats combined, flagged where the thermometer was off after the soak."""
+    combining, left_out, soaks = combining_of(run.info.metadata), standing(reader.exclusions()), reader.soaks()
+    repeats: dict[int, list[StoredRepeat]] = {}
+    for repeat in reader.repeats():
+        repeats.setdefault(repeat.condition, []).append(repeat)
+    conditions: list[Measured] = []
+    for stored in reader.conditions():
+        number = stored.info.condition
+        measured = _measured(stored, repeats.get(number, []), left_out, combining)
+        measured = replace(measured, soak=soaks.get(number))
+        off = measured.soak is not None and not measured.soak.agrees
+        conditions.append(_flagged(measured, THERMOMETER) if off else measured)
+    return conditions
+
+
 def _budgeted(
     conditions: Sequence[Measured], surroundings: SurroundingsOf
 ) -> tuple[list[Measured], tuple[RepeatedSetting, ...]]:
     """Return the conditions with their budgets, flagged where their setting disagrees, and the repeated settings."""
-    listed: list[Measured] = []
-    settings = SettingsOf()
-    for condition in conditions:
-        by = surroundings.of(condition.info, condition.repeats, condition.result)
-        result = with_budget(condition.result, by)
-        settings.add(condition.info, condition.repeats, result, by)
-        listed.append(replace(condition, result=result))
-    repeated = settings.repeated()
-    doubts = in_doubt(repeated)
-    flagged = [
-        _flagged(condition, DISAGREES) if condition.info.condition in doubts else condition for condition in listed
-    ]
-    return flagged, repeated
+    by = [surroundings.of(condition.info, condition.repeats, condition.result) for condition in conditions]
+    listed = [replace(c, result=with_budget(c.result, sources)) for c, sources in zip(conditions, by, strict=True)]
+    repeated = settings_of((c.info, c.repeats, c.result, sources) for c, sources in zip(listed, by, strict=True))
+    doubts = {number for setting in repeated if setting.disagrees for number in setting.conditions}
+    return [_flagged(c, DISAGREES) if c.info.condition in doubts else c for c in listed], repeated
 
 
 def _rows(conditions: Sequence[Measured], surroundings: SurroundingsOf) -> list[TableRow]:
@@ -342,8 +249,8 @@ def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: 
     listed: list[Reference] = []
     for number, condition in enumerate(in_order, start=1):
         result = with_budget(condition.result, surroundings.of(condition.info, condition.repeats, condition.result))
-        at = Reduced(condition.condition.started_s, result)
-        listed.append(surroundings.reference(number, condition.info, condition.repeats, at))
+        started_s = condition.condition.started_s
+        listed.append(surroundings.reference(number, condition.info, condition.repeats, started_s, result))
     known = surroundings.known(RESERVED in run.info.metadata)
     return ReferenceWatch(tuple(listed), counterface_drift(listed, known), control_charts(listed, known))
 
@@ -369,7 +276,7 @@ def _measured(
         ended=stored.status,
         reason=stored.reason,
         judged=stored.judged,
-        by_hand={i: one.reason for i, one in by_hand.items()},
+        by_hand={i: exclusion.reason for i, exclusion in by_hand.items()},
         combining=combining,
     )
     return Measured(stored, tuple(repeats), result, by_hand)

@@ -6,7 +6,8 @@ result.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
@@ -94,37 +95,24 @@ def _difference(first: SettingMeasurement, second: SettingMeasurement, off: Diff
     return f"{named}: {off.value:+.3f} ± {off.expanded:.3f}"
 
 
-class SettingsOf:
-    """Gathers the conditions of a run by their settings; ``add`` each with its budget."""
+def settings_of(
+    conditions: Iterable[tuple[ConditionInfo, Sequence[StoredRepeat], ConditionResult, Surroundings]],
+) -> tuple[RepeatedSetting, ...]:
+    """Return the settings that conditions measure several times, in the order of the table.
 
-    def __init__(self) -> None:
-        """Start without settings."""
-        self._found: dict[tuple[str, tuple[AxisValue, ...]], list[SettingMeasurement]] = {}
-        self._held: dict[tuple[str, tuple[AxisValue, ...]], Setpoint] = {}
-
-    def add(
-        self, info: ConditionInfo, repeats: Sequence[StoredRepeat], result: ConditionResult, by: Surroundings
-    ) -> None:
-        """Add a condition, with its result and the sources of its uncertainty."""
-        setpoint = info.setpoint
-        setting = setpoint.compound, tuple(axis.of(setpoint) for axis in setpoint.axes)
-        self._held.setdefault(setting, setpoint)
-        if not (result.ok and isfinite(result.mu)):
-            return
-        pieces = [repeat.piece for repeat in repeats if repeat.result.valid]
-        measured = measurement(info.condition, pieces[-1] if pieces else 0, result, by)
-        self._found.setdefault(setting, []).append(measured)
-
-    def repeated(self) -> tuple[RepeatedSetting, ...]:
-        """Return the settings measured several times, in the order of the table."""
-        return tuple(
-            RepeatedSetting(self._held[setting], in_order, agreement(in_order))
-            for setting, listed in self._found.items()
-            if len(listed) > 1
-            for in_order in (tuple(sorted(listed, key=lambda measurement_: measurement_.condition)),)
-        )
-
-
-def in_doubt(settings: Sequence[RepeatedSetting]) -> Mapping[int, RepeatedSetting]:
-    """Return the conditions, by number, whose setting does not agree with itself."""
-    return {number: setting for setting in settings if setting.disagrees for number in setting.conditions}
+    Each condition with its repeats, its result with budgets, and the sources of its uncertainty.
+    """
+    setpoints: dict[tuple[str, tuple[AxisValue, ...]], Setpoint] = {}
+    measurements: defaultdict[tuple[str, tuple[AxisValue, ...]], list[SettingMeasurement]] = defaultdict(list)
+    for info, repeats, result, by in conditions:
+        setting = info.setpoint.key()
+        setpoints.setdefault(setting, info.setpoint)
+        if result.ok and isfinite(result.mu):
+            pieces = [repeat.piece for repeat in repeats if repeat.result.valid]
+            measurements[setting].append(measurement(info.condition, pieces[-1] if pieces else 0, result, by))
+    return tuple(
+        RepeatedSetting(setpoints[setting], in_order, agreement(in_order))
+        for setting, listed in measurements.items()
+        if len(listed) > 1
+        for in_order in (tuple(sorted(listed, key=lambda measured: measured.condition)),)
+    )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf, isfinite, sqrt
-from typing import NamedTuple
 
 from tester.analysis.kelvin import UNKNOWN, Slope, SurfaceWarmth, slope_of_pairs
+from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.measurand import Surroundings
 from tester.analysis.reference import CounterfaceDrift, KnownScatter, Reference
-from tester.analysis.repeats import REPEATABILITY, ConditionResult
+from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
 from tester.analysis.uncertainty import Pool
@@ -24,13 +24,6 @@ _Held = tuple[str, tuple[AxisValue, ...]]
 """Common to conditions of a pair: the compound, and every axis but temperature."""
 _SAME_K = 0.5
 """Range of a compound's known sensitivity about its temperature, K."""
-
-
-class Reduced(NamedTuple):
-    """A condition's result, and the rig time of its beginning."""
-
-    started_s: float
-    result: ConditionResult
 
 
 class SurroundingsOf:
@@ -66,7 +59,7 @@ class SurroundingsOf:
     def add(self, held: Setpoint, result: ConditionResult) -> None:
         """Add a condition's temperature and coefficient."""
         if result.ok and result.mu_resultant > 0.0 and isfinite(result.measured.temperature):
-            self._points.setdefault(self._held(held), []).append((result.measured.temperature, result.mu_resultant))
+            self._points.setdefault(held.key(self._axis), []).append((result.measured.temperature, result.mu_resultant))
 
     def of(self, info: ConditionInfo, repeats: Sequence[StoredRepeat], result: ConditionResult) -> Surroundings:
         """Return the sources of uncertainty of a condition, or of replicates of one."""
@@ -74,15 +67,22 @@ class SurroundingsOf:
         travel_m = self._travel(repeats).counterface_m
         return Surroundings(self.terms, self._pool, warmth, self._size(repeats), self._drift, travel_m)
 
-    def reference(self, number: int, info: ConditionInfo, repeats: Sequence[StoredRepeat], at: Reduced) -> Reference:
-        """Return a reference condition for the analysis; ``at``: its beginning and its result."""
-        result, travel = at.result, self._travel(repeats)
+    def reference(
+        self,
+        number: int,
+        info: ConditionInfo,
+        repeats: Sequence[StoredRepeat],
+        started_s: float,
+        result: ConditionResult,
+    ) -> Reference:
+        """Return a reference condition for the analysis; ``started_s``: rig time of its beginning."""
+        travel = self._travel(repeats)
         n = max(result.n_valid, 1)
         valid_pieces = [repeat.piece for repeat in repeats if repeat.result.valid]
         return Reference(
             number,
             info.condition,
-            at.started_s,
+            started_s,
             info.compound,
             valid_pieces[-1] if valid_pieces else 0,
             result.mu if result.ok else NAN,
@@ -115,9 +115,6 @@ class SurroundingsOf:
             sum(travel.counterface_m for travel in travels) / n, sum(travel.piece_m for travel in travels) / n
         )
 
-    def _held(self, held: Setpoint) -> _Held:
-        return held.compound, tuple(axis.of(held) for axis in held.axes if axis.name != self._axis)
-
     def _nominal_c(self, held: Setpoint) -> float:
         return next((held.number(axis.name) for axis in held.axes if axis.name == self._axis), NAN)
 
@@ -129,7 +126,7 @@ class SurroundingsOf:
         return SurfaceWarmth(nominal_c, shown_c, rate, self._slope(held, nominal_c, shown_c))
 
     def _slope(self, held: Setpoint, nominal_c: float, shown_c: float) -> Slope:
-        points = self._points.get(self._held(held), [])
+        points = self._points.get(held.key(self._axis), [])
         slope = slope_of_pairs(shown_c, points) if isfinite(shown_c) else None
         if slope is not None:
             return slope

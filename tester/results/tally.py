@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from tester.analysis.flags import FLAGS, Flag, flags_in
 from tester.base.words import counted
-from tester.results.run_results import RunResults, TableRow
+from tester.results.run_results import RunResults
+from tester.results.table_rows import TableRow
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from math import inf
 from pathlib import Path
 from typing import Any, Final
 
-from tester.analysis.misalignment import misalignment
+from tester.analysis.schemes import misalignment
 from tester.base.keys import FAST_STOP, MEANINGS, STOP
 from tester.base.words import finite
 from tester.machine.commission.person import Asks, Person, Question, StepRefused

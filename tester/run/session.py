@@ -28,7 +28,8 @@ from tester.machine.run_parts import Part
 from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import TimeLeft
 from tester.results import doubtful, write_all
-from tester.results.run_results import TableRow, results_of
+from tester.results.run_results import results_of
+from tester.results.table_rows import TableRow
 from tester.run.endings import EXIT_CODES, CannotStartError, PartEnd, RunEnding, StopLevel, ending_of
 from tester.run.folder import (
     Begin,

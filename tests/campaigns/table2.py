@@ -25,7 +25,8 @@ from typing import Final, NamedTuple
 
 import recipes
 from tester.base.axes import condition_words
-from tester.results.run_results import TableRow, results_of
+from tester.results.run_results import results_of
+from tester.results.table_rows import TableRow
 from tester.run.session import Session, SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 from typing import Final, Generic, NamedTuple, TypeAlias, TypeVar
 
-from tester.analysis import closest, terms
+from tester.analysis import left_out, terms
 from tester.base.axes import AxisValue, Setpoint, condition_words
 from tester.inputs.recipe.grid_settings import Settings
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, OrderModel, Recipe
@@ -134,7 +134,7 @@ def metadata_of(recipe: Recipe) -> dict[str, str]:
     if recipe.ambient is not None:
         result["ambient_c"] = f"{recipe.ambient:g}"
     if recipe.measure is not None and recipe.measure.combine != "mean":
-        result[closest.KEY] = recipe.measure.combine
+        result[left_out.COMBINE] = recipe.measure.combine
     for key, value in recipe.experiment.items():
         # A key that replaces a bound of the budget keeps its name: the analysis looks for it.
         result[key if key.startswith(terms.PREFIX) else f"experiment.{key}"] = value

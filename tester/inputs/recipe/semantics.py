@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from tester.analysis import closest, terms
+from tester.analysis import left_out, terms
 from tester.base.axes import Axis, AxisValue, plain
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import show, shown
@@ -151,9 +151,9 @@ def _combined(measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: T
     if measure.combine != "paper":
         return
     used = {(grid.repeats or measure.repeats).at_least for _, grid in grids}
-    for count in sorted(used - {closest.OF}):
-        message = f"combine: paper takes the closest two of {closest.OF} repeats, and {count} are asked for"
-        yield tree.problem(("measure", "combine"), f"{message} (expected repeats: {closest.OF})")
+    for count in sorted(used - {left_out.CLOSEST_OF}):
+        message = f"combine: paper takes the closest two of {left_out.CLOSEST_OF} repeats, and {count} are asked for"
+        yield tree.problem(("measure", "combine"), f"{message} (expected repeats: {left_out.CLOSEST_OF})")
 
 
 def _axes(grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:

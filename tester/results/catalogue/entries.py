@@ -12,7 +12,8 @@ from typing import Protocol
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
 from tester.base.trouble import TroubleError
 from tester.base.words import finite
-from tester.results.run_results import Measured, results_of
+from tester.results.run_results import results_of
+from tester.results.table_rows import Measured
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import RunStatus, run_folders, under_way
 from tester.store.run_reader import DATABASE, RunReader

@@ -18,7 +18,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final, NamedTuple
 
-from tester.results.run_results import Measured, results_of
+from tester.results.run_results import results_of
+from tester.results.table_rows import Measured
 from tester.run.session import Session, SessionOptions
 from tester.run.sweep.case import Unseen
 from tester.store.run_reader import RunReader

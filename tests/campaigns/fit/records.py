@@ -17,7 +17,7 @@ import numpy as np
 from sim.physics import laws
 from sim.physics.wlf import WlfBellParameters
 from tester.analysis.fit.fit_law import Common, FitPoint, Law, Source
-from tester.analysis.repeats import REPEATABILITY
+from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.terms import Acts
 from tester.kinds.specimen_on_track.budget import TERMS as TRACK_TERMS
 from tester.kinds.specimen_on_track.fit.fits import FITS as TRACK

@@ -18,8 +18,8 @@ from tempfile import TemporaryDirectory
 from tester.analysis.blocks import Block, blocks_from_samples
 from tester.analysis.flags import CARRY_OVER, NOT_SHOWN, flags_in
 from tester.analysis.judge import judge
+from tester.analysis.left_out import counting
 from tester.analysis.reduce import counted, reduce_repeat
-from tester.analysis.repeats import counting
 from tester.analysis.results import NOT_JUDGED, Judgement, RepeatResult
 from tester.base.quantities import Means
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES

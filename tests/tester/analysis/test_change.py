@@ -10,8 +10,9 @@ import pytest
 
 from tester.analysis.change import LIMIT_PERCENT, change_between, change_within, greatest
 from tester.analysis.flags import CHANGED, flags_in
+from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.reduce import reduce_repeat
-from tester.analysis.repeats import REPEATABILITY, combine_repeats
+from tester.analysis.repeats import combine_repeats
 from tester.analysis.results import NAN, ConditionStatus
 from tester.analysis.schemes import PAIRS
 from tests.tester.analysis.series import blocks, correlated

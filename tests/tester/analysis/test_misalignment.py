@@ -8,9 +8,8 @@ from statistics import fmean
 
 import pytest
 
-from tester.analysis.misalignment import NOT_KNOWN, misalignment
 from tester.analysis.repeats import ConditionResult, combine_repeats
-from tester.analysis.schemes import PAIRS
+from tester.analysis.schemes import NOT_KNOWN, PAIRS, misalignment
 from tests.tester.analysis.pairs import series
 
 

@@ -8,14 +8,8 @@ from math import isnan, sqrt
 import pytest
 
 from tester.analysis.flags import NOT_SHOWN, SHORT
-from tester.analysis.repeats import (
-    ConditionResult,
-    cochran_critical,
-    combine_repeats,
-    combine_replicates,
-    excess_fluctuation,
-    outliers,
-)
+from tester.analysis.left_out import cochran_critical, excess_fluctuation, outliers
+from tester.analysis.repeats import ConditionResult, combine_repeats, combine_replicates
 from tester.analysis.results import ConditionStatus, Judgement, RepeatResult, RepeatStatus
 from tests.tester.analysis.series import means_of
 

@@ -229,7 +229,7 @@ def test_a_law_of_materials_is_fitted_on_the_surface_that_is_named(
     assert {name: one["value"] for name, one in parameters.items()} == pytest.approx(
         {"tau_s0": 12e3, "v_c": 1.0, "n": 0.6}, rel=0.02
     )
-    assert "does not say on what surface" in out(capsys, "fit", "one", "--law", "greta", code=1)
+    assert "does not name its surface" in out(capsys, "fit", "one", "--law", "greta", code=1)
 
 
 def tread(temperature_c: float, speed_m_s: float) -> float:

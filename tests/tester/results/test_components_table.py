@@ -12,7 +12,8 @@ import pytest
 from tester.analysis.components import RUBBER_K, SENSITIVITY
 from tester.analysis.kelvin import slope_of_pairs
 from tester.results.components_table import FilmPair, film_pairs, means_of
-from tester.results.run_results import Measured, RunResults, TableRow, results_of
+from tester.results.run_results import RunResults, results_of
+from tester.results.table_rows import Measured, TableRow
 from tester.store.records import ConditionInfo
 from tester.store.run_reader import RunReader
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run

@@ -14,7 +14,8 @@ from tester.inputs.rig.missing import complete
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
 from tester.kinds.specimen_on_track.rig import HeatConfig, TrackConfig
 from tester.results import fit_points
-from tester.results.run_results import Measured, RunResults, results_of
+from tester.results.run_results import RunResults, results_of
+from tester.results.table_rows import Measured
 from tester.store.records import RunInfo
 from tester.store.run_reader import RunReader
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from sim.physics.laws import NO_SETTING, FrictionLaw
-from tester.analysis.repeats import REPEATABILITY
+from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.uncertainty import Budget
 from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource

@@ -12,7 +12,8 @@ from tester.analysis.kelvin import CONDITION_SCATTER
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
 from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.results.fit_points import ConditionReader, Scatter, points_of
-from tester.results.run_results import Measured, results_of
+from tester.results.run_results import results_of
+from tester.results.table_rows import Measured
 from tester.store.run_reader import RunReader
 
 _KNOWN = frozenset({"temperature", "load", "slip_velocity", "wheel_speed"})

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, Final, cast
 
-from tester.analysis import closest
+from tester.analysis.left_out import CLOSEST_OF
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import shown
 from tester.inputs.recipe.conditions import Condition
@@ -61,7 +61,7 @@ def reference_problems(recipe: WheelRecipe, tree: Tree) -> Iterator[Problem]:
     if one.compound is not None and one.wheel is None:
         message = "compound: a reference on whichever wheel is on has that wheel's compound (expected wheel with it)"
         yield tree.problem((*AT, "compound"), message)
-    if measure.combine == "paper" and one.repeats is not None and one.repeats.at_least != closest.OF:
-        message = f"repeats: combine: paper takes the closest two of {closest.OF} (expected {closest.OF})"
+    if measure.combine == "paper" and one.repeats is not None and one.repeats.at_least != CLOSEST_OF:
+        message = f"repeats: combine: paper takes the closest two of {CLOSEST_OF} (expected {CLOSEST_OF})"
         yield tree.problem((*AT, "repeats"), message)
     yield from recipe.part.sense(measure, as_grid(one, recipe), AT, tree)

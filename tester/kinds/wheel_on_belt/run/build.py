@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import nan
 
 from drivers.joined_cell import JoinedCell
-from tester.analysis.closest import combining_of
+from tester.analysis.left_out import combining_of
 from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N

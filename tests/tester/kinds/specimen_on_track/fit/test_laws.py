@@ -175,8 +175,8 @@ def test_a_bell_warns_of_conditions_beyond_its_shift() -> None:
 @pytest.mark.parametrize(
     ("group", "surface", "figures", "message"),
     [
-        ("SBR, wet on road", "", {}, "greta has an adhesion, and is of dry contact"),
-        ("SBR, dry", "", {}, "does not say on what surface"),
+        ("SBR, wet on road", "", {}, "greta includes adhesion, it is for dry contact"),
+        ("SBR, dry", "", {}, "does not name its surface"),
         ("SBR, dry on road", "ice", {}, "no surface 'ice'"),
         ("NR, dry on road", "", {}, "no compound 'NR'"),
         ("SBR, dry on road", "", {"height": 1.0}, "greta has no height"),

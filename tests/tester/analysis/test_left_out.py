@@ -8,9 +8,9 @@ from statistics import fmean, pstdev
 
 import pytest
 
-from tester.analysis import closest
-from tester.analysis.closest import combining_of, taken
+from tester.analysis import left_out
 from tester.analysis.flags import CLOSEST_TWO, flags_in
+from tester.analysis.left_out import combining_of, taken
 from tester.analysis.repeats import ConditionResult, combine_repeats
 from tests.tester.store.build import result
 
@@ -58,7 +58,7 @@ def test_how_much_the_mean_of_the_closest_two_scatters() -> None:
     for _ in range(40_000):
         values = [random.gauss(0.0, 1.0) for _ in range(3)]
         means.append(fmean(values[i] for i in taken(values, "paper")))
-    assert pstdev(means) == pytest.approx(closest.STANDARD, abs=0.012)
+    assert pstdev(means) == pytest.approx(left_out.CLOSEST_STANDARD, abs=0.012)
 
 
 def test_the_run_says_how_its_repeats_are_combined() -> None:
