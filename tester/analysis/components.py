@@ -24,7 +24,7 @@ from tester.analysis.kelvin import Slope
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
-from tester.analysis.uncertainty import CONFIDENCE, Contribution, effective_df
+from tester.analysis.uncertainty import CONFIDENCE, effective_df
 
 SENSITIVITY: Final = "sensitivity to temperature"
 """Name of the contribution of the difference between the contact's temperatures."""
@@ -96,7 +96,7 @@ def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm
         for term, scale in scaled:
             if term.common:
                 so_far, df = common.get(term.name, (0.0, inf))
-                common[term.name] = so_far + scale * _error(term), min(df, term.df)
+                common[term.name] = so_far + scale * term.error, min(df, term.df)
         if not all(both):
             independent.append((NAN, inf))
         return PartValue(value, tuple(independent), common)
@@ -107,11 +107,6 @@ def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm
         share=combined(mu_f / mu_d, -mu_f / mu_d**2, 1.0 / mu_d),
         warmer_k=warmer_k,
     )
-
-
-def _error(contribution: Contribution) -> float:
-    """Return the error of mu, with its sign, when the cause is off by its standard uncertainty."""
-    return contribution.input_u * contribution.sensitivity
 
 
 def mean_of(values: Sequence[PartValue]) -> PartValue:

@@ -79,8 +79,7 @@ def difference(first: ConditionResult, second: ConditionResult, *, same_rig: boo
 
 
 def _error(contribution: Contribution | None) -> float:
-    """Return the error of mu, with its sign, when the cause is off by its standard uncertainty."""
-    return contribution.input_u * contribution.sensitivity if contribution is not None else 0.0
+    return contribution.error if contribution is not None else 0.0
 
 
 def _df(contribution: Contribution | None) -> float:

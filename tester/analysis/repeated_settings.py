@@ -101,8 +101,7 @@ def _shared(term: Term, by: Surroundings) -> str:
 
 
 def _part(contribution: Contribution, condition: int, common: str, by: Surroundings) -> ErrorPart:
-    signed = contribution.input_u * contribution.sensitivity
-    value = signed if isfinite(signed) else contribution.standard
+    value = contribution.error if isfinite(contribution.error) else contribution.standard
     estimate = ""
     if contribution.name == REPEATABILITY:
         estimate = "pool" if contribution.df == float(by.pool.df) else f"condition {condition}"

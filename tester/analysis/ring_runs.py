@@ -6,11 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import inf, isfinite, nan, sqrt
-from typing import TypeAlias
 
 from tester.analysis.ring_errors import SPEEDS_REV_S, RingSector, RingSegment, sector_of, speed_words
-
-Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+from tester.base.words import Json
 
 GROWS_Z = 2.0
 """A slope of this many standard uncertainties or more is more than chance (95 %)."""

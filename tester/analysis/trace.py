@@ -13,6 +13,9 @@ REVOLUTIONS: Final = "rev"
 """Unit of the position that counts blocks where it is a rotation angle."""
 
 
+COLUMNS: Final = ("time_s", "position", "along", "across", "normal")
+
+
 class Trace:
     """Accepted samples of whole blocks, contact by contact, in order of time.
 
@@ -40,13 +43,7 @@ class Trace:
         """Return the columns of each contact as arrays, by name."""
         import numpy as np
 
-        columns: dict[str, Array] = {
-            "time_s": np.array(self.time_s, dtype=np.float64),
-            "position": np.array(self.position, dtype=np.float64),
-            "along": np.array(self.along, dtype=np.float64),
-            "across": np.array(self.across, dtype=np.float64),
-            "normal": np.array(self.normal, dtype=np.float64),
-        }
+        columns: dict[str, Array] = {name: np.array(getattr(self, name), dtype=np.float64) for name in COLUMNS}
         edges = [*self.starts, len(self)]
         return [{name: column[a:b] for name, column in columns.items()} for a, b in pairwise(edges)]
 

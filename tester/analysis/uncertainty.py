@@ -36,6 +36,11 @@ class Contribution:
     sensitivity: float = NAN
     common: str = ""
 
+    @property
+    def error(self) -> float:
+        """Return the error of mu, with its sign, when the cause is off by its standard uncertainty."""
+        return self.input_u * self.sensitivity
+
 
 def contribution(
     name: str,

@@ -33,7 +33,7 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     from tester.cli.kind_words import material_of
     from tester.report.page import page_of
     from tester.report.report_build import report_of
-    from tester.results import write_file
+    from tester.results.run_files import write_file
 
     records = [_record(run_folder(name)) for name in dict.fromkeys(runs)]
 

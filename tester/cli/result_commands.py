@@ -130,7 +130,7 @@ def _budgets(results: RunResults) -> Iterator[str]:
 
 
 def _summary(name: str, results: RunResults) -> dict[str, Json]:
-    from tester.results.pieces_table import pieces_table
+    from tester.results.measured_tables import pieces_table
     from tester.results.settings_table import settings_table
     from tester.results.tally import tally_of
 
@@ -184,7 +184,7 @@ def _conditions(results: RunResults) -> Iterator[Json]:
     """Yield the rows of the table of conditions, each with its budget and, but for a combined one, its repeats."""
     from tester.results.budget_table import terms_table
     from tester.results.conditions_table import conditions_table
-    from tester.results.repeats_table import repeats_table
+    from tester.results.measured_tables import repeats_table
 
     table, repeats = conditions_table(results), repeats_table(results)
     for row, record in zip(table.rows, table.records(), strict=True):
@@ -285,7 +285,8 @@ def export(run: str, kind: Format, out: Path | None, decimals: int) -> None:
     Conditions without a value that can be trusted are not in the appendix and are named on stderr; so are values that
     are to be taken with care.
     """
-    from tester.results import Record, write_format
+    from tester.results.formats import Record
+    from tester.results.run_files import write_format
     from tester.store.run_reader import RunReader
 
     if out is None and not kind.is_text:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from tester.machine.interlock_sheet import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
-    from tester.results.ring_part import RingPart
+    from tester.results.run_results import RingPart
 
 
 def found_at(place: str) -> Callable[[], Any]:

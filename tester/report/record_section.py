@@ -9,9 +9,8 @@ from pathlib import Path
 
 from tester.analysis.results import RepeatStatus
 from tester.analysis.ring_runs import RingRun
-from tester.results.manifest import MANIFEST
-from tester.results.ring_part import RingPart
-from tester.results.run_results import RunResults, results_of
+from tester.results.run_files import MANIFEST
+from tester.results.run_results import RingPart, RunResults, results_of
 from tester.results.table_rows import Measured
 from tester.results.verify import Verification, verify
 from tester.store.records import (

@@ -27,7 +27,7 @@ from tester.report.layout import (
 )
 from tester.report.record_section import ALARMING, RunRecord
 from tester.results.columns import Output
-from tester.results.pieces_table import pieces_table
+from tester.results.measured_tables import pieces_table
 from tester.results.references_table import ReferenceRow, references_table
 
 EVENTS_AT_MOST = 200

@@ -11,9 +11,8 @@ from tester.base import clock
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
 from tester.base.trouble import TroubleError, in_words
 from tester.base.words import plain_text
-from tester.results import write_all
 from tester.results.formats import FORMATS
-from tester.results.manifest import MANIFEST, manifest_problems
+from tester.results.run_files import MANIFEST, manifest_problems, write_all
 from tester.store.amend import add_exclusion, standing
 from tester.store.records import StoredExclusion, StoredRepeat
 from tester.store.run_reader import DATABASE, RunReader

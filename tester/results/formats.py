@@ -15,10 +15,9 @@ from typing import BinaryIO
 from tester.base.plugins import PluginError, plugins
 from tester.results.budget_table import budget_table
 from tester.results.directions_table import directions_table
+from tester.results.measured_tables import checks_table, pieces_table, repeats_table
 from tester.results.parquet import write_parquet
-from tester.results.pieces_table import checks_table, pieces_table
 from tester.results.references_table import references_table
-from tester.results.repeats_table import repeats_table
 from tester.results.run_results import RunResults, results_of
 from tester.results.settings_table import settings_table
 from tester.results.table_cells import Cell, encode

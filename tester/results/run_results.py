@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from math import isfinite
@@ -21,6 +21,7 @@ from tester.analysis.reference import (
     is_reference,
 )
 from tester.analysis.repeats import combine_replicates
+from tester.analysis.ring_runs import RingRun
 from tester.analysis.schemes import Misalignment, misalignment
 from tester.analysis.wear_rate import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
 from tester.base.axes import Axes
@@ -280,3 +281,17 @@ def _measured(
         combining=combining,
     )
     return Measured(stored, tuple(repeats), result, by_hand)
+
+
+@dataclass(frozen=True, slots=True)
+class RingPart:
+    """A kind's contribution for a machine that reaches a device on a turning part through a slip ring.
+
+    In words: ``title`` its name, ``counted`` the counted requests, ``turns`` the part that
+    turns it."""
+
+    title: str
+    counted: str
+    turns: str
+    of: Callable[[RunReader, str], RingRun]
+    """Returns the ring's statistics in a run of some name; raises StoreError."""

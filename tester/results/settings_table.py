@@ -8,7 +8,7 @@ from typing import Final
 
 from tester.analysis.difference import Difference
 from tester.analysis.repeated_settings import SettingMeasurement, difference_of
-from tester.results.columns import Column, Table, axis_column, piece_key
+from tester.results.columns import Column, Table, Value, axis_column, piece_key
 from tester.results.run_results import RunResults
 from tester.results.settings_compared import RepeatedSetting
 from tester.store.records import ConditionInfo
@@ -60,16 +60,9 @@ def _info(row: SettingRow) -> ConditionInfo:
     return row.info
 
 
-def _chi2(row: SettingRow) -> float | None:
-    return None if row.setting.found is None else row.setting.found.chi2
-
-
-def _limit(row: SettingRow) -> float | None:
-    return None if row.setting.found is None else row.setting.found.limit
-
-
-def _agrees(row: SettingRow) -> bool | None:
-    return None if row.setting.found is None else row.setting.found.kept
+def _agreed(row: SettingRow, name: str) -> Value:
+    """Return a figure of the setting's test; None where it was not tested."""
+    return getattr(row.setting.found, name, None)
 
 
 _WHICH: Final[tuple[Column[SettingRow], ...]] = (
@@ -81,8 +74,8 @@ _FOUND: Final[tuple[Column[SettingRow], ...]] = (
     Column("difference", "difference from the first", lambda row: row.from_first.value, "", 3),
     Column("u_difference", "U of the difference", lambda row: row.from_first.expanded, "", 3),
     Column("one_piece", "on one piece", lambda row: row.one_piece),
-    Column("chi2", "chi-squared", _chi2, "", 1),
-    Column("chi2_limit", "limit", _limit, "", 1),
-    Column("agrees", "agrees", _agrees),
+    Column("chi2", "chi-squared", lambda row: _agreed(row, "chi2"), "", 1),
+    Column("chi2_limit", "limit", lambda row: _agreed(row, "limit"), "", 1),
+    Column("agrees", "agrees", lambda row: _agreed(row, "kept")),
     Column("stands_out", "stands out most", lambda row: row.stands_out),
 )

@@ -1,7 +1,7 @@
 """Cells of a CSV file: numbers stay numbers, text is never a formula, and both read back unchanged.
 
 RFC 4180 with LF line ends and UTF-8. A text cell that a spreadsheet could take for a formula gets an apostrophe in
-front (so does one that begins with an apostrophe, which makes it reversible: ``unescaped``).
+front (so does one that begins with an apostrophe, which makes it reversible).
 """
 
 from __future__ import annotations
@@ -32,11 +32,6 @@ def text(value: str) -> str:
     ``?``."""
     value = harmless(value)
     return f"'{value}" if value[:1] in _FORMULA and value else value
-
-
-def unescaped(cell: str) -> str:
-    """Return the original of an escaped ``text``, as far as it was harmless."""
-    return cell[1:] if cell[:1] == "'" else cell
 
 
 def number(value: float | None) -> Number:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from hashlib import file_digest
 from pathlib import Path
 
 from tester import __version__
@@ -13,8 +12,8 @@ from tester.base.source import InvalidSource, read_tree
 from tester.base.trouble import in_words
 from tester.results.exclude import is_unfinished
 from tester.results.formats import Record
-from tester.results.manifest import MANIFEST, manifest_head, manifest_problems
 from tester.results.recomputed import coefficient_problems, table_problems
+from tester.results.run_files import MANIFEST, file_sha256, manifest_head, manifest_problems
 from tester.results.run_results import RunResults
 from tester.store.amend import problems as exclusion_problems
 from tester.store.amend import standing
@@ -162,13 +161,8 @@ def _materials(folder: Path, run: StoredRun) -> Iterator[str]:
         path = folder / material.file
         if not path.is_file():
             yield f"{material.file}: missing"
-        elif _file_sha256(path) != material.sha256:
+        elif file_sha256(path) != material.sha256:
             yield f"{material.file}: not what the run was made with"
-
-
-def _file_sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return file_digest(file, "sha256").hexdigest()
 
 
 def _sha256(path: Path) -> str:

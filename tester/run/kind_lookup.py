@@ -12,7 +12,7 @@ from tester.analysis.ring_runs import RingRun
 from tester.base.source import InvalidSource, Problem, read_tree
 from tester.inputs.rig import Rig
 from tester.kinds import PACKAGED, UnknownKindError, find
-from tester.results.ring_part import RingPart
+from tester.results.run_results import RingPart
 from tester.store.run_reader import RunReader
 
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ from pathlib import Path
 from tester.base import clock
 from tester.base.source import InvalidSource, load_tree
 from tester.inputs.rig import Rig
-from tester.results import write_all
-from tester.results.manifest import MANIFEST, manifest_problems
+from tester.results.run_files import MANIFEST, manifest_problems, write_all
 from tester.store.amend import acknowledge_trips
 from tester.store.record_schema import StoreError
 from tester.store.records import StoredTrip

@@ -27,7 +27,7 @@ from tester.machine.run import Outcome, Run
 from tester.machine.run_parts import Part
 from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import TimeLeft
-from tester.results import doubtful, write_all
+from tester.results.run_files import doubtful, write_all
 from tester.results.run_results import results_of
 from tester.results.table_rows import TableRow
 from tester.run.endings import EXIT_CODES, CannotStartError, PartEnd, RunEnding, StopLevel, ending_of

@@ -11,7 +11,7 @@ from tester.base.axes import Axes, Axis, ListWords, Setpoint, condition_words
 from tester.base.quantities import GATE
 from tester.results.columns import Output, Table
 from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table
-from tester.results.repeats_table import repeats_table
+from tester.results.measured_tables import repeats_table
 from tester.results.run_results import RunResults, results_of
 from tester.results.tally import flag_words, tally_of
 from tester.store.records import StoredExclusion

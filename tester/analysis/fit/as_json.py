@@ -25,21 +25,12 @@ def errors(figures: Errors | None) -> Json:
 
 def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> dict[str, Json]:
     """Return the fit of a group; ``force``: with intervals that are not reliable."""
-    law, sure = fit.law, force or not fit.silent
+    law = fit.law
     table: Json = dict(law.table(fit.parameters)) if law.table is not None else None
     return {
         "group": fit.group,
         "conditions": len(fit.points),
-        "parameters": {
-            parameter.name: {
-                "value": value,
-                "unit": parameter.unit,
-                "interval": None if not force and fit.why_no_interval(parameter.name) else interval(pair),
-                "no_interval": fit.why_no_interval(parameter.name),
-                "held": parameter.name in fit.held,
-            }
-            for parameter, value, pair in zip(law.parameters, fit.parameters, fit.intervals, strict=True)
-        },
+        "parameters": _parameters(fit, force),
         "table": table,
         "condition_number": finite(fit.condition_number),
         "resamples": {"fitted": len(fit.resamples.parameters), "drawn": fit.resamples.drawn},
@@ -57,22 +48,40 @@ def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> d
         "lack_of_fit": _lack(fit),
         "impossible": {**fit.impossible},
         "beyond": [*fit.beyond],
-        "trends": {
-            "at": {v.name: v.scale * x for v, x in zip(law.variables, fit.trends.at, strict=True)},
-            "each": [
-                {
-                    "variable": row.variable.name,
-                    "trend": row.word,
-                    "peak": finite(row.variable.scale * row.peak),
-                    "peak_interval": [finite(row.variable.scale * end) for end in row.peak_interval] if sure else None,
-                    "inside": row.inside,
-                    "exponent" if row.variable.ratio else "per_unit": row.exponent,
-                    "interval": interval(row.exponent_interval) if sure and not row.own_heat else None,
-                    "agree": finite(row.agree),
-                }
-                for row in (fit.trends.each if sure or not fit.lack.shown else ())
-            ],
-        },
+        "trends": _trends(fit, force),
+    }
+
+
+def _parameters(fit: GroupFit, force: bool) -> dict[str, Json]:
+    return {
+        parameter.name: {
+            "value": value,
+            "unit": parameter.unit,
+            "interval": None if not force and fit.why_no_interval(parameter.name) else interval(pair),
+            "no_interval": fit.why_no_interval(parameter.name),
+            "held": parameter.name in fit.held,
+        }
+        for parameter, value, pair in zip(fit.law.parameters, fit.parameters, fit.intervals, strict=True)
+    }
+
+
+def _trends(fit: GroupFit, force: bool) -> dict[str, Json]:
+    sure = force or not fit.silent
+    return {
+        "at": {v.name: v.scale * x for v, x in zip(fit.law.variables, fit.trends.at, strict=True)},
+        "each": [
+            {
+                "variable": row.variable.name,
+                "trend": row.word,
+                "peak": finite(row.variable.scale * row.peak),
+                "peak_interval": [finite(row.variable.scale * end) for end in row.peak_interval] if sure else None,
+                "inside": row.inside,
+                "exponent" if row.variable.ratio else "per_unit": row.exponent,
+                "interval": interval(row.exponent_interval) if sure and not row.own_heat else None,
+                "agree": finite(row.agree),
+            }
+            for row in (fit.trends.each if sure or not fit.lack.shown else ())
+        ],
     }
 
 

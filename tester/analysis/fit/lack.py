@@ -111,30 +111,17 @@ def lack_of(problem: FitProblem, fitted: Array, draws: int = DRAWS) -> Lack:
     denominator = denominator_of(problem.points)
     if denominator is None:
         return Lack(spread)
-    chance = _Chance(problem, fitted, denominator, draws)
+    chance = Chance(problem, fitted, denominator, draws)
     tests = chance.judge(problem.residuals(fitted, problem.y, np.zeros(problem.priors)) / problem.reference)
     visible = denominator.standard * chance.visible(len(tests)) / sqrt(len(problem.points))
     return Lack(spread, denominator, tests, visible)
 
 
-def power_of(problem: FitProblem, fitted: Array, departure: Array, draws: int = DRAWS) -> float:
-    """Return the share of records in which a departure of ln mu from the law, shape (n,), is refused; NaN without a
-    denominator.
-
-    It is that of the linearised law: the part that the parameters absorb near the fit is invisible.
-    """
-    denominator = denominator_of(problem.points)
-    if denominator is None:
-        return NAN
-    chance = _Chance(problem, fitted, denominator, draws)
-    moved = np.concatenate([departure / problem.sigma, np.zeros(problem.priors)])
-    return chance.refused(moved)
-
-
-class _Chance:
+class Chance:
     """Simulated residuals of the right law, in standard deviations, and their test statistics."""
 
     def __init__(self, problem: FitProblem, fitted: Array, denominator: Denominator, draws: int) -> None:
+        """Draw errors and fit them, with the law linearised near ``fitted``."""
         random = np.random.default_rng(SEED)
         self._n, size = len(problem.points), len(problem.points) + problem.priors
         self._negligible: Array = NEGLIGIBLE / problem.sigma
@@ -162,17 +149,6 @@ class _Chance:
         return tuple(
             LackTest(names[name], p_value, bad) for (name, p_value), bad in zip(p.items(), failed, strict=True)
         )
-
-    def refused(self, departure: Array) -> float:
-        """Return the share of draws that are refused with a departure added, shape (n + priors,)."""
-        f, runs = self._figures(self._without(self._errors + departure), self._scale)
-        sorted_f = np.sort(self._f)
-        p: list[Array] = [(sorted_f.size - np.searchsorted(sorted_f, f, side="left") + 1) / (sorted_f.size + 1)]
-        for name, runs_of in runs.items():
-            sorted_runs = np.sort(self._runs[name])
-            p.append((np.searchsorted(sorted_runs, runs_of, side="right") + 1) / (sorted_runs.size + 1))
-        smallest: Array = np.min(np.stack(p), axis=0)  # Holm refuses just where the smallest passes its level
-        return float(np.mean(smallest <= LEVEL / len(p)))
 
     def visible(self, tests: int) -> float:
         """Return the length of a departure, in standard deviations, that the F test detects in ``SEEN`` of cases."""

@@ -9,8 +9,7 @@ from sim.physics.wlf import GLASS_TO_REFERENCE_K
 from tester.analysis.master_curve.fitted_curve import Master
 from tester.analysis.master_curve.overlap import TemperaturePair
 from tester.analysis.master_curve.verdict import TEST_WORDS
-
-Plain = str | int | float | bool | None | list["Plain"] | dict[str, "Plain"]
+from tester.base.words import Json, finite
 
 HEADER = "log10 aT v  mu as measured      degC        v /m/s  off curve %"
 
@@ -48,7 +47,7 @@ def summary_lines(master: Master) -> Iterator[str]:
     )
     yield f"Ts {_ts_words(master)}; reference {master.reference_c:g} degC"
     if master.glass_c is not None:
-        expected_c = _expected(master.glass_c)
+        expected_c = master.glass_c + GLASS_TO_REFERENCE_K
         yield f"the compound's file says Tg {master.glass_c:g} degC: Ts = Tg + 50 K is {expected_c:g} degC"
     c = master.collapse
     yield (
@@ -81,10 +80,6 @@ def _ts_words(master: Master) -> str:
     return f"{c.ts_c:.2f} degC (95 %: {low:.2f} to {high:.2f}; standard uncertainty {parts})"
 
 
-def _expected(glass_c: float) -> float:
-    return glass_c + GLASS_TO_REFERENCE_K
-
-
 def _rule_words(speed_m_s: float, decades: float) -> str:
     if not isfinite(speed_m_s):
         return "the moduli have no such maximum where they are known"
@@ -108,10 +103,10 @@ def _pair_lines(master: Master) -> Iterator[str]:
         yield f"thin overlap, where a shift says little: {', '.join(thin)}"
 
 
-def plain(master: Master) -> dict[str, Plain]:
+def plain(master: Master) -> dict[str, Json]:
     """Return a master curve as data: SI units but degC, shifts in decades, NaN and infinity as None."""
     c, judged = master.collapse, master.judged
-    rows: list[Plain] = [
+    rows: list[Json] = [
         {
             "x": row.x,
             "mu_as_measured": row.mu,
@@ -121,7 +116,7 @@ def plain(master: Master) -> dict[str, Plain]:
         }
         for row in master.rows()
     ]
-    tests: list[Plain] = [
+    tests: list[Json] = [
         {"asks": TEST_WORDS[test.name], "f": test.f, "critical": test.critical, "failed": test.failed}
         for test in judged.tests
     ]
@@ -142,12 +137,12 @@ def plain(master: Master) -> dict[str, Plain]:
         "interior_knots": c.interior,
         "tests": tests,
         "peaks": [
-            {"speed_m_s": peak.speed_m_s, "mu": peak.mu, "interval_m_s": [_known(end) for end in peak.interval_m_s]}
+            {"speed_m_s": peak.speed_m_s, "mu": peak.mu, "interval_m_s": [finite(end) for end in peak.interval_m_s]}
             for peak in master.peaks
         ],
         "bumps": master.bumps,
         "rules": [
-            {"rule": rule.name, "speed_m_s": _known(rule.speed_m_s), "decades": _known(rule.decades)}
+            {"rule": rule.name, "speed_m_s": finite(rule.speed_m_s), "decades": finite(rule.decades)}
             for rule in master.rules
         ],
         "neighbours": [_pair(pair) for pair in master.pairs],
@@ -155,17 +150,13 @@ def plain(master: Master) -> dict[str, Plain]:
     }
 
 
-def _pair(pair: TemperaturePair) -> Plain:
+def _pair(pair: TemperaturePair) -> Json:
     return {
         "colder_c": pair.colder_c,
         "warmer_c": pair.warmer_c,
-        "free": _known(pair.free),
+        "free": finite(pair.free),
         "wlf": pair.wlf,
-        "difference": _known(pair.difference),
+        "difference": finite(pair.difference),
         "overlap": pair.overlap,
         "thin": pair.thin,
     }
-
-
-def _known(value: float) -> float | None:
-    return value if isfinite(value) else None

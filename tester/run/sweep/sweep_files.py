@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 from tester.base.axes import Axes
-from tester.results import write_file
+from tester.results.run_files import write_file
 from tester.results.table_cells import encode, line
 from tester.run.sweep import sweep_tables
 from tester.run.sweep.case import CaseResult

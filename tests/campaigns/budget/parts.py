@@ -13,7 +13,7 @@ _SCALED: Final = (
     ("what is not known of the film's sensitivity", "unknown = mu_f * hypot", "unknown = {} * mu_f * hypot"),
     ("own uncertainty of a component", "(abs(scale) * term.standard, term.df)",
      "({} * abs(scale) * term.standard, term.df)"),
-    ("common uncertainty of a component", "so_far + scale * _error(term)", "so_far + {} * scale * _error(term)"),
+    ("common uncertainty of a component", "so_far + scale * term.error", "so_far + {} * scale * term.error"),
     ("own uncertainty in a mean", "tuple(\n        (share * u, df)", "tuple(({} * share * u, df)"),
     ("common uncertainty in a mean", "so_far + share * u, min", "so_far + {} * share * u, min"),
     ("expanded uncertainty of a component", "effective_df(self._parts, standard)) * standard",
@@ -28,8 +28,8 @@ _OTHERS: Final = (
     ("the difference of temperatures is left out", "hypot(apart_k, RUBBER_K)", "RUBBER_K"),
     ("the correction does not scale the film's uncertainty", "scales = (to_dry, to_film * factor)",
      "scales = (to_dry, to_film)"),
-    ("common errors add up in squares", "so_far + scale * _error(term), min(df, term.df)",
-     "hypot(so_far, scale * _error(term)), min(df, term.df)"),
+    ("common errors add up in squares", "so_far + scale * term.error, min(df, term.df)",
+     "hypot(so_far, scale * term.error), min(df, term.df)"),
     ("common errors count as each one's own", "for term, scale in scaled if not term.common]",
      "for term, scale in scaled]"),
     ("the sensitivity's degrees of freedom are few", "{SENSITIVITY: (to_film * unknown, inf)}",
@@ -63,8 +63,8 @@ _OF_RUNS: Final = (
     ("a film is held against another replicate",
      "return measured.info.specimen, measured.info.replicate, *measured.info.setpoint.key(without)",
      "return measured.info.specimen, 0, *measured.info.setpoint.key(without)"),
-    ("a film is held against another condition", "setpoint.key(without)",
-     "setpoint.but(load=0.0).key(without)"),
+    ("a film is held against another condition", "*measured.info.setpoint.key(without)",
+     "measured.info.compound, () if without == AXIS else measured.info.setpoint.key(without)[1]"),
     ("a sensitivity that conditions tell is not taken", "return slope if slope is not None else UNKNOWN",
      "return UNKNOWN"),
     ("the sensitivity is that of all interfaces", "key = _key(measured, _TEMPERATURE)",
@@ -82,7 +82,7 @@ def of_components() -> Iterator[Mutant]:
 
 
 _PROBLEM, _LACK, _RESAMPLE = (f"tester/analysis/fit/{name}.py" for name in ("problem", "lack", "resample"))
-_POINTS = "tester/results/fit_points.py"
+_POINTS, _POWER = "tester/results/fit_points.py", "tests/campaigns/fit/power.py"
 _OF_FIT = tests_of("analysis/fit/lack", "analysis/fit/joint")
 _OF_POINTS = tests_of("kinds/wheel_on_belt/fit/run_data", "kinds/specimen_on_track/fit/run_data")
 _FIT_SCALED: Final = (
@@ -122,7 +122,7 @@ _FIT_OTHERS: Final = (
      "signs[:, pairs[:, 1]] >= 0.0"),
     (_LACK, "neighbours differ in anything", "if i != variable)", "if i < 0)"),
     (_LACK, "a law fails only where all tests do", "return any(test.failed", "return all(test.failed"),
-    (_LACK, "a power is that of one test", "np.mean(smallest <= LEVEL / len(p))", "np.mean(smallest <= 20.0 * LEVEL)"),
+    (_POWER, "a power is that of one test", "np.mean(smallest <= LEVEL / len(p))", "np.mean(smallest <= 20.0 * LEVEL)"),
     (_RESAMPLE, "intervals are of 68 %", "TAILS: Final = (0.025, 0.975)", "TAILS: Final = (0.16, 0.84)"),
     (_RESAMPLE, "intervals are of 99.9 %", "TAILS: Final = (0.025, 0.975)", "TAILS: Final = (0.0005, 0.9995)"),
     (_POINTS, "repeats count by the whole budget", "part.name == REPEATABILITY), None)", "True), None)"),

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from tester.analysis.flags import CHANGED, STICK_SLIP, THERMOMETER
-from tester.results import results_of
+from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent

@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.results import write_all
-from tester.results.manifest import MANIFEST, manifest_text
+from tester.results.run_files import MANIFEST, manifest_text, write_all
 from tester.results.verify import verify
 from tester.store.chain import add_entries, hashes_of, tables_in
 from tester.store.run_reader import RunReader

@@ -8,8 +8,8 @@ from tester.analysis.wear_rate import WearCheck
 from tester.base import clock
 from tester.cli.console import Console
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.results import write_all
 from tester.results.exclude import Word, record_word
+from tester.results.run_files import write_all
 from tester.run.session import Session, SessionOptions
 from tester.store.writer import RunWriter
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT

@@ -115,7 +115,7 @@ def test_a_doubt_about_a_value_of_the_appendix_is_told(stopped: str) -> None:
 
 
 def test_export_writes_to_stdout_what_the_run_folder_holds(home: Path) -> None:
-    from tester.results import write_all
+    from tester.results.run_files import write_all
 
     write_all(home / "runs" / "one")
     for kind in ("appendix", "conditions", "repeats"):

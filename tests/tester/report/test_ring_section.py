@@ -14,7 +14,7 @@ from tester.report.page import page_of
 from tester.report.record_section import MachineWords, RunRecord, read_record
 from tester.report.report_build import report_of
 from tester.report.ring_section import angle_chart, ring_sections, ring_trend_sections, trend_chart
-from tester.results.ring_part import RingPart
+from tester.results.run_results import RingPart
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 
 pytest.importorskip("matplotlib", reason="needs the extra `report`")

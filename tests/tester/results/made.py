@@ -13,3 +13,8 @@ def made(kind: str, reader: RunReader, decimals: int = 2) -> bytes:
     file = BytesIO()
     FORMATS[kind].write(Record(reader, decimals), file)
     return file.getvalue()
+
+
+def unescaped(cell: str) -> str:
+    """Return the original of an escaped text cell, as far as it was harmless."""
+    return cell[1:] if cell[:1] == "'" else cell

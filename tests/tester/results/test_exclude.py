@@ -9,9 +9,11 @@ import pytest
 
 from tester.analysis.flags import SHORT
 from tester.base.lock import RUN_LOCK, ExclusiveUse
-from tester.results import TableRow, exclude, write_all
+from tester.results import exclude
 from tester.results.exclude import CannotExcludeError, Word, parse_target, record_word
+from tester.results.run_files import write_all
 from tester.results.run_results import RunResults, results_of
+from tester.results.table_rows import TableRow
 from tester.results.verify import verify
 from tester.store.run_reader import RunReader
 from tests.tester.store.build import RUN, small_run

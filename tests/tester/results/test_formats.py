@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 from tester.base.plugins import ALLOW_VARIABLE, PluginError, plugins
 from tester.cli.result_commands import export as export_command
-from tester.results import write_all
 from tester.results.formats import FORMATS, format_names, format_of
+from tester.results.run_files import write_all
 from tests.tester.base.test_plugins import install
 from tests.tester.store.build import small_run
 

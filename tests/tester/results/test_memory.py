@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.results import write_format
 from tester.results.formats import FORMATS, Record
+from tester.results.run_files import write_format
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.store.build import RUN, Clock, row
@@ -50,7 +50,7 @@ def test_csv_takes_no_more_memory_for_a_run_five_times_as_long(tmp_path: Path) -
 EXPORT = """
 import resource, sys
 from pathlib import Path
-from tester.results import write_format
+from tester.results.run_files import write_format
 from tester.results.formats import FORMATS, Record
 from tester.store.run_reader import RunReader
 folder, kind = Path(sys.argv[1]), sys.argv[2]

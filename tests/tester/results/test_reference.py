@@ -13,7 +13,7 @@ import pytest
 from tester.analysis.flags import OUT_OF_LIMITS, flags_in
 from tester.cli.ending import ending_table
 from tester.cli.main import invoke
-from tester.results import write_all
+from tester.results.run_files import write_all
 from tester.results.run_results import RunResults, results_of
 from tester.store.records import Travel
 from tester.store.run_reader import RunReader

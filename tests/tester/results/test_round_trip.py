@@ -22,12 +22,11 @@ from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.machine.result_keeping import condition_records
-from tester.results.table_cells import unescaped
 from tester.store.records import SpecimenInfo
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.inputs.recipe.texts import real_rig
-from tests.tester.results.made import made
+from tests.tester.results.made import made, unescaped
 from tests.tester.store.build import RUN, Clock, result, row, small_run
 
 SEEDS = (
@@ -166,7 +165,7 @@ def test_every_seed_in_the_note(tmp_path: Path, text: str) -> None:
 def test_numbers_are_numbers_for_pandas(tmp_path: Path) -> None:
     import pandas
 
-    from tester.results import write_all
+    from tester.results.run_files import write_all
 
     folder = small_run(tmp_path / "run")
     write_all(folder)

@@ -10,7 +10,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tester.base.words import harmless
-from tester.results.table_cells import Number, encode, exact, line, nominal, number, text, unescaped
+from tester.results.table_cells import Number, encode, exact, line, nominal, number, text
+from tests.tester.results.made import unescaped
 
 TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=30)
 

@@ -15,10 +15,8 @@ import pytest
 
 from tester.analysis.results import RepeatStatus
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.results import write_all, write_file
-from tester.results.manifest import manifest_problems
-from tester.results.pieces_table import checks_table, pieces_table
-from tester.results.repeats_table import repeats_table
+from tester.results.measured_tables import checks_table, pieces_table, repeats_table
+from tester.results.run_files import manifest_problems, write_all, write_file
 from tester.results.run_results import results_of
 from tester.results.settings_table import settings_table
 from tester.store.records import PieceInfo

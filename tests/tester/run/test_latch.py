@@ -10,7 +10,7 @@ import pytest
 from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.results import write_all
+from tester.results.run_files import write_all
 from tester.results.verify import verify
 from tester.run.latch import MANUAL_RUNS, acknowledge, open_trips
 from tester.service.commands import Acknowledge, RunRecipe

@@ -9,7 +9,7 @@ import pytest
 from textual.widgets import Input
 
 from tester.kinds.wheel_on_belt.image.axes import AXES
-from tester.results import write_all
+from tester.results.run_files import write_all
 from tester.results.run_results import results_of
 from tester.service.commands import Stop
 from tester.service.state_view import ProgressView

@@ -87,13 +87,8 @@ def _table_3(joint: Sequence[float]) -> Mapping[str, float]:
     return {name: getattr(found, name) for name in ("alpha", "beta", "gamma", "a1", "a2", "b1", "b2", "tm")}
 
 
-def v2_of(joint: Sequence[float]) -> V2Parameters:
-    """Return normalised parameters as the simulator has those of v2."""
-    a, beta, tm, k, c, b2, a2 = joint
-    return V2Parameters(a, beta, tm, c, k, b2, a2)
-
-
-def _of_v2(given: V2Parameters) -> tuple[float, ...]:
+def of_v2(given: V2Parameters) -> tuple[float, ...]:
+    """Return parameters of v2 in the normalised form: a, beta, tm, k, c, b2, a2."""
     a, beta, tm, c, k, b2, a2 = astuple(given)
     return a, beta, tm, k, c, b2, a2
 
@@ -105,7 +100,7 @@ PAPER: Final = Law(
     variables=VARIABLES,
     parameters=(*_HEAT, LawParameter("b1", "", -0.5, 0.1, levels=("load", 2), band=_band(-2.0, 0.5)), *_SPEED),
     value=_paper,
-    published={name: joint_of(one) for name, one in COMPOUNDS.items()},
+    published={name: joint_of(table) for name, table in COMPOUNDS.items()},
     table=_table_3,
     table_title="as Table 3 (f(25) = 1; the paper's own differ by a factor that cancels)",
     caution="a1 is an extrapolation to 1 N: compare predictions, never a1",
@@ -117,7 +112,7 @@ V2_LAW: Final = Law(
     variables=VARIABLES,
     parameters=(*_HEAT, LawParameter("k", "", -0.4, 0.1, levels=("load", 2), band=_band(-2.0, 0.5)), *_SPEED),
     value=_v2,
-    published={name: _of_v2(one) for name, one in V2.items()},
+    published={name: of_v2(parameters) for name, parameters in V2.items()},
 )
 LAWS: Final[Mapping[str, Law]] = {law.name: law for law in (V2_LAW, PAPER)}
 """By name; v2 first: it predicts rows that it has not seen with 6.5 % of error in the mean, Eq 6 with 11.4 %."""

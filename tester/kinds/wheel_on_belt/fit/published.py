@@ -7,10 +7,9 @@ Rows whose value is inferred are left out; what they would change is shown besid
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import exp
 from typing import Final, NamedTuple
 
-from sim.physics.friction import COMPOUNDS, V2_TEMPERATURE_C, PaperParameters
+from sim.physics.friction import COMPOUNDS, V2_TEMPERATURE_C, thermal_factor
 from tester.analysis.fit.check import Errors, errors_of
 from tester.analysis.fit.fit_law import FitPoint, Law, by_group
 from tester.analysis.fit.fit_part import Claim, PublishedTable, TableLine
@@ -78,14 +77,10 @@ def scaled(points: Sequence[FitPoint], reading: Reading = Reading.WITHOUT) -> di
     }
     places = {entry.label: (entry.group, entry.nominal[LOAD], entry.nominal[SLIP]) for entry in points}
     return {
-        entry.label: cold[places[entry.label]] * _thermal(COMPOUNDS[entry.group], entry.nominal[TEMPERATURE])
+        entry.label: cold[places[entry.label]] * thermal_factor(COMPOUNDS[entry.group], entry.nominal[TEMPERATURE])
         for entry in points
         if places[entry.label] in cold
     }
-
-
-def _thermal(table: PaperParameters, temperature_c: float) -> float:
-    return table.alpha * exp(-table.beta * (temperature_c - table.tm) ** 2) + table.gamma
 
 
 def published_table() -> PublishedTable:
@@ -210,8 +205,9 @@ def by_compound(law: Law, parameters: Mapping[str, Sequence[float]]) -> Predicte
 
 
 def _on(way: str, predicted: Predicted, fitted: Sequence[FitPoint], validation: Sequence[FitPoint]) -> TableLine:
-    return TableLine(way, _errors(predicted, fitted), _errors(predicted, validation))
+    return TableLine(way, errors_on(predicted, fitted), errors_on(predicted, validation))
 
 
-def _errors(predicted: Predicted, points: Sequence[FitPoint]) -> Errors:
+def errors_on(predicted: Predicted, points: Sequence[FitPoint]) -> Errors:
+    """Return the errors of predictions of conditions."""
     return errors_of(predicted(points), [entry.value for entry in points])

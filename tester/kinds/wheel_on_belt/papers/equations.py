@@ -12,14 +12,13 @@ import numpy as np
 from sim.physics.friction import COMPOUNDS, PaperParameters, coefficient, thermal_factor
 from tester.analysis.fit.check import Errors, errors_of
 from tester.analysis.fit.fit_law import FitPoint, by_group
-from tester.analysis.fit.joint import fit_only, predict
 from tester.analysis.papers.item import PaperFinding, PaperItem, judged, slight, unjudged
 from tester.base.arrays import Array
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE
-from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, fitted, of_table_3
+from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, errors_on, fitted, of_table_3
 from tester.kinds.wheel_on_belt.fit.staged import staged_table_3
-from tester.kinds.wheel_on_belt.papers.paper_rows import COMPOUND_NAMES, errors_on, readable
+from tester.kinds.wheel_on_belt.papers.paper_rows import COMPOUND_NAMES, readable
 
 COLD_C: Final = 25.0
 CELSIUS_0_K, GAS_J_MOL_K = 273.15, 8.314
@@ -203,9 +202,7 @@ def _eq_5() -> PaperFinding:
 
 
 def _eq_6() -> PaperFinding:
-    b = appendix(VALIDATION).points
-    parts = {name: fit_only(PAPER, name, subset) for name, subset in by_group(appendix(FIT).points).items()}
-    errors = errors_of([predict(PAPER, parts[entry.group], [entry])[0] for entry in b], [entry.value for entry in b])
+    errors = errors_on(fitted(PAPER, appendix(FIT).points), appendix(VALIDATION).points)
     return judged(errors.near == errors.rows, f"fitted to appendix A, seen on B: {words(errors)}")
 
 

@@ -9,11 +9,10 @@ from tester.analysis.fit.check import errors_of
 from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted
 from tester.kinds.wheel_on_belt.fit.data import READABLE, rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP
-from tester.kinds.wheel_on_belt.fit.published import of_table_3
+from tester.kinds.wheel_on_belt.fit.published import errors_on, of_table_3
 from tester.kinds.wheel_on_belt.papers.equations import words
 from tester.kinds.wheel_on_belt.papers.paper_rows import (
     by_compound_words,
-    errors_on,
     over_load,
     over_slip,
     peaks,

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
-from tester.analysis.fit.check import Errors, errors_of
 from tester.analysis.fit.fit_law import FitPoint, by_group
 from tester.kinds.wheel_on_belt.fit.data import appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
-from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, of_table_3
+from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, errors_on, of_table_3
 
 USUAL_LOAD_N, USUAL_SLIP_M_S = 200.0, 0.3
 """Held while the other is varied."""
@@ -58,11 +57,6 @@ def peaks(points: Iterable[FitPoint]) -> tuple[int, int, list[str]]:
         if top.nominal[TEMPERATURE] != 70.0:
             phrase.append(f"{top.label} at {top.nominal[TEMPERATURE]:g} degC")
     return count - len(phrase), count, phrase
-
-
-def errors_on(predicted: Callable[[Sequence[FitPoint]], Sequence[float]], points: Sequence[FitPoint]) -> Errors:
-    """Return how far predictions are off rows."""
-    return errors_of(predicted(points), [entry.value for entry in points])
 
 
 def by_compound_words(points: Sequence[FitPoint]) -> str:

@@ -14,14 +14,22 @@ from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_att
 from tester.kinds.wheel_on_belt.fit.data import READABLE, Reading, appendix, rows
 from tester.kinds.wheel_on_belt.fit.laws import V2_LAW
 from tester.kinds.wheel_on_belt.fit.master_conditions import MASTERS
-from tester.kinds.wheel_on_belt.fit.published import FIT, QUOTED, VALIDATION, Quoted, of_table_3, quoted_rows, scaled
+from tester.kinds.wheel_on_belt.fit.published import (
+    FIT,
+    QUOTED,
+    VALIDATION,
+    Quoted,
+    errors_on,
+    of_table_3,
+    quoted_rows,
+    scaled,
+)
 from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.kinds.wheel_on_belt.papers.equations import CLAIMED, words
 from tester.kinds.wheel_on_belt.papers.paper_rows import (
     COMPOUND_NAMES,
     at,
     bias,
-    errors_on,
     over_load,
     over_slip,
     readable,

@@ -12,7 +12,7 @@ from tester.analysis.fit.fit_law import Law
 from tester.analysis.fit.joint import fit_only, predict
 from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.solve import solve
-from tester.kinds.wheel_on_belt.fit.laws import LAWS, PAPER, V2_LAW, joint_of, table_3_of, v2_of
+from tester.kinds.wheel_on_belt.fit.laws import LAWS, PAPER, V2_LAW, joint_of, of_v2, table_3_of
 from tests.campaigns.fit import synthetic as campaign
 from tests.campaigns.fit.synthetic import DESIGN, NOISE, SAME, made, split
 
@@ -32,7 +32,7 @@ def test_the_normalised_form_of_eq_6_gives_what_table_3_gives(compound: str) -> 
 def test_v2_is_that_of_the_simulator(compound: str) -> None:
     joint = V2_LAW.published[compound]
     assert V2_LAW.value(np.array(joint), X) == pytest.approx(evaluate(V2[compound], *X.T), rel=SAME)
-    assert v2_of(joint) == V2[compound]
+    assert joint == of_v2(V2[compound])
 
 
 def test_redundant_parameters_predict_the_same() -> None:

@@ -1,18 +1,24 @@
-"""The table of repeats: each with its own coefficient, as measured, and the reason where it is in no mean."""
+"""Tables of what a run measured: repeats, mounted pieces, and checks of their diameters.
+
+A repeat has its own coefficient, as measured, and the reason where it is in no mean; a piece its wear rate over all its
+checks.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Final
 
 from tester.analysis.directions import is_reversed
 from tester.analysis.flags import flags_in
 from tester.analysis.results import RepeatResult
+from tester.analysis.wear_rate import WearCheck, WearRate
 from tester.base.quantities import Means
+from tester.base.words import duration
 from tester.results.columns import Column, Output, Table, mean_column, piece_key, setting_columns
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured
-from tester.store.records import ConditionInfo, StoredRepeat
+from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat
 
 AS_ASKED: Final = "as asked"
 REVERSED: Final = "reversed"
@@ -96,3 +102,47 @@ _FOUND: tuple[Column[CommittedRepeat], ...] = (
 )
 
 _DIRECTION: Column[CommittedRepeat] = Column("direction", "direction", lambda row: row.direction)
+
+
+@dataclass(frozen=True, slots=True)
+class PieceRow:
+    """A mounted piece by number, and its wear."""
+
+    piece: PieceInfo
+    wear: WearRate
+
+
+def pieces_table(results: RunResults) -> Table[PieceRow]:
+    """Return a row for each mounted piece: its identity, diameters and wear rate (95 % interval)."""
+    number = Column[PieceRow](piece_key(results.worn), results.worn, lambda row: row.piece.piece, "", 0, _REPORT)
+    rows = (PieceRow(piece, results.wear_of(piece.piece)) for piece in results.pieces)
+    return Table((number, *_PIECE), tuple(rows))
+
+
+def checks_table(results: RunResults) -> Table[WearCheck]:
+    """Return a row for each check of a diameter; ``before`` and ``after`` are conditions, empty where there is none."""
+    number = Column[WearCheck](piece_key(results.worn), results.worn, lambda row: row.piece)
+    return Table((number, *map(_of_check, _CHECK)), results.checks)
+
+
+def _of_check(name: str) -> Column[WearCheck]:
+    optional = name in ("before", "after")
+    return Column(name, name, lambda row: (getattr(row, name) or None) if optional else getattr(row, name))
+
+
+_CHECK: Final = tuple(field.name for field in fields(WearCheck) if field.name != "piece")
+_REPORT: Final = frozenset({Output.REPORT})
+
+_PIECE: tuple[Column[PieceRow], ...] = (
+    Column("specimen", "specimen", lambda row: row.piece.specimen),
+    Column("replicate", "replicate", lambda row: row.piece.replicate, "", 0, _REPORT),
+    Column("compound", "compound", lambda row: row.piece.compound, views=_REPORT),
+    Column("installed_diameter_mm", "diameter installed", lambda row: row.piece.installed_diameter_mm, "mm", 3, _REPORT),
+    Column("diameter_mm", "diameter at the end", lambda row: row.piece.diameter_mm, "mm", 3, _REPORT),
+    Column("sliding_m", "slid", lambda row: row.piece.sliding_m, "m", 0, _REPORT),
+    Column("mounted_at", "mounted at", lambda row: duration(row.piece.installed_s), views=_REPORT, stored=False),
+    Column("checks", "checks", lambda row: row.wear.checks, "", 0),
+    Column("wear_mm3_n_m", "wear", lambda row: row.wear.rate, "mm3/(N m)", digits=3),
+    Column("wear_u_standard", "u wear", lambda row: row.wear.standard, "mm3/(N m)", digits=2),
+    Column("wear_u_expanded", "U wear", lambda row: row.wear.expanded, "mm3/(N m)", digits=2),
+)
