@@ -137,7 +137,8 @@ _PIECE: tuple[Column[PieceRow], ...] = (
     Column("specimen", "specimen", lambda row: row.piece.specimen),
     Column("replicate", "replicate", lambda row: row.piece.replicate, "", 0, _REPORT),
     Column("compound", "compound", lambda row: row.piece.compound, views=_REPORT),
-    Column("installed_diameter_mm", "diameter installed", lambda row: row.piece.installed_diameter_mm, "mm", 3, _REPORT),
+    Column("installed_diameter_mm", "diameter installed", lambda row: row.piece.installed_diameter_mm, "mm", 3,
+           _REPORT),
     Column("diameter_mm", "diameter at the end", lambda row: row.piece.diameter_mm, "mm", 3, _REPORT),
     Column("sliding_m", "slid", lambda row: row.piece.sliding_m, "m", 0, _REPORT),
     Column("mounted_at", "mounted at", lambda row: duration(row.piece.installed_s), views=_REPORT, stored=False),
@@ -145,4 +146,4 @@ _PIECE: tuple[Column[PieceRow], ...] = (
     Column("wear_mm3_n_m", "wear", lambda row: row.wear.rate, "mm3/(N m)", digits=3),
     Column("wear_u_standard", "u wear", lambda row: row.wear.standard, "mm3/(N m)", digits=2),
     Column("wear_u_expanded", "U wear", lambda row: row.wear.expanded, "mm3/(N m)", digits=2),
-)
+)  # fmt: skip
