@@ -21,7 +21,7 @@ from tester.kinds.wheel_on_belt.image.ring_watch import BUS
 from tester.kinds.wheel_on_belt.interlocks import hub, surface
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio, known_ratio
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.results.ring_part import RingPart
+from tester.results.run_results import RingPart
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import run_folders, under_way
 from tester.store.run_reader import RunReader
