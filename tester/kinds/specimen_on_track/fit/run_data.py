@@ -10,7 +10,7 @@ from typing import Final
 from tester.analysis.fit.fit_law import Sourced, Variable
 from tester.base.config_reader import read
 from tester.base.source import Tree, load_tree
-from tester.inputs.rig.missing import complete
+from tester.inputs.rig.packaged import complete
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
 from tester.kinds.specimen_on_track.rig import HeatConfig, TrackConfig
 from tester.results import fit_points
