@@ -82,8 +82,6 @@ def _drop(watchers: list[Watcher], watcher: Watcher) -> None:
 class FrameByFrame(ABC):
     """A port that sends the frames of a cycle one by one; who implements it tells the ``watchers``."""
 
-    __slots__ = ("watchers",)
-
     def __init__(self) -> None:
         """Nobody watches."""
         self.watchers: list[CanWatcher] = []

@@ -45,8 +45,6 @@ class NormalStream:
     when they are at their end ``next`` or ``next4`` gives it.
     """
 
-    __slots__ = ("_block", "_place", "_seed", "_stream", "fours", "numbers")
-
     def __init__(self, seed: int, stream: str, *place: int) -> None:
         """Start at the key's first number; nothing is drawn before the first is asked for."""
         self._seed = seed
@@ -92,8 +90,6 @@ class Autoregressive:
 
     A step makes of ``value``: ``keep`` times itself and ``kick`` times a standard normal number.
     """
-
-    __slots__ = ("_sigma", "_time_s", "keep", "kick", "value")
 
     def __init__(self, sigma: float, time_s: float) -> None:
         """Start at zero with no step set; ``retime`` must come before ``step``."""

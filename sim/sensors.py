@@ -13,8 +13,6 @@ from sim.noise import NormalStream
 class TemperatureSensor:
     """A thermometer with a first-order lag, a constant bias and white noise; ``gain`` is its share of a step."""
 
-    __slots__ = ("_bias_k", "_rms_k", "_time_s", "gain", "lagged_c", "noise")
-
     def __init__(self, time_s: float, rms_k: float, bias_k: float, noise: NormalStream) -> None:
         """Take the sizes as they are to apply (already scaled); reads 0 degC until ``reset``."""
         self._time_s = time_s
@@ -45,8 +43,6 @@ class TemperatureSensor:
 
 class SpeedSensor:
     """An encoder taken for a line speed: an error of scale and white noise."""
-
-    __slots__ = ("_rms_m_s", "factor", "noise")
 
     def __init__(self, factor: float, rms_m_s: float, noise: NormalStream) -> None:
         """Take ``factor`` = indicated over true speed and the noise as they are to apply (already scaled)."""

@@ -21,8 +21,6 @@ _LEAST_PERIOD: Final = 0.5
 class StickSlip:
     """What stick-slip multiplies friction by, step by step. Deep-copyable; the periods come from a stream of noise."""
 
-    __slots__ = ("_at", "_frequency_hz", "_noise", "_rate_hz", "_share")
-
     def __init__(self, share: float, frequency_hz: float, noise: NormalStream) -> None:
         """Swing by ``share`` to either side of the mean, ``frequency_hz`` times a second in the mean (above 0)."""
         self._share = share

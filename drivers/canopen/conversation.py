@@ -116,8 +116,6 @@ class Dialogue:
     ``due`` is the time (s) at which ``step`` wants to be called next, whatever arrives.
     """
 
-    __slots__ = ("_conversation", "_inbox", "_peer", "_request", "_sdo", "_until", "due", "ended")
-
     def __init__(self, peer: Peer, conversation: Conversation, sdo_timeout_s: float) -> None:
         self._peer = peer
         self._conversation = conversation

@@ -30,8 +30,6 @@ class HeartbeatMonitor:
     ``due`` is the time (s) at which the producer counts as lost; infinite while not armed or once lost.
     """
 
-    __slots__ = ("armed", "due", "heard_s", "lost", "timeout_s")
-
     def __init__(self, period_s: float) -> None:
         self.timeout_s = MISSED * period_s
         self.heard_s = -math.inf

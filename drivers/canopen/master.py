@@ -39,32 +39,6 @@ class CanMaster:
     it; the caller clears them. ``unknown_frames`` counts frames of nobody added here.
     """
 
-    __slots__ = (
-        "_by_node",
-        "_commands",
-        "_cycle_ids",
-        "_cycle_key",
-        "_cycle_syncs",
-        "_dialogues",
-        "_heartbeat",
-        "_heartbeat_due",
-        "_heartbeats",
-        "_io_nodes",
-        "_nodes",
-        "_payloads",
-        "_tpdo1",
-        "_withheld",
-        "deadline",
-        "foreign_frame",
-        "foreign_master",
-        "heartbeat_s",
-        "node_id",
-        "sdo_timeout_s",
-        "sync",
-        "unknown_frames",
-        "withhold_setpoints",
-    )
-
     def __init__(self, node_id: int = 127, heartbeat_s: float = 0.05, sdo_timeout_s: float = 0.3) -> None:
         self.node_id = node_id
         self.heartbeat_s = heartbeat_s

@@ -33,8 +33,6 @@ class PdoMap:
     compare equal. Immutable: a deep copy is the map itself.
     """
 
-    __slots__ = ("fields", "pack", "size", "unpack")
-
     def __init__(self, fields: Sequence[tuple[int, int, int]]) -> None:
         code = "<"
         total = 0

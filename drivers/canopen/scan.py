@@ -80,8 +80,6 @@ class ObjectAnswer:
 class _Node:
     """The questions to one node, in order."""
 
-    __slots__ = ("answers", "client", "surplus", "timeouts", "wanted")
-
     def __init__(self, wanted: Sequence[Key], timeout_s: float) -> None:
         self.wanted = list(wanted)
         self.client = SdoClient(timeout_s)

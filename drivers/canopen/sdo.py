@@ -87,9 +87,6 @@ class SdoClient:
     replies for another object: late ones of an earlier transfer, never taken for this one's.
     """
 
-    __slots__ = ("_buffer", "_index", "_phase", "_position", "_size", "_sub", "_toggle", "due", "error",
-                 "ignored", "result", "timeout_s")
-
     def __init__(self, timeout_s: float = 0.3) -> None:
         self.timeout_s = timeout_s
         self.result = b""

@@ -111,8 +111,6 @@ class SerialEar:
     does not. ``hears_itself`` is None until one of the two has come.
     """
 
-    __slots__ = ("_stripped", "hears_itself")
-
     def __init__(self, hears_itself: bool | None = None) -> None:
         """Begin with what is known."""
         self.hears_itself: bool | None = hears_itself

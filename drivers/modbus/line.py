@@ -21,8 +21,6 @@ SOCKET_MARGIN_S = 0.05
 class LineType:
     """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP."""
 
-    __slots__ = ("_character_s", "_requests", "framing", "gap_s", "socket")
-
     def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
         """Take the framing; ``baud`` in bit/s and ``parity`` matter on RTU only."""
         self.framing: codec.Framing = framing

@@ -41,31 +41,6 @@ class ModbusLink:
     Before ``wants_s`` a ``service`` would do nothing: whoever ticks may spare it.
     """
 
-    __slots__ = (
-        "_active",
-        "_backlog_s",
-        "_buffer",
-        "_doubt",
-        "_gap_s",
-        "_give_up_s",
-        "_quiet_s",
-        "_schedule",
-        "_sent",
-        "_socket",
-        "_suspect",
-        "_transaction",
-        "_type",
-        "deadline",
-        "doubts",
-        "ear",
-        "framing",
-        "garbage",
-        "reopened",
-        "scan_s",
-        "stations",
-        "wants_s",
-    )
-
     def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
         """Create an idle master; ``baud`` in bit/s and ``parity`` matter on RTU only."""
         self.framing: codec.Framing = framing

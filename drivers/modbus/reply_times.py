@@ -27,8 +27,6 @@ class ReplyTimes:
     ``count`` replies were measured, ``least_s`` and ``greatest_s`` of them; ``measured`` once there are enough.
     """
 
-    __slots__ = ("count", "greatest_s", "least_s", "measured", "total_s")
-
     def __init__(self) -> None:
         """Nothing is known."""
         self.forget()

@@ -26,8 +26,6 @@ class Schedule:
     as it may, of those not under way.
     """
 
-    __slots__ = ("_requests", "_soonest_s", "_with_scans", "latest_s", "slowest_s", "wants_s")
-
     def __init__(self) -> None:
         """Nothing is due."""
         self._requests: list[Request] = []  # those enabled, in the order they were

@@ -116,8 +116,6 @@ class RegisterBlock:
 class _WordSwapper:
     """Turns a block with the low word first into one with the high word first, and back."""
 
-    __slots__ = ("_layout", "_order")
-
     def __init__(self, layout: Struct, block: RegisterBlock) -> None:
         self._layout = layout
         order = list(range(layout.size))

@@ -29,8 +29,6 @@ class OwnFrames:
     why the interface cannot be used, "" where it can.
     """
 
-    __slots__ = ("_awaited", "_held", "_probe", "_until_s", "echoes", "returned", "trouble", "unreturned")
-
     def __init__(self, token: bytes) -> None:
         """``token``: eight bytes that no other program uses."""
         self._probe = token

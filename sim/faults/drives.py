@@ -96,8 +96,6 @@ def wrong_identity(scene: Scene, on: bool, now: float, axis: str) -> None:
 class _OnAxis(Effect):
     """A fault of one axis."""
 
-    __slots__ = ("axis",)
-
     def __init__(self, axis: str) -> None:
         self.axis = axis
 
@@ -108,8 +106,6 @@ class _OnAxis(Effect):
 
 class Jammed(_OnAxis):
     """The shaft stands; the drive pushes, and calls its motor blocked after a while where it was moving."""
-
-    __slots__ = ("_since_s",)
 
     every_step = True
 
@@ -135,8 +131,6 @@ class Jammed(_OnAxis):
 class Runaway(_OnAxis):
     """The axis moves by itself whenever its power stage is on, whatever is commanded (a broken velocity loop)."""
 
-    __slots__ = ("speed",)
-
     every_step = True
 
     def __init__(self, axis: str, speed: float) -> None:
@@ -153,8 +147,6 @@ class Runaway(_OnAxis):
 
 class SpoiledSdoServer(SdoServer):
     """A server that refuses everything, forgets to toggle, or answers about another object."""
-
-    __slots__ = ("_kind",)
 
     def __init__(self, objects: ObjectAccess, kind: SdoFault) -> None:
         """Serve ``objects`` badly."""
@@ -194,8 +186,6 @@ def sdo_spoiled(scene: Scene, on: bool, now: float, axis: str, kind: SdoFault) -
 
 class ModeRefused(_OnAxis):
     """A drive refuses every mode of operation: a wrong firmware, or a drive that believes it moves."""
-
-    __slots__ = ("_guard",)
 
     def refuse(self, sub: int, value: int) -> None:
         """Refuse a write to 0x6060."""

@@ -24,8 +24,6 @@ def line_of(scene: Scene, device: str) -> ModbusWire:
 class Impaired(Effect):
     """Transactions of one device are spoiled; other impairments of its line stay in force."""
 
-    __slots__ = ("_impairment", "code", "count", "delay_s", "device", "kind")
-
     def __init__(self, device: str, kind: Kind, *, count: int = -1, delay_s: float = 0.05, code: int = 4) -> None:
         """Spoil the next ``count`` transactions (-1: all until the end)."""
         self.device = device
@@ -84,8 +82,6 @@ def memory_worn(scene: Scene, on: bool, now: float, device: str) -> None:
 
 class DeviceReset(Effect):
     """A device restarts: silent for a while, then with the state of its power-on (a controller in standby)."""
-
-    __slots__ = ("_until_s", "device")
 
     every_step = True
 

@@ -70,8 +70,6 @@ def _reschedule(scene: Scene) -> None:
 class OfComputer(Effect):
     """What happens, once, to the controlling process, or what its operator asks for."""
 
-    __slots__ = ("_act",)
-
     def __init__(self, act: Callable[[Computer], None]) -> None:
         self._act = act
 

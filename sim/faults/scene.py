@@ -49,8 +49,6 @@ class Scene:
 class Effect:
     """One thing that is wrong, from ``begin`` to ``end``. Plain data: copied with the rig in the middle of it."""
 
-    __slots__ = ()
-
     every_step = False
     """The effect has to be renewed before each step of the rig (``renew``)."""
 
@@ -66,8 +64,6 @@ class Effect:
 
 class Switched(Effect):
     """An effect without a state of its own: one function begins it (True) and ends it (False)."""
-
-    __slots__ = ("_switch",)
 
     def __init__(self, switch: Callable[[Scene, bool, float], None]) -> None:
         self._switch = switch

@@ -26,8 +26,6 @@ _OFF_SCALE_N: Final = 1e5
 class Slow:
     """Readings that come through a filter of first order ("lag"), or as they were some time ago ("delay")."""
 
-    __slots__ = ("_delays", "_held", "_last_s", "_past", "_seconds")
-
     def __init__(self, kind: str, seconds: float) -> None:
         """With this time constant, or this late, s (at least 0)."""
         self._delays = kind == "delay"
@@ -166,8 +164,6 @@ class SensorFault(Effect):
 
     Without the device the fault has nothing to act on.
     """
-
-    __slots__ = ("_wrapped", "device", "force", "kind", "size")
 
     def __init__(self, device: str, kind: str, size: float = 0.0, force: str = "fz") -> None:
         """``kind``: of ``spoiled``, SLOW or CROSSED, or "frozen"; ``size``: unit of the sensor, or a second, %, s."""

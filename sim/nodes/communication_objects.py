@@ -44,8 +44,6 @@ def _check_error_behaviour(sub: int, value: int) -> None:
 class _Saving:
     """Objects 0x1010 "store parameters" and 0x1011 "restore default parameters"."""
 
-    __slots__ = ("_store",)
-
     def __init__(self, store: ObjectStore) -> None:
         self._store = store
         store.guards[o.STORE_PARAMETERS] = self._check_save

@@ -71,8 +71,6 @@ class TemperatureSource(Protocol):
 class Pid:
     """Output in % from setpoint and measurement; derivative on the measurement, integral that does not wind up."""
 
-    __slots__ = ("_derivative", "_last_pv", "integral", "plant")
-
     def __init__(self, plant: ControlledPlant) -> None:
         """Take the tuning for a plant; output 0."""
         self.plant = plant

@@ -24,26 +24,6 @@ _TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 class Ramps:
     """What the drive's ramp and window objects mean in engineering units; taken over by ``load``."""
 
-    __slots__ = (
-        "acceleration",
-        "acceleration_counts",
-        "deceleration",
-        "following_error",
-        "following_error_s",
-        "halt",
-        "limit",
-        "max_slippage",
-        "position_window",
-        "position_window_s",
-        "profile_speed_counts",
-        "quick_stop",
-        "velocity_increments",
-        "velocity_threshold",
-        "velocity_threshold_s",
-        "velocity_window",
-        "velocity_window_s",
-    )
-
     def load(self, store: ObjectStore, config: AxisConfig) -> None:
         """Take over the objects, which are in the counts of the configuration."""
         values = store.values
@@ -72,8 +52,6 @@ class Ramps:
 
 class Lasting:
     """A condition that counts once it has held for some time."""
-
-    __slots__ = ("since_s", "true")
 
     def __init__(self) -> None:
         self.since_s = inf
@@ -118,9 +96,6 @@ class ModeOwner(Protocol):
 
 class ProfileVelocity:
     """Mode 3: ramp to 0x60FF. Bit 10 target reached, 11 limit of speed or torque, 12 speed zero, 13 slippage error."""
-
-    __slots__ = ("_axis", "_drive", "_halt", "_reached_at", "_target", "_zero_at", "at_torque_limit", "bits",
-                 "limited")
 
     def __init__(self, drive: ModeOwner, axis: VelocityAxis) -> None:
         self._drive = drive

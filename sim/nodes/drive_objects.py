@@ -95,8 +95,6 @@ def install(drive: Cia402Slave) -> None:
 class _Objects:
     """Readers, guards and hooks of one drive's objects."""
 
-    __slots__ = ("_drive",)
-
     def __init__(self, drive: Cia402Slave) -> None:
         self._drive = drive
         store = drive.store
@@ -193,8 +191,6 @@ class _Objects:
 class _Stands:
     """Does, for an object of the maker's, what the standard one does that it stands in for."""
 
-    __slots__ = ("_drive", "_one", "_standard")
-
     def __init__(self, drive: Cia402Slave, standard: Key, one: Substitute) -> None:
         self._drive = drive
         self._standard = standard
@@ -211,8 +207,6 @@ class _Stands:
 
 class _Choice:
     """A guard for an object with a few accepted values."""
-
-    __slots__ = ("_values",)
 
     def __init__(self, values: tuple[int, ...]) -> None:
         self._values = values

@@ -21,20 +21,6 @@ class ProfilePosition:
     Bit 10 target reached, 12 set-point acknowledged, 13 following error (a fault, 0x8611).
     """
 
-    __slots__ = (
-        "_acknowledged",
-        "_axis",
-        "_buffered",
-        "_drive",
-        "_halt",
-        "_late",
-        "_new",
-        "_reached",
-        "_target",
-        "bits",
-        "limited",
-    )
-
     def __init__(self, drive: ModeOwner, axis: PositionAxis) -> None:
         self._drive = drive
         self._axis = axis
@@ -139,17 +125,6 @@ class Homing:
     The home switch lies at ``home_position`` of the axis; it is approached once, at 0x6099:01. With ``switch_works``
     false the axis runs a tenth of a unit past it and reports the error.
     """
-
-    __slots__ = (
-        "_axis",
-        "_drive",
-        "_failed",
-        "_running",
-        "_start",
-        "bits",
-        "home_position",
-        "switch_works",
-    )
 
     def __init__(self, drive: ModeOwner, axis: PositionAxis, home_position: float) -> None:
         self._drive = drive

@@ -45,8 +45,6 @@ class Emergencies:
     ``allowed`` follows the NMT state: EMCY frames are sent in PRE-OPERATIONAL and OPERATIONAL only.
     """
 
-    __slots__ = ("_last_s", "_store", "_wire", "allowed", "present")
-
     def __init__(self, wire: CanWire, store: ObjectStore) -> None:
         """Report on ``wire``; register and history live in ``store``."""
         self._wire = wire

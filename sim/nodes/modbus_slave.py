@@ -42,8 +42,6 @@ _REQUEST: Final = Struct(">BBHH")
 class RegisterWindow:
     """Registers without a gap. ``data`` holds them as they go over the wire."""
 
-    __slots__ = ("count", "data", "start")
-
     def __init__(self, start: int, count: int) -> None:
         """Take ``count`` registers from ``start``, all zero."""
         self.start = start
@@ -53,8 +51,6 @@ class RegisterWindow:
 
 class _Read:
     """A read request taken apart, with its last reply; ``block`` is the device's number of just these registers."""
-
-    __slots__ = ("block", "head", "last", "payload", "reply", "start", "window")
 
     def __init__(self, window: RegisterWindow, address: int, count: int, head: bytes, block: int) -> None:
         self.window = window

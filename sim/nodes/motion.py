@@ -31,22 +31,6 @@ class VelocityAxis:
     ``aim``: a step may be skipped. ``low`` and ``high`` are hard stops of the position.
     """
 
-    __slots__ = (
-        "_bounded",
-        "acceleration",
-        "blocked",
-        "deceleration",
-        "demand",
-        "high",
-        "lag_s",
-        "low",
-        "position",
-        "settled",
-        "still",
-        "target",
-        "value",
-    )
-
     def __init__(
         self,
         acceleration: float,
@@ -173,20 +157,6 @@ class PositionAxis:
     ``value`` is the velocity, ``position`` the position, ``demand`` the position of the trajectory. ``still`` says
     that the axis rests where it was sent.
     """
-
-    __slots__ = (
-        "_speed",
-        "_stopping",
-        "acceleration",
-        "blocked",
-        "deceleration",
-        "demand",
-        "max_speed",
-        "position",
-        "still",
-        "target",
-        "value",
-    )
 
     def __init__(
         self, max_speed: float, acceleration: float, deceleration: float | None = None, position: float = 0.0

@@ -28,8 +28,6 @@ _COMMUNICATION = range(0x1000, 0x2000)
 class ObjectStore:
     """The values of one device; SDO access through ``upload`` and ``download``."""
 
-    __slots__ = ("_all", "_overrides", "_saved", "entries", "guards", "hooks", "node_id", "readers", "values")
-
     def __init__(
         self,
         node_id: int,

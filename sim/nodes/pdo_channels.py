@@ -38,8 +38,6 @@ def _restricted(cob_id: int) -> bool:
 class PdoParameters:
     """Communication and mapping parameters of one PDO in the object dictionary."""
 
-    __slots__ = ("_changed", "_communication", "_mapping", "_store", "_transmit")
-
     def __init__(self, store: ObjectStore, number: int, transmit: bool, changed: Callable[[], None]) -> None:
         """Guard the parameters of PDO ``number`` (1, 2); ``changed`` is called after every accepted write."""
         self._store = store
@@ -156,25 +154,6 @@ class ReceivePdo:
     a quicker one in place of the general one.
     """
 
-    __slots__ = (
-        "_plain_size",
-        "_receiver",
-        "cob_id",
-        "data",
-        "deadline_at",
-        "deadline_s",
-        "faulty",
-        "fields",
-        "held",
-        "keys",
-        "parameters",
-        "sink",
-        "size",
-        "stamp_s",
-        "synchronous",
-        "unpack",
-    )
-
     def __init__(
         self, receiver: Receiver, store: ObjectStore, number: int, changed: Callable[[], None]
     ) -> None:
@@ -235,25 +214,6 @@ class TransmitPdo:
     ``source`` returns its bytes; a device may put a quicker one in place of ``bytes_now``. ``due_s`` is the time of
     an event-driven PDO's event timer or of the end of its inhibit time.
     """
-
-    __slots__ = (
-        "_count",
-        "_store",
-        "changed",
-        "cob_id",
-        "due_s",
-        "fields",
-        "inhibit_s",
-        "keys",
-        "kind",
-        "pack",
-        "parameters",
-        "sent",
-        "sent_s",
-        "source",
-        "synchronous",
-        "timer_s",
-    )
 
     def __init__(self, store: ObjectStore, number: int, changed: Callable[[], None]) -> None:
         """Create TPDO ``number`` (1, 2) of a device; ``changed`` is called when its parameters were written."""

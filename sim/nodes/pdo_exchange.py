@@ -62,24 +62,6 @@ class PdoExchange(SyncFollower):
     has to be taken anew (``sim.wires.can_traffic.SyncFollower``).
     """
 
-    __slots__ = (
-        "_counted_tpdos",
-        "_each_sync",
-        "_event_tpdos",
-        "_routes",
-        "_running",
-        "_single",
-        "_status_on_event",
-        "_store",
-        "_wire",
-        "due_s",
-        "fresh",
-        "owner",
-        "rpdos",
-        "tpdos",
-        "urgent",
-    )
-
     def __init__(self, owner: PdoOwner, wire: CanWire, store: ObjectStore) -> None:
         """Create the two receive and two transmit PDOs of a device, not running."""
         super().__init__(_nothing)

@@ -27,8 +27,6 @@ class SafetyIo:
     ``welded`` do not open.
     """
 
-    __slots__ = ("_chain", "_coil", "_guard", "_requested", "contactor_closed", "due_s", "welded")
-
     def __init__(self) -> None:
         """Start with a healthy chain, a closed guard and the contactor open."""
         self._chain = True

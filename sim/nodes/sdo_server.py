@@ -59,8 +59,6 @@ class ObjectAccess(Protocol):
 class SdoServer:
     """One SDO channel; holds the state of a segmented transfer between requests."""
 
-    __slots__ = ("_buffer", "_index", "_mode", "_objects", "_size", "_sub", "_toggle")
-
     def __init__(self, objects: ObjectAccess) -> None:
         """Serve ``objects``."""
         self._objects = objects

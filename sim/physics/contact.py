@@ -26,8 +26,6 @@ compiled module does not find a tuple of numbers that is a constant."""
 class ContactModel:
     """Load of one wheel on the belt's support plate: ``factor`` k in N/mm^n, ``exponent`` n, ``damping_n_s_mm`` c."""
 
-    __slots__ = ("damping_n_s_mm", "exponent", "factor")
-
     def __init__(self, parameters: ContactParameters) -> None:
         """Find the factor k that gives the stiffness asked for at the reference load."""
         n = parameters.exponent
@@ -58,8 +56,6 @@ class Relaxation:
     A generalised Maxwell body (quasi-linear viscoelasticity): the load is what the depth asks for less ``share`` times
     a memory of it for each of five relaxation times. At held depth that is a loss of ``share`` in every decade of time.
     """
-
-    __slots__ = ("_apart_s", "_gains", "_memory", "share")
 
     def __init__(self, share: float) -> None:
         """Take the share of the load that is lost in a decade, 0 to 0.15; no load has been on yet."""
@@ -126,8 +122,6 @@ class Warmth:
     The layer is bonded to the hub: it cannot grow along it, so that nearly all its gain of volume goes outward, less
     only near the free side faces. The hub grows as metal does.
     """
-
-    __slots__ = ("_ambient_c", "_hub_mm_k", "_hub_radius_mm", "_layer_per_k", "_softening_per_k", "matters")
 
     def __init__(self, parameters: SimParameters) -> None:
         """Prepare the coefficients; ``matters`` is False where all are switched off."""

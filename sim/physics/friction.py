@@ -99,8 +99,6 @@ class FrictionModel:
     paper's.
     """
 
-    __slots__ = ("_a2", "_b1", "_b2", "_base", "_beta", "_heat", "_is_paper", "_load", "_speed", "_tm")
-
     def __init__(self, compound: str, model: str = "paper") -> None:
         """Take a compound's constants; raises UnknownCompoundError, or ValueError for an unknown model."""
         _checked(compound, model)

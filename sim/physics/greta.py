@@ -78,8 +78,6 @@ def contact_slope(wave: Sinusoid) -> float:
 class Greta:
     """The law of one rubber on one surface."""
 
-    __slots__ = ("_scratch", "_shear", "coarse", "fine", "full_per_modulus", "parameters", "rubber")
-
     def __init__(self, rubber: Rubber, surface: Surface, parameters: GretaParameters | None = None) -> None:
         """Take the materials. Raises ValueError where one of them lacks what the law needs."""
         if rubber.shear is None:

@@ -46,8 +46,6 @@ class SplineTable:
     and speed stay the same for thousands of steps, in which the temperature drifts. All ways give the same bits.
     """
 
-    __slots__ = ("_between", "_four", "_j", "_plane", "_rows", "_weights", "_x", "_z")
-
     def __init__(self, rows: list[list[float]], between: int) -> None:
         """Take coefficients along the first axis, row by row: all of the second axis, for each of the third.
 
@@ -122,11 +120,6 @@ class TabulatedLaw:
 
     Above its span, and outside its temperatures, the law that it stands for is asked, which ``outside`` counts.
     """
-
-    __slots__ = (
-        "_adhesion", "_load", "_load_n", "_n", "_slip_m_s", "_slow", "_speed", "_t", "_total", "_v", "_x", "_y", "_z",
-        "error", "outside", "points", "span",
-    )  # fmt: skip
 
     def __init__(
         self,

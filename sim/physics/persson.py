@@ -111,8 +111,6 @@ class PerssonLaw:
 class PerssonByLoad:
     """The law, asked for loads on a nominal area of contact."""
 
-    __slots__ = ("area_mm2", "law")
-
     def __init__(self, law: PerssonLaw, area_mm2: float) -> None:
         """Take the law and the area in mm2, above 0."""
         self.law = law

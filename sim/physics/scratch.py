@@ -85,8 +85,6 @@ def harmonics(share: float, count: int) -> Array:
 class Scratch:
     """Integrals of the squares of the stress under a wave of some length, down to some depth."""
 
-    __slots__ = ("_count", "_normal", "_shear")
-
     def __init__(self, wavelength_m: float, depth_m: float, count: int = HARMONICS, depths: int = DEPTHS) -> None:
         """Work out what does not depend on the pressure, for so many harmonics. Raises ValueError for values out of
         range."""

@@ -61,8 +61,6 @@ class ArrheniusParameters:
 class PowerLaw:
     """The power law with its parameters; it does not depend on the temperature."""
 
-    __slots__ = ("parameters",)
-
     def __init__(self, parameters: PowerParameters) -> None:
         """Take a rubber's parameters."""
         self.parameters = parameters
@@ -81,8 +79,6 @@ class PowerLaw:
 
 class Arrhenius:
     """The bell with its parameters; it does not depend on the load."""
-
-    __slots__ = ("parameters",)
 
     def __init__(self, parameters: ArrheniusParameters) -> None:
         """Take a rubber's parameters."""

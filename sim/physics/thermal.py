@@ -24,8 +24,6 @@ CALM_STEP_S: Final = 0.2
 class ThermalState:
     """Temperatures in degC of hub, rubber cells (inside first), tread surface and belt."""
 
-    __slots__ = ("belt_c", "cells_c", "hub_c", "surface_c")
-
     def __init__(self, cells: int, temperature_c: float) -> None:
         """Start with one temperature everywhere."""
         self.hub_c = temperature_c
@@ -74,28 +72,6 @@ class ThermalModel:
     ``friction_heat_fraction`` is the rubber's share of the friction heat, ``belt_conductance_w_k`` links
     tread and belt while they touch. Holds no temperature: one model serves any number of states.
     """
-
-    __slots__ = (
-        "_belt_j_k",
-        "_belt_to_air",
-        "_calm",
-        "_cell_j_k",
-        "_hub_j_k",
-        "_hub_to_cell",
-        "_hub_to_shaft",
-        "_links",
-        "_outer_to_surface",
-        "_parts",
-        "_share",
-        "_sides",
-        "_touching",
-        "_tread_rotating",
-        "_tread_stopped",
-        "_weighed",
-        "_weights",
-        "cells",
-        "step_s",
-    )
 
     def __init__(
         self,

@@ -71,8 +71,6 @@ class TrackContact:
 class LessFriction:
     """A share of a law's friction."""
 
-    __slots__ = ("_law", "_share")
-
     def __init__(self, law: laws.FrictionLaw, share: float) -> None:
         """Take the law of dry contact."""
         self._law, self._share = law, share
@@ -84,8 +82,6 @@ class LessFriction:
 
 class LessAdhesion:
     """A law's hysteresis, and a share of its adhesion."""
-
-    __slots__ = ("_law", "_share")
 
     def __init__(self, law: laws.LawOfParts, share: float) -> None:
         """Take the law of dry contact."""

@@ -96,8 +96,6 @@ class WlfBellParameters:
 class WlfBell:
     """The law with its parameters; it does not depend on the load."""
 
-    __slots__ = ("_parameters", "_x_ref")
-
     def __init__(self, parameters: WlfBellParameters) -> None:
         """Take a rubber's parameters."""
         self._parameters = parameters

@@ -31,8 +31,6 @@ _SHORTEST_REPLY = 5
 class ModbusSession:
     """One client's connection: ``feed`` takes bytes, ``outgoing`` holds replies; ``ended`` says why it is over."""
 
-    __slots__ = ("_buffer", "ended", "outgoing")
-
     def __init__(self) -> None:
         """Wait for requests."""
         self.outgoing = bytearray()
@@ -72,8 +70,6 @@ class _Transaction:
 
 class ModbusGateway:
     """One line's gateway: any number of clients, one transaction at a time."""
-
-    __slots__ = ("_active", "_reply", "_waiting", "wire")
 
     def __init__(self, wire: ModbusWire) -> None:
         """Serve the slaves on ``wire``."""

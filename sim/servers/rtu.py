@@ -19,8 +19,6 @@ LONGEST_FRAME = 256
 class RtuEar:
     """Hears what a computer sends on a line; ``garbled`` counts bytes that came with other settings than the line's."""
 
-    __slots__ = ("_began_s", "_frame", "_over_s", "garbled", "wire")
-
     def __init__(self, wire: ModbusWire) -> None:
         """Listen in front of the slaves on ``wire``."""
         self.wire = wire

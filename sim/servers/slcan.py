@@ -32,9 +32,6 @@ class SlcanSession:
     lines that are no valid command.
     """
 
-    __slots__ = ("_buffer", "_listens_only", "_own_rate", "_stamped", "bitrate", "ignored", "is_open", "outgoing",
-                 "refused")  # fmt: skip
-
     def __init__(self, bitrate: int) -> None:
         """Wait, with the channel closed."""
         self.bitrate = bitrate

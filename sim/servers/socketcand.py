@@ -35,8 +35,6 @@ class SocketcandSession:
     does not carry (29-bit identifiers), ``refused`` elements that are no valid command.
     """
 
-    __slots__ = ("_buffer", "_frames_from_s", "bus", "ended", "ignored", "outgoing", "refused")
-
     def __init__(self) -> None:
         """Greet."""
         self.outgoing = bytearray(GREETING)

@@ -23,8 +23,6 @@ Command = Callable[[str, float], Sequence[str]]
 class TextLines:
     """Splits what arrives into lines."""
 
-    __slots__ = ("_buffer",)
-
     def __init__(self) -> None:
         """Begin with an empty one."""
         self._buffer = b""

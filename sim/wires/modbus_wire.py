@@ -76,24 +76,6 @@ class ModbusWire:
     when the next bytes not read yet arrive, s: infinity when none are on their way, -infinity when a read would raise.
     """
 
-    __slots__ = (
-        "_busy_s",
-        "_character_s",
-        "_gap_s",
-        "_held_s",
-        "_inbox",
-        "_last_reply",
-        "_slaves",
-        "arrives_s",
-        "baud",
-        "collisions",
-        "connected",
-        "impair",
-        "occupied_s",
-        "requests",
-        "watchers",
-    )
-
     def __init__(
         self,
         baud: int = 115200,

@@ -27,25 +27,6 @@ class HeatFlow:
     ``rubber_c`` is the rubber's mean temperature as of the last flow of heat, degC.
     """
 
-    __slots__ = (
-        "_ambient_c",
-        "_calm",
-        "_cell",
-        "_due_s",
-        "_every_gains",
-        "_friction_j",
-        "_gains",
-        "_heater_j",
-        "_key",
-        "_model",
-        "_pending_s",
-        "_quiet_s",
-        "_sensor",
-        "_touch_s",
-        "rubber_c",
-        "state",
-    )
-
     def __init__(self, model: ThermalModel, ambient_c: float, sensor: TemperatureSensor, cell: LoadCellSensor) -> None:
         """Start with everything at ambient temperature, nothing touching or turning."""
         self._model = model

@@ -15,20 +15,6 @@ from sim.physics.parameters import SensorParameters
 class LoadCellSensor:
     """Load cell for Fx, Fy, Fz and the moment about the vertical, under the belt's support plate."""
 
-    __slots__ = (
-        "_drift_n_k",
-        "_matrix",
-        "_noisy",
-        "_offsets_n",
-        "_ranges_n",
-        "_reference_c",
-        "_sizes",
-        "_time_s",
-        "_warming",
-        "cell_c",
-        "noise",
-    )
-
     def __init__(
         self, sensors: SensorParameters, noise: float, seed: int, ambient_c: float, sign: float = 1.0
     ) -> None:

@@ -36,8 +36,6 @@ class ShaftTorque:
     drive believes.
     """
 
-    __slots__ = ("_friction_nm", "_gain", "way")
-
     def __init__(self, friction_nm: float, gain: float) -> None:
         """Take the friction (N m, at least 0) and shown over true torque."""
         self._friction_nm = friction_nm
@@ -58,8 +56,6 @@ class PressScrew:
     K (F + spring) (2 - 1 / efficiency) - drag. On its way from the one to the other the screw moves by ``presliding``
     without sliding in its nut, and standing it keeps the friction it came to rest with.
     """
-
-    __slots__ = ("_drag_nm", "_excess", "_m", "_per_mm", "_place_mm", "_way", "spring_n")
 
     def __init__(self, parameters: DriveParameters, efficiency: float, spring_n: float) -> None:
         """Take the session's ``efficiency`` (above 0.5: it can be driven back) and the force of the lifting spring."""

@@ -21,8 +21,6 @@ DETACHED_S = 20.0
 class _Together(Effect):
     """Faults that come and go together."""
 
-    __slots__ = ("_effects",)
-
     def __init__(self, *effects: Effect) -> None:
         self._effects = effects
 
@@ -67,8 +65,6 @@ class WornSector(Effect):
 
     ``turns`` of the wheel count from when it begins; at the angle 0 it stands then.
     """
-
-    __slots__ = ("_at_rev", "_impairment", "_last_s", "turns")
 
     every_step = True
 

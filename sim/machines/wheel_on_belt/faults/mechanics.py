@@ -41,8 +41,6 @@ def drives_swapped(scene: Scene, on: bool, now: float) -> None:
 class DiameterOff(Effect):
     """The wheels have another diameter than they should: from the next time on that the wheel is out of contact."""
 
-    __slots__ = ("share",)
-
     every_step = True
 
     def __init__(self, percent: float) -> None:
@@ -91,8 +89,6 @@ class BeltSlips(Effect):
     Beyond elastic creep the roller slips under it, and pulls with all that its wrap can instead of braking the wheel.
     """
 
-    __slots__ = ("_factor", "share")
-
     def __init__(self, percent: float) -> None:
         """By this much, percent of the speed."""
         self.share = 0.01 * percent
@@ -116,8 +112,6 @@ class BeltTorn(Effect):
 
     Nothing holds the belt against the wheel any more: no friction, and no torque at either drive.
     """
-
-    __slots__ = ("_factor",)
 
     every_step = True
 
@@ -144,8 +138,6 @@ class BeltTorn(Effect):
 
 class WheelSlipsOnShaft(Effect):
     """The wheel's clamping has come loose: in contact it rolls with the belt, whatever its shaft does."""
-
-    __slots__ = ("_factor",)
 
     every_step = True
 
