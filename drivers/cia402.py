@@ -37,7 +37,6 @@ class Goal(IntEnum):
 
 # Statusword bits
 VOLTAGE: Final = 0x0010
-NOT_QUICK_STOP: Final = 0x0020
 WARNING: Final = 0x0080
 REMOTE: Final = 0x0200
 TARGET_REACHED: Final = 0x0400
@@ -72,6 +71,8 @@ _MASKS: Final = (
     (0x4F, 0x08, State.FAULT),
 )
 _STATE_BITS: Final = 0x6F
+STATUS_BITS: Final = {state: value for _, value, state in _MASKS}
+"""Bits 0-3, 5 and 6 of the statusword, as a drive sets them."""
 
 
 def _state_of(word: int) -> State:

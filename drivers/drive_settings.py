@@ -14,8 +14,7 @@ from typing import Final
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.canopen import pdo
-from drivers.canopen.dictionary import DICTIONARY, describe
-from drivers.canopen.heartbeat import consumer_entry
+from drivers.canopen.dictionary import describe
 from drivers.canopen.objects import DataType, OperationMode
 from drivers.canopen.pdo import PdoMap
 from drivers.drives.drive_model import Key, Substitute
@@ -298,56 +297,3 @@ def pdo_settings(config: AxisConfig, *, inputs_with_sync: bool = False) -> list[
         PdoSetting(o.TPDO_COMMUNICATION, o.TPDO_MAPPING, o.COB_NO_RTR | o.TPDO1_BASE + node, pdo.SYNCHRONOUS, tpdo1),
         PdoSetting(o.TPDO_COMMUNICATION + 1, o.TPDO_MAPPING + 1, o.COB_NO_RTR | o.TPDO2_BASE + node, kind2, tpdo2),
     ]
-
-
-@dataclass(frozen=True, slots=True)
-class AxisObject:
-    """An object that the program reads or writes on an axis' drive; ``expected`` None: it is only read."""
-
-    index: int
-    sub: int
-    name: str
-    type: DataType
-    expected: int | None
-
-
-_READ: Final = (
-    (o.DEVICE_TYPE, 0), (o.IDENTITY, 1), (o.IDENTITY, 2), (o.IDENTITY, 3), (o.IDENTITY, 4), (o.SUPPORTED_MODES, 0),
-    (o.STATUSWORD, 0), (o.MODE_DISPLAY, 0), (o.ERROR_CODE, 0), (o.RATED_TORQUE, 0),
-)  # fmt: skip
-
-
-def axis_objects(config: AxisConfig) -> list[AxisObject]:
-    """Return what the program reads and writes on an axis' drive, in the order of connecting; writes as read back.
-
-    What stands in for a missing object by way of another (per mille of a rating) has no value known beforehand.
-    """
-    made = plan(config)
-    found = [_object(index, sub, None) for index, sub in _READ
-             if made.rated_torque or (index, sub) != (o.RATED_TORQUE, 0)]
-    for one in (*made.settings, *made.homing):
-        instead = one.substitute
-        value = one.value
-        if instead is not None:
-            value = None if instead.per_mille_of is not None else instead.value(one.value, 0)
-        found.append(_object(one.index, one.sub, value, one.type, one.name))
-    for one in made.pdos:
-        if one.mapped is None:
-            continue
-        found.append(_object(one.communication, 1, one.cob_id))
-        found.append(_object(one.communication, 2, one.kind))
-        entries = one.mapped.parameters()
-        found.append(_object(one.mapping, 0, len(entries)))
-        found += [_object(one.mapping, sub, entry) for sub, entry in enumerate(entries, start=1)]
-    found.append(_object(o.PRODUCER_HEARTBEAT, 0, round(config.heartbeat_s * 1000)))
-    if made.watched:
-        found.append(_object(*_WATCH, consumer_entry(PC_NODE, config.consumer_heartbeat_s)))
-    found.append(_object(o.MODE, 0, int(mode_of(config))))
-    return found
-
-
-def _object(index: int, sub: int, expected: int | None, kind: DataType | None = None, name: str = "") -> AxisObject:
-    entry = DICTIONARY.get((index, sub))
-    if entry is not None:
-        return AxisObject(index, sub, name or entry.name, kind or entry.type, expected)
-    return AxisObject(index, sub, name, kind or DataType.U32, expected)

@@ -120,11 +120,6 @@ class ServoAxis(AxisCommand):
         return self.statusword & cia402.WARNING != 0
 
     @property
-    def internal_limit(self) -> bool:
-        """Bit 11."""
-        return self.statusword & cia402.INTERNAL_LIMIT != 0
-
-    @property
     def deviation(self) -> bool:
         """Bit 13: following error (position) or too much slippage (velocity)."""
         return self.statusword & cia402.FOLLOWING_ERROR != 0

@@ -199,11 +199,6 @@ DICTIONARY: dict[tuple[int, int], Entry] = {
 """Every object by (index, sub-index), ascending. Read only."""
 
 
-def servo_dictionary() -> dict[tuple[int, int], Entry]:
-    """Return a new table of the drive's objects by (index, sub-index), ascending."""
-    return dict(DICTIONARY)
-
-
 def describe(index: int, sub: int) -> str:
     """Return an object's address and name as messages show it: ``0x1016:01 (consumer heartbeat ...)``."""
     entry = DICTIONARY.get((index, sub))

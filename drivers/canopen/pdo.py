@@ -10,12 +10,10 @@ from collections.abc import Sequence
 
 from drivers.canopen import objects as o
 from drivers.canopen.dictionary import DICTIONARY, mapping
+from drivers.canopen.sdo import NOT_MAPPABLE, PDO_TOO_LONG
 
 MAX_BITS = 64
 """Eight data bytes of a classic CAN frame."""
-
-ABORT_NOT_MAPPABLE = 0x0604_0041
-ABORT_TOO_LONG = 0x0604_0042
 
 
 class PdoMapError(ValueError):
@@ -40,11 +38,11 @@ class PdoMap:
             entry = DICTIONARY.get((index, sub))
             if entry is None or not entry.mappable or entry.bits != bits:
                 text = f"0x{index:04X}:{sub:02X} ({bits} bits) cannot be mapped"
-                raise PdoMapError(ABORT_NOT_MAPPABLE, text)
+                raise PdoMapError(NOT_MAPPABLE, text)
             code += o.STRUCT_CODE[entry.type]
             total += bits
         if total > MAX_BITS:
-            raise PdoMapError(ABORT_TOO_LONG, f"{total} bits do not fit the {MAX_BITS} of a PDO")
+            raise PdoMapError(PDO_TOO_LONG, f"{total} bits do not fit the {MAX_BITS} of a PDO")
         self.fields = tuple(fields)
         self.size = total // 8
         codec = struct.Struct(code)

@@ -13,9 +13,19 @@ TOGGLE_ERROR = 0x0503_0000
 TIMED_OUT = 0x0504_0000
 UNKNOWN_COMMAND = 0x0504_0001
 OUT_OF_MEMORY = 0x0504_0005
-LENGTH_MISMATCH = 0x0607_0010
+UNSUPPORTED_ACCESS = 0x0601_0000
+WRITE_ONLY = 0x0601_0001
+READ_ONLY = 0x0601_0002
 NO_OBJECT = 0x0602_0000
+NOT_MAPPABLE = 0x0604_0041
+PDO_TOO_LONG = 0x0604_0042
+LENGTH_MISMATCH = 0x0607_0010
 NO_SUB_INDEX = 0x0609_0011
+VALUE_RANGE = 0x0609_0030
+VALUE_TOO_LOW = 0x0609_0032
+NOT_STORED = 0x0800_0020
+LOCAL_CONTROL = 0x0800_0021
+DEVICE_STATE = 0x0800_0022
 
 ABORT_TEXT: dict[int, str] = {
     TOGGLE_ERROR: "toggle bit not alternated",
@@ -25,12 +35,12 @@ ABORT_TEXT: dict[int, str] = {
     0x0504_0003: "sequence number not valid",
     0x0504_0004: "CRC error",
     OUT_OF_MEMORY: "out of memory",
-    0x0601_0000: "access not supported",
-    0x0601_0001: "object is write only",
-    0x0601_0002: "object is read only",
+    UNSUPPORTED_ACCESS: "access not supported",
+    WRITE_ONLY: "object is write only",
+    READ_ONLY: "object is read only",
     NO_OBJECT: "object does not exist",
-    0x0604_0041: "object cannot be mapped to the PDO",
-    0x0604_0042: "mapped objects exceed the PDO length",
+    NOT_MAPPABLE: "object cannot be mapped to the PDO",
+    PDO_TOO_LONG: "mapped objects exceed the PDO length",
     0x0604_0043: "parameters incompatible",
     0x0604_0047: "internal incompatibility in the device",
     0x0606_0000: "hardware error",
@@ -38,15 +48,15 @@ ABORT_TEXT: dict[int, str] = {
     0x0607_0012: "value too long",
     0x0607_0013: "value too short",
     NO_SUB_INDEX: "sub-index does not exist",
-    0x0609_0030: "value range exceeded, or refused in this state",
+    VALUE_RANGE: "value range exceeded, or refused in this state",
     0x0609_0031: "value too high",
-    0x0609_0032: "value too low",
+    VALUE_TOO_LOW: "value too low",
     0x0609_0036: "maximum is less than minimum",
     0x060A_0023: "resource not available",
     0x0800_0000: "general error",
-    0x0800_0020: "value cannot be stored",
-    0x0800_0021: "value cannot be stored: local control",
-    0x0800_0022: "refused in the present device state",
+    NOT_STORED: "value cannot be stored",
+    LOCAL_CONTROL: "value cannot be stored: local control",
+    DEVICE_STATE: "refused in the present device state",
     0x0800_0023: "no object dictionary present",
     0x0800_0024: "no data available",
 }

@@ -39,17 +39,6 @@ class LineTap:
                 break
         return found
 
-    def silence(self) -> list[tuple[bytes, bool]]:
-        """Take note that nothing came for longer than a frame takes: what is left over begins no frame."""
-        found: list[tuple[bytes, bool]] = []
-        while len(self._buffer) >= _SHORTEST:
-            self.garbage += 1
-            self._buffer = self._buffer[1:]
-            found += self.feed(b"")
-        self.garbage += len(self._buffer)
-        self._buffer = b""
-        return found
-
     def _first(self) -> bytes | None:
         for length in _lengths(self._buffer):
             frame = self._buffer[:length]

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Literal
 
 from drivers.canopen import objects as o
+from drivers.canopen import sdo
 from drivers.canopen.messages import encode_emergency
 from sim.faults.scene import Effect, Scene, switched
-from sim.nodes import sdo_server as sdo
 from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.drive_power import ENERGISED
 from sim.nodes.motion import VelocityAxis
-from sim.nodes.sdo_server import ObjectAccess, SdoAbortError, SdoServer
+from sim.nodes.object_store import ObjectStore, SdoAbortError
+from sim.nodes.sdo_server import SdoServer
 
 MOTOR_BLOCKED = 0x7121
 BLOCKED_S = 0.5
@@ -148,7 +149,7 @@ class Runaway(_OnAxis):
 class SpoiledSdoServer(SdoServer):
     """A server that refuses everything, forgets to toggle, or answers about another object."""
 
-    def __init__(self, objects: ObjectAccess, kind: SdoFault) -> None:
+    def __init__(self, objects: ObjectStore, kind: SdoFault) -> None:
         """Serve ``objects`` badly."""
         super().__init__(objects)
         self._kind: SdoFault = kind

@@ -20,11 +20,10 @@ from sim.nodes import drive_objects
 from sim.nodes.drive_modes import ProfileVelocity
 from sim.nodes.drive_objects import clamped_i16, wrapped_i32
 from sim.nodes.drive_positioning import Homing, ProfilePosition
-from sim.nodes.drive_power import ENERGISED, FAULTY, STATUS_BITS, Axis, DrivePower
+from sim.nodes.drive_power import ENERGISED, FAULTY, Axis, DrivePower
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
-from sim.nodes.safety_io import SafetyIo
 from sim.wires.can_wire import CanWire
 
 _CONTROLWORD: Final = (o.CONTROLWORD, 0)
@@ -67,13 +66,9 @@ class Cia402Slave(DrivePower):
         "_sent_torque",
         "_sent_value",
         "_velocity",
-        "config",
         "encoder_error",
         "homed",
         "homing",
-        "origin",
-        "statusword",
-        "torque_nm",
     )
 
     def __init__(
@@ -101,18 +96,25 @@ class Cia402Slave(DrivePower):
         entries = drive_objects.entries(config)
         store = ObjectStore(config.node_id, drive_objects.overrides(config, serial_number), entries)
         axis = drive_objects.default_axis(config, lag_s) if axis is None else axis
-        io = SafetyIo() if config.digital_io else None
-        super().__init__(wire, store, axis, io, boot_s, turnaround_s, now)
-        self.config = config
+        super().__init__(config, wire, store, axis, boot_s, turnaround_s, now)
         self.unpowered_velocity = unpowered_velocity
         self.coast_deceleration = config.deceleration if coast_deceleration is None else coast_deceleration
-        self.torque_nm = 0.0
         self.encoder_error = 0.0
-        self.origin = 0.0
         self.homed = False
-        self.statusword = 0
         self.homing: Homing | None = None
         self._velocity: ProfileVelocity | None = None
+        self._add_modes(axis, home_position)
+        self._mode_bits = 0
+        self._by_position = config.feedback == "position"
+        self._increments = config.position_increments if self._by_position else config.velocity_increments
+        self._per_mille = 1000.0 / config.rated_torque_nm * config.drive.units.torque
+        self._remote_bit = cia402.REMOTE if config.drive.remote else 0
+        drive_objects.install(self)
+        self._application_reset()
+        self.power(powered)
+
+    def _add_modes(self, axis: Axis, home_position: float) -> None:
+        """Offer the modes of operation that an axis of this sort has."""
         if isinstance(axis, PositionAxis):
             self.homing = Homing(self, axis, home_position)
             self.modes = {
@@ -122,14 +124,6 @@ class Cia402Slave(DrivePower):
         else:
             self._velocity = ProfileVelocity(self, axis)
             self.modes = {OperationMode.PROFILE_VELOCITY: self._velocity}
-        self._mode_bits = 0
-        self._by_position = config.feedback == "position"
-        self._increments = config.position_increments if self._by_position else config.velocity_increments
-        self._per_mille = 1000.0 / config.rated_torque_nm * config.drive.units.torque
-        self._remote_bit = cia402.REMOTE if config.drive.remote else 0
-        drive_objects.install(self)
-        self._application_reset()
-        self.power(powered)
 
     # time ----------------------------------------------------------------------------------------------------
 
@@ -219,7 +213,7 @@ class Cia402Slave(DrivePower):
             self.pdos.send_events(self.now_s)
 
     def set_guard(self, closed: bool) -> None:
-        """Set input bit 17."""
+        """Set input bit 17: the guard is closed."""
         if self.io is not None:
             self.io.set_guard(closed)
             self.pdos.send_events(self.now_s)
@@ -288,12 +282,6 @@ class Cia402Slave(DrivePower):
 
     # what it shows -------------------------------------------------------------------------------------------
 
-    def reload_ramps(self) -> None:
-        """Take over ramp and window objects; a move under way goes on with them."""
-        self.ramps.load(self.store, self.config)
-        if isinstance(self.mode, ProfileVelocity):
-            self.mode.start()
-
     def set_home(self) -> None:
         """Make the present position the home position: the zero position lies 0x607C beyond it (CiA 402-2, 8.3)."""
         offset = self.store.values[(o.HOME_OFFSET, 0)]
@@ -308,7 +296,7 @@ class Cia402Slave(DrivePower):
     def update(self, t: float) -> None:
         """Compose the statusword; a change goes into the TPDOs, one of state asks for an early tick."""
         state = self.state
-        word = STATUS_BITS[state]
+        word = cia402.STATUS_BITS[state]
         urgent = _URGENT_BITS
         mode = self.mode
         self._mode_bits = 0

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from drivers.canopen import objects as o
-from sim.nodes import sdo_server as sdo
-from sim.nodes.object_store import ObjectStore
-from sim.nodes.sdo_server import SdoAbortError
+from drivers.canopen import sdo
+from sim.nodes.object_store import ObjectStore, SdoAbortError
 
 _SAVE = int.from_bytes(b"save", "little")
 _LOAD = int.from_bytes(b"load", "little")

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
+from drivers.canopen import sdo
 from drivers.canopen.dictionary import DICTIONARY, Entry
 from drivers.canopen.objects import OperationMode
 from drivers.cia402 import State
 from drivers.drives.drive_model import Substitute
 from drivers.drives.reader import GENERIC
-from sim.nodes import sdo_server as sdo
+from sim.nodes.drive_power import DrivePower
 from sim.nodes.motion import PositionAxis, VelocityAxis
-from sim.nodes.object_store import Key
-from sim.nodes.sdo_server import SdoAbortError
-
-if TYPE_CHECKING:
-    from sim.nodes.cia402_slave import Cia402Slave
+from sim.nodes.object_store import Key, SdoAbortError
 
 _OPTIONS: dict[int, tuple[int, ...]] = {
     o.ABORT_CONNECTION_OPTION: (0, 1, 2, 3),
@@ -87,7 +83,7 @@ def default_axis(config: AxisConfig, lag_s: float) -> VelocityAxis | PositionAxi
     return VelocityAxis(config.acceleration, config.deceleration, lag_s)
 
 
-def install(drive: Cia402Slave) -> None:
+def install(drive: DrivePower) -> None:
     """Connect the drive's objects with what they show and do."""
     _Objects(drive)
 
@@ -95,7 +91,7 @@ def install(drive: Cia402Slave) -> None:
 class _Objects:
     """Readers, guards and hooks of one drive's objects."""
 
-    def __init__(self, drive: Cia402Slave) -> None:
+    def __init__(self, drive: DrivePower) -> None:
         self._drive = drive
         store = drive.store
         store.readers.update(
@@ -191,7 +187,7 @@ class _Objects:
 class _Stands:
     """Does, for an object of the maker's, what the standard one does that it stands in for."""
 
-    def __init__(self, drive: Cia402Slave, standard: Key, one: Substitute) -> None:
+    def __init__(self, drive: DrivePower, standard: Key, one: Substitute) -> None:
         self._drive = drive
         self._standard = standard
         self._one = one
@@ -220,8 +216,6 @@ class _Choice:
 def wrapped_i32(counts: float) -> int:
     """Return counts rounded, as an I32: a position counter wraps around."""
     return (round(counts) + 0x8000_0000) % 0x1_0000_0000 - 0x8000_0000
-
-
 
 
 def clamped_i16(value: float) -> int:

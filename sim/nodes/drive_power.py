@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Final
 
 from drivers import cia402
+from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.cia402 import State
 from sim.nodes.canopen_device import CanopenDevice
@@ -28,18 +29,6 @@ _OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
 _HOLDING: Final = 5
 """Quick stop options from this one on stay in QUICK_STOP_ACTIVE at standstill."""
 
-STATUS_BITS: dict[State, int] = {
-    State.NOT_READY: 0x00,
-    State.SWITCH_ON_DISABLED: 0x40,
-    State.READY_TO_SWITCH_ON: 0x21,
-    State.SWITCHED_ON: 0x23,
-    State.OPERATION_ENABLED: 0x27,
-    State.QUICK_STOP_ACTIVE: 0x07,
-    State.FAULT_REACTION: 0x0F,
-    State.FAULT: 0x08,
-}
-"""Bits 0-3, 5 and 6 of the statusword."""
-
 ENERGISED = frozenset((State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION))
 """States in which the power stage drives the motor."""
 
@@ -59,12 +48,16 @@ class DrivePower(CanopenDevice):
         "_steady",
         "axis",
         "coast_deceleration",
+        "config",
         "io",
         "local",
         "mode",
         "modes",
+        "origin",
         "ramps",
         "state",
+        "statusword",
+        "torque_nm",
         "torque_off",
         "unpowered_velocity",
         "watching",
@@ -72,18 +65,22 @@ class DrivePower(CanopenDevice):
 
     def __init__(
         self,
+        config: AxisConfig,
         wire: CanWire,
         store: ObjectStore,
         axis: Axis,
-        io: SafetyIo | None,
         boot_s: float,
         turnaround_s: float,
         now: float,
     ) -> None:
         """Put a drive on the wire, unpowered, its axis at rest."""
         super().__init__(wire, store, boot_s, turnaround_s, now)
+        self.config = config
         self.axis = axis
-        self.io = io
+        self.io = SafetyIo() if config.digital_io else None
+        self.origin = 0.0
+        self.statusword = 0
+        self.torque_nm = 0.0
         self.state = State.NOT_READY
         self.mode: DriveMode | None = None
         self.modes: dict[int, DriveMode] = {}
@@ -100,6 +97,12 @@ class DrivePower(CanopenDevice):
 
     def update(self, t: float) -> None:
         """Compose the statusword."""
+
+    def reload_ramps(self) -> None:
+        """Take over ramp and window objects; a move under way continues with them."""
+        self.ramps.load(self.store, self.config)
+        if isinstance(self.mode, ProfileVelocity):
+            self.mode.start()
 
     # the world around the drive ------------------------------------------------------------------------------
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from math import inf
 
 from drivers.canopen import objects as o
+from drivers.canopen import sdo
 from drivers.canopen.messages import encode_emergency
-from sim.nodes import sdo_server as sdo
-from sim.nodes.object_store import ObjectStore
-from sim.nodes.sdo_server import SdoAbortError
+from sim.nodes.object_store import ObjectStore, SdoAbortError
 from sim.wires.can_wire import CanWire
 
 _HISTORY_LENGTH = 8

@@ -11,10 +11,9 @@ from collections.abc import Callable, Mapping
 from copy import deepcopy
 
 from drivers.canopen import objects as o
+from drivers.canopen import sdo
 from drivers.canopen.dictionary import DICTIONARY, Entry
 from drivers.canopen.objects import DataType
-from sim.nodes import sdo_server as sdo
-from sim.nodes.sdo_server import SdoAbortError
 
 Key = tuple[int, int]
 Reader = Callable[[], int]
@@ -23,6 +22,14 @@ Guard = Callable[[int, int], None]
 
 _COMMUNICATION = range(0x1000, 0x2000)
 """The objects a communication reset sets back (CiA 301, 7.3.2.2.1)."""
+
+
+class SdoAbortError(Exception):
+    """An access that the object dictionary refuses; ``code`` is the abort code (``drivers.canopen.sdo``)."""
+
+    def __init__(self, code: int) -> None:
+        super().__init__(f"SDO abort 0x{code:08X}")
+        self.code = code
 
 
 class ObjectStore:
@@ -94,7 +101,7 @@ class ObjectStore:
         if not exact:
             data = data[: codec.size]
         if len(data) != codec.size:
-            raise SdoAbortError(sdo.LENGTH)
+            raise SdoAbortError(sdo.LENGTH_MISMATCH)
         value: int = codec.unpack(data)[0]
         self.write(index, sub, value)
 
@@ -135,5 +142,5 @@ class ObjectStore:
         entry = self.entries.get((index, sub))
         if entry is None:
             known = any(index == one for one, _ in self.entries)
-            raise SdoAbortError(sdo.NO_SUBINDEX if known else sdo.NO_OBJECT)
+            raise SdoAbortError(sdo.NO_SUB_INDEX if known else sdo.NO_OBJECT)
         return entry

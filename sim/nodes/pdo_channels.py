@@ -11,10 +11,9 @@ from math import inf
 from typing import Final, Protocol
 
 from drivers.canopen import objects as o
+from drivers.canopen import sdo
 from drivers.canopen.pdo import PdoMap, PdoMapError
-from sim.nodes import sdo_server as sdo
-from sim.nodes.object_store import Key, ObjectStore
-from sim.nodes.sdo_server import SdoAbortError
+from sim.nodes.object_store import Key, ObjectStore, SdoAbortError
 from sim.wires.can_traffic import Listener
 
 LAST_CYCLIC: Final = 240

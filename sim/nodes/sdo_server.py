@@ -1,30 +1,13 @@
 """The SDO server of a simulated device (CiA 301, 7.2.4): expedited and segmented transfers, toggle, abort codes.
 
-Pure: a request of eight bytes in, a reply of eight bytes out. Block transfer is answered as an unknown command, as
+Sans-IO: a request of eight bytes in, a reply of eight bytes out. Block transfer is answered as an unknown command, as
 devices without it do.
 """
 
 from __future__ import annotations
 
-from typing import Protocol
-
-# Abort codes of CiA 301, table 22.
-TOGGLE = 0x05030000
-UNKNOWN_COMMAND = 0x05040001
-OUT_OF_MEMORY = 0x05040005
-UNSUPPORTED_ACCESS = 0x06010000
-WRITE_ONLY = 0x06010001
-READ_ONLY = 0x06010002
-NO_OBJECT = 0x06020000
-NOT_MAPPABLE = 0x06040041
-PDO_TOO_LONG = 0x06040042
-LENGTH = 0x06070010
-NO_SUBINDEX = 0x06090011
-VALUE_RANGE = 0x06090030
-VALUE_TOO_LOW = 0x06090032
-NOT_STORED = 0x08000020
-LOCAL_CONTROL = 0x08000021
-DEVICE_STATE = 0x08000022
+from drivers.canopen import sdo
+from sim.nodes.object_store import ObjectStore, SdoAbortError
 
 MAX_OBJECT_BYTES = 256
 """Largest object a client may write, bytes: no object of a servo drive is longer."""
@@ -32,34 +15,10 @@ MAX_OBJECT_BYTES = 256
 _IDLE, _UPLOAD, _DOWNLOAD = 0, 1, 2
 
 
-class SdoAbortError(Exception):
-    """An access that the object dictionary refuses; ``code`` is the CiA 301 abort code."""
-
-    def __init__(self, code: int) -> None:
-        super().__init__(f"SDO abort 0x{code:08X}")
-        self.code = code
-
-
-class ObjectAccess(Protocol):
-    """The object dictionary behind the server."""
-
-    def upload(self, index: int, sub: int) -> bytes:
-        """Return an object's value, little endian; raises SdoAbortError."""
-        ...
-
-    def check_writable(self, index: int, sub: int) -> None:
-        """Raise SdoAbortError when the object is missing or may not be written at all."""
-        ...
-
-    def download(self, index: int, sub: int, data: bytes, exact: bool) -> None:
-        """Write an object; ``exact`` says that the length of ``data`` was stated; raises SdoAbortError."""
-        ...
-
-
 class SdoServer:
     """One SDO channel; holds the state of a segmented transfer between requests."""
 
-    def __init__(self, objects: ObjectAccess) -> None:
+    def __init__(self, objects: ObjectStore) -> None:
         """Serve ``objects``."""
         self._objects = objects
         self._mode = _IDLE
@@ -96,7 +55,7 @@ class SdoServer:
             elif self._mode == _IDLE:
                 # A segment of no transfer carries no address of its own.
                 self._index = self._sub = 0
-            raise SdoAbortError(UNKNOWN_COMMAND)
+            raise SdoAbortError(sdo.UNKNOWN_COMMAND)
         except SdoAbortError as refusal:
             self.reset()
             return self._head(0x80) + refusal.code.to_bytes(4, "little")
@@ -145,7 +104,7 @@ class SdoServer:
         self._objects.check_writable(self._index, self._sub)
         self._size = int.from_bytes(data[4:8], "little") if sized else None
         if self._size is not None and self._size > MAX_OBJECT_BYTES:
-            raise SdoAbortError(OUT_OF_MEMORY)
+            raise SdoAbortError(sdo.OUT_OF_MEMORY)
         self._mode = _DOWNLOAD
         self._toggle = 0
         return self._head(0x60) + bytes(4)
@@ -154,16 +113,16 @@ class SdoServer:
         self._check_toggle(data[0])
         self._buffer += data[1 : 8 - (data[0] >> 1 & 7)]
         if len(self._buffer) > (MAX_OBJECT_BYTES if self._size is None else self._size):
-            raise SdoAbortError(LENGTH if self._size is not None else OUT_OF_MEMORY)
+            raise SdoAbortError(sdo.LENGTH_MISMATCH if self._size is not None else sdo.OUT_OF_MEMORY)
         reply = bytes((0x20 | self._toggle << 4,)) + bytes(7)
         self._toggle ^= 1
         if data[0] & 0x01:
             if self._size is not None and len(self._buffer) != self._size:
-                raise SdoAbortError(LENGTH)
+                raise SdoAbortError(sdo.LENGTH_MISMATCH)
             self._objects.download(self._index, self._sub, self._buffer, True)
             self.reset()
         return reply
 
     def _check_toggle(self, command: int) -> None:
         if command >> 4 & 1 != self._toggle:
-            raise SdoAbortError(TOGGLE)
+            raise SdoAbortError(sdo.TOGGLE_ERROR)

@@ -45,10 +45,6 @@ class ContactModel:
         """Return the depth in mm at which a load of at least 0 N rests."""
         return (load_n / self.factor) ** (1.0 / self.exponent)
 
-    def stiffness_n_mm(self, load_n: float) -> float:
-        """Return dF/dd in N/mm at a load above 0 N."""
-        return self.exponent * load_n / self.depth_mm(load_n)
-
 
 class Relaxation:
     """What rubber gives way at held depth, and takes back when it is left alone.

@@ -152,11 +152,6 @@ def thermal_factor(parameters: PaperParameters, temperature_c: float) -> float:
     return parameters.alpha * math.exp(-parameters.beta * off * off) + parameters.gamma
 
 
-def power_law(c1: float, c2: float, c3: float, load_n: float, slip_m_s: float) -> float:
-    """Return Dorsch's mu = c1 p^c2 v^c3 (Eq 1); load in N, slip speed in m/s, both above 0."""
-    return c1 * load_n**c2 * slip_m_s**c3
-
-
 def evaluate(
     parameters: PaperParameters | V2Parameters,
     temperature_c: ArrayLike,

@@ -193,6 +193,12 @@ class CounterfaceParameters:
         if self.loss >= 1.0:
             raise ValueError("CounterfaceParameters.loss is a share of the grip, below 1")
 
+    def grip_kept(self, travel_m: float, surface_c: float) -> float:
+        """Return the share of its grip that a belt keeps over a travel under load, m, below rubber of a temperature."""
+        hotter_k = max(surface_c - self.clogs_above, 0.0)
+        counted_m = travel_m * (1.0 + self.clogging * hotter_k)
+        return (1.0 - self.loss) ** (counted_m / self.loss_travel)
+
 
 @dataclass(frozen=True, slots=True)
 class VariabilityParameters:

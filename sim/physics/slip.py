@@ -8,6 +8,7 @@ sideslip rows of the paper (Polymers 2024, 16(5), 596, doi 10.3390/polym16050596
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Final
 
 from sim.physics import laws
@@ -21,6 +22,13 @@ SIDESLIP_DATA: Final[frozenset[str]] = frozenset({"1#", "2#"})
 
 CREEP_M_S: Final = 0.008
 """[A] Slip added along x to find the direction of friction when there is no slip (the plant's default)."""
+
+# Without Final: a compiled module does not find a constant that is a tuple of numbers.
+LOAD_N = (100.0, 400.0)
+SLIP_M_S = (0.0, 0.4)
+TEMPERATURE_C = (25.0, 85.0)
+SIDESLIP_DEG = (0.0, 30.0)
+"""Where the paper's data lie (Table 2 and appendices)."""
 
 REVERSAL_WIDTH_M_S: Final = 0.001
 """[A] The force passes through zero over this width of slip (the plant's default)."""
@@ -84,18 +92,24 @@ def predict(
     return law.mu(temperature_c, load_n, resultant) * cornering_factor(compound, sideslip_deg)
 
 
-def predict_forces(
-    compound: str,
-    slip_velocity_m_s: float,
-    load_n: float,
-    temperature_c: float,
-    sideslip_deg: float = 0.0,
-    wheel_speed_m_s: float = 0.8,
-    model: str = "paper",
-) -> tuple[float, float]:
-    """Return (Fx, Fy) in N, the friction on the belt along and across the wheel's plane; see ``predict``."""
-    mu = predict(compound, slip_velocity_m_s, load_n, temperature_c, sideslip_deg, wheel_speed_m_s, model)
-    belt = belt_speed_for(wheel_speed_m_s, slip_velocity_m_s)
-    vx, vy, _ = slip_velocity(wheel_speed_m_s, belt, sideslip_deg)
-    cx, cy = traction_direction(vx, vy)
-    return mu * load_n * cx, mu * load_n * cy
+def caveats(
+    compound: str, slip_velocity_m_s: float, load_n: float, temperature_c: float, sideslip_deg: float
+) -> Iterator[str]:
+    """Yield why a coefficient of the laws ``paper`` and ``v2`` is to be taken with care, a line each."""
+    sideslip = abs(sideslip_deg)
+    for name, value, (low, high), unit, scale in (
+        ("load", load_n, LOAD_N, "N", 1.0),
+        ("slip velocity", slip_velocity_m_s, SLIP_M_S, "mm/s", 1e3),
+        ("temperature", temperature_c, TEMPERATURE_C, "degC", 1.0),
+        ("sideslip", sideslip, SIDESLIP_DEG, "deg", 1.0),
+    ):
+        if not low <= value <= high:
+            data = f"{scale * low:g} to {scale * high:g} {unit}"
+            yield f"{name} {scale * value:g} {unit} is outside the paper's data, {data}: an extrapolation"
+    if slip_velocity_m_s == 0.0 and sideslip == 0.0:
+        yield "at 0 mm/s the wheel rolls: the paper's value there is no coefficient of sliding"
+    if sideslip > 0.0 and compound not in SIDESLIP_DATA:
+        yield f"no valid data of {compound} with a sideslip angle: the paper's rows repeat those of 2#"
+    elif sideslip > 0.0 and CORNERING.get(compound):
+        factor = CORNERING[compound]
+        yield f"the factor 1 + {factor:g} sin|sideslip| of {compound} is this project's, from three points of the paper"

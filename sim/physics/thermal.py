@@ -173,13 +173,6 @@ class ThermalModel:
         total = self._outer_to_surface + air + belt
         return self._outer_to_surface / total, self._share / total, belt / total, air * ambient_c / total
 
-    def surface_temperature(
-        self, state: ThermalState, friction_w: float, ambient_c: float, contact: float, rotating: bool
-    ) -> float:
-        """Return the tread's temperature in balance with the outermost cell, friction, air and belt."""
-        per_cell, per_w, per_belt, of_air = self.surface_gains(ambient_c, contact, rotating)
-        return per_cell * state.cells_c[-1] + per_w * friction_w + per_belt * state.belt_c + of_air
-
     def step(
         self,
         state: ThermalState,

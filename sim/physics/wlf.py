@@ -82,11 +82,6 @@ class WlfBellParameters:
             raise ValueError(f"WlfBellParameters.mu_0 is 0 to mu_max ({self.mu_max:g}), not {self.mu_0!r}")
 
     @property
-    def pole_c(self) -> float:
-        """At or below this temperature there is no law, degC."""
-        return self.t_ref - self.c2
-
-    @property
     def fitted_c(self) -> tuple[float, float]:
         """Between these temperatures the shift is said to hold, degC: glass transition and 100 K above."""
         glass_c = self.t_ref - GLASS_TO_REFERENCE_K

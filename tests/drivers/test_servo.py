@@ -134,7 +134,7 @@ def test_inputs_that_were_never_sent_are_older_than_anything() -> None:
 def test_the_statusword_bits_have_names() -> None:
     drive = joined(wheel())
     report(drive, ENABLED | 0x2880)
-    assert (drive.warning, drive.internal_limit, drive.deviation, drive.remote) == (True, True, True, True)
+    assert (drive.warning, drive.deviation, drive.remote) == (True, True, True)
 
 
 # --- towards operation --------------------------------------------------------------------------------------

@@ -8,7 +8,6 @@ import pytest
 
 from drivers.canopen.data_sheet import DataSheet, DataSheetError, SheetEntry, read_data_sheet
 from drivers.canopen.eds import EDS_PATH
-from drivers.drive_settings import axis_objects
 from drivers.sheet_check import check_sheet
 from tests.drivers.can_bench import wheel, yaw
 
@@ -110,11 +109,3 @@ def test_an_object_that_the_profile_could_use_is_noted(own: DataSheet) -> None:
     verdict = check_sheet(wheel(profile="elmo_gold"), own)
     (noted,) = verdict.noted
     assert noted == "0x1400:05 (RPDO1 event timer (ms)): the drive has it, the profile elmo_gold does without"
-
-
-def test_the_objects_of_an_axis_are_listed_with_what_they_have_to_read() -> None:
-    found = {(one.index, one.sub): one for one in axis_objects(wheel())}
-    assert found[0x6085, 0].expected == 60_000
-    assert found[0x1016, 1].expected == 0x007F00C8
-    assert found[0x6076, 0].expected is None
-    assert all(one.name for one in found.values())

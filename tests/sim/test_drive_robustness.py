@@ -10,8 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from drivers import cia402
-from drivers.cia402 import State
-from sim.nodes.drive_power import STATUS_BITS
+from drivers.cia402 import STATUS_BITS, State
 from tests.sim.drive_bench import NODE, PC, PRESS, WHEEL, YAW, DriveBench
 
 INDICES = (0x1003, 0x1010, 0x1016, 0x1017, 0x1400, 0x1600, 0x1800, 0x1A00, 0x6007, 0x6040, 0x605A, 0x6060, 0x6080)

@@ -6,7 +6,7 @@ import pytest
 
 from drivers import cia402
 from drivers.cia402 import State
-from sim.nodes.drive_power import FAULTY, STATUS_BITS, commanded
+from sim.nodes.drive_power import FAULTY, commanded
 
 S = State
 
@@ -64,4 +64,4 @@ def test_withdrawn_voltage_disables_from_every_working_state() -> None:
 @pytest.mark.parametrize("state", list(State))
 def test_the_client_reads_the_state_from_the_bits_shown(state: State) -> None:
     for others in (0x0000, 0x0610, 0x3690, 0xFF90):
-        assert cia402.decode(STATUS_BITS[state] | others) is state
+        assert cia402.decode(cia402.STATUS_BITS[state] | others) is state

@@ -9,7 +9,8 @@ import statistics
 import numpy as np
 import pytest
 
-from sim.noise import Autoregressive, NormalStream, mean_of_autoregressive, normal, uniforms
+from sim.noise import Autoregressive, NormalStream, normal, uniforms
+from tests.campaigns.acceptance.sigma import mean_of_autoregressive
 
 
 def take(stream: NormalStream, count: int) -> list[float]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from sim.nodes.sdo_server import MAX_OBJECT_BYTES, NO_OBJECT, READ_ONLY, SdoAbortError, SdoServer
+from drivers.canopen.sdo import NO_OBJECT, READ_ONLY
+from sim.nodes.object_store import SdoAbortError
+from sim.nodes.sdo_server import MAX_OBJECT_BYTES, SdoServer
 
 LONG = b"a long device name"
 

@@ -7,8 +7,7 @@ from copy import deepcopy
 
 import pytest
 
-from sim.noise import NormalStream
-from sim.stick_slip import SLIP_SHARE, StickSlip
+from sim.noise import SLIP_SHARE, NormalStream, StickSlip
 
 STEPS = 20_000
 

@@ -14,11 +14,10 @@ from __future__ import annotations
 from math import copysign, exp
 from typing import Final
 
-from sim.noise import NormalStream, normal, uniforms
+from sim.noise import NormalStream, StickSlip, normal, uniforms
 from sim.physics.laws import NO_SETTING, FrictionLaw, LawSetting
 from sim.physics.track import Interface, TrackParameters
 from sim.sensors import TemperatureSensor
-from sim.stick_slip import StickSlip
 
 SPECIMEN_SIGMA: Final = 0.03
 REPEAT_SIGMA: Final = 0.02

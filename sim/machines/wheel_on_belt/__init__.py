@@ -1,11 +1,10 @@
-"""A rubber wheel pressed on an abrasive belt: plant, rig, faults, and what counts as harm."""
+"""A rubber wheel pressed on an abrasive belt: plant, rig and faults."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from sim.machines import SimulatedMachine
-from sim.machines.wheel_on_belt.harm import heat_flowing_w
 from sim.machines.wheel_on_belt.rig import WheelRig
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ def log_row(rig: WheelRig) -> tuple[float, ...]:
     wheel_m_s = axes["wheel"].axis.value * 0.5e-3 * plant.diameter_mm
     return (
         wheel_m_s, axes["belt"].axis.value, plant.slip_m_s, plant.force_z_n, axes["press"].axis.position,
-        heat_flowing_w(rig), plant.heat.hub_c, plant.surface_c,
+        rig.heat_flowing_w, plant.heat.hub_c, plant.surface_c,
     )  # fmt: skip
 
 

@@ -16,15 +16,13 @@ from typing import Final
 from sim.machines.wheel_on_belt.heat_flow import SAME_STEP_S, HeatFlow
 from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor, run_factor, wheel_factor
 from sim.machines.wheel_on_belt.sensors import LoadCellSensor
-from sim.noise import Autoregressive, NormalStream, uniforms
+from sim.noise import Autoregressive, NormalStream, StickSlip, uniforms
 from sim.physics import laws
 from sim.physics.contact import ContactModel, Relaxation, Warmth
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import cornering_factor, traction_direction
 from sim.physics.thermal import ThermalModel, ThermalState
-from sim.physics.wear import grip_kept
 from sim.sensors import SpeedSensor, TemperatureSensor
-from sim.stick_slip import StickSlip
 
 _TURN: Final = 2.0 * pi
 _SAME_SIZE_K: Final = 0.005
@@ -262,7 +260,7 @@ class Plant:
 
     def travel(self, travel_m: float, surface_c: float) -> None:
         """Let the belt travel under load, m, below rubber of a surface temperature, degC: it goes blunt and clogs."""
-        self.belt_grip *= grip_kept(self.parameters.counterface, travel_m, surface_c)
+        self.belt_grip *= self.parameters.counterface.grip_kept(travel_m, surface_c)
 
     def set_runout(self, runout_mm: float) -> None:
         """Let the tread swing by this much, peak to peak in mm, once a turn."""

@@ -125,7 +125,6 @@ class WheelRig(SimRig):
             return  # nothing but temperatures changes, and they take their time
         self._plant_s = t1
         wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
-        io = self._press.io
         if plant.force_z_n > 0.0 or self._stalled:
             self._bear(self._press)
         self._pressed_mm = press.position
@@ -144,7 +143,7 @@ class WheelRig(SimRig):
             press_mm,
             press_mm_s,
             sideslip_deg,
-            self.jacket.heater_w if io is not None and io.contactor_closed else 0.0,
+            self.heat_flowing_w,
         )
         self._show(wheel_axis.value, belt_axis.value)
 
@@ -159,6 +158,12 @@ class WheelRig(SimRig):
         """How fast the belt's surface moves, m/s."""
         surface = self._wheel.axis.value * self._roller_m if self.swapped else self._belt.axis.value
         return surface / self.plant.belt_speed.factor
+
+    @property
+    def heat_flowing_w(self) -> float:
+        """Power that reaches the jacket through the contactor, W."""
+        io = self._press.io
+        return self.jacket.heater_w if io is not None and io.contactor_closed else 0.0
 
     @property
     def rim_m_s(self) -> float:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from statistics import fmean
 
-from sim.machines.wheel_on_belt.scatter import stated_sigma
 from sim.physics.parameters import SimParameters
 from tests.campaigns.acceptance.bench import Bench, Run, RunSpec
 from tests.campaigns.acceptance.figure import Figure, at_most, equal, holds
 from tests.campaigns.acceptance.model import coefficient
+from tests.campaigns.acceptance.sigma import stated_sigma
 from tests.campaigns.acceptance.topic import Topic
 
 CONDITIONS = 2

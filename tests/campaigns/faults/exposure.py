@@ -13,11 +13,11 @@ from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import FaultKind
 from sim.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.machines.wheel_on_belt.faults.catalogue import Exposure
-from sim.machines.wheel_on_belt.harm import Truth
 from sim.nodes.safety_io import SafetyIo
 from sim.physics.contact import ContactModel
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, Install, PreGrind, WheelCondition
 from tests.campaigns.faults.stage import Stage
+from tests.campaigns.faults.wheel_harm import Truth
 
 TURNS_M_S = 0.04
 FITTED_S = 1.1

@@ -9,9 +9,9 @@ from math import inf
 from sim.faults import Injection
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.language import FaultTime
-from sim.machines.wheel_on_belt.harm import SAFE_S
 from tests.campaigns.faults.recipes import language_of
 from tests.campaigns.faults.stage import Stage
+from tests.campaigns.faults.wheel_harm import SAFE_S
 
 WATCHED_S = 6.0
 """A fault that ends nothing is watched this long, s of rig time, and 3 s longer than its budget; a slow one SLOW_S."""

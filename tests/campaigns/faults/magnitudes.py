@@ -17,13 +17,13 @@ from pathlib import Path
 from sim.faults import Parametric
 from sim.machines.wheel_on_belt.faults import PARAMETRIC
 from sim.machines.wheel_on_belt.faults.catalogue import ASSEMBLY
-from sim.machines.wheel_on_belt.harm import CONTACT_C, FORCE_N, HUB_C, POWER_W, STANDING_J
 from tester.base.clock import cpu_seconds
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import FIRST, KnownRatio
 from tester.kinds.wheel_on_belt.run.past_runs import known_from, ratios_of
 from tests.campaigns.faults.judge import Case, Judge
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit
 from tests.campaigns.faults.stage import Stage
+from tests.campaigns.faults.wheel_harm import CONTACT_C, FORCE_N, HUB_C, POWER_W, STANDING_J
 
 WRITTEN = Path(__file__).resolve().parents[3] / "docs" / "hardware-magnitudes.csv"
 """Magnitudes that harm unseen, with the device that must hold; docs/kinds/wheel-on-belt.md shows the table."""

@@ -11,7 +11,6 @@ from typing import Any, Protocol
 from sim.faults import FaultScript, Injection
 from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import FaultKind
-from sim.machines.wheel_on_belt.harm import HarmObserver, Truth
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.drive_power import ENERGISED
 from tester.analysis.results import Burst, RepeatResult, RepeatStatus
@@ -32,6 +31,7 @@ from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
 from tester.store.sql import Judged, Ticket
 from tests.campaigns.faults.invariants import Invariants
+from tests.campaigns.faults.wheel_harm import HarmObserver, Truth
 
 RUNNING = frozenset({"armed", "run", "hold"})
 STANDING = frozenset({"idle", "latched"})

@@ -12,9 +12,9 @@ from sim.faults import Injection
 from sim.faults.kinds import Expected
 from sim.faults.language import FaultTime
 from sim.machines.wheel_on_belt.faults import CATALOGUE
-from sim.machines.wheel_on_belt.harm import SAFE_S, Truth
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit
 from tests.campaigns.faults.stage import RUNNING, Stage
+from tests.campaigns.faults.wheel_harm import SAFE_S, Truth
 
 SHORT_RUN, LONG_RUN = (14, 12), (400, 20)
 """(examples, steps each) of the default run and of the campaign."""

@@ -18,7 +18,6 @@ from sim.physics.friction import (
     coefficient,
     coefficients,
     evaluate,
-    power_law,
     thermal_factor,
 )
 
@@ -83,10 +82,6 @@ def test_temperature_factor_peaks_at_its_centre(compound: str) -> None:
 def test_without_slip_only_the_constant_term_is_left() -> None:
     p = COMPOUNDS["2#"]
     assert coefficient("2#", 55.0, 300.0, 0.0) == pytest.approx(thermal_factor(p, 55.0) * p.a2)
-
-
-def test_power_law_is_a_product_of_powers() -> None:
-    assert power_law(2.0, -0.5, 2.0, 400.0, 0.5) == pytest.approx(0.025)
 
 
 def test_unknown_compound_is_refused_naming_the_known_ones() -> None:

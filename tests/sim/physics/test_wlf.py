@@ -68,7 +68,7 @@ def test_at_standstill_it_is_the_foot_of_the_bell() -> None:
 @pytest.mark.parametrize("below_k", [0.0, 1.0, 100.0])
 def test_at_and_below_the_pole_there_is_no_law(below_k: float) -> None:
     with pytest.raises(PoleError, match=r"holds only above -104\.5 degC"):
-        LAW.mu(LAW.parameters.pole_c - below_k, 10.0, 1e-3)
+        LAW.mu(LAW.parameters.t_ref - LAW.parameters.c2 - below_k, 10.0, 1e-3)
 
 
 def test_the_shift_is_said_to_hold_for_100_k_above_the_glass_transition() -> None:

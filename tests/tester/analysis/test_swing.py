@@ -7,8 +7,7 @@ from random import Random
 
 import pytest
 
-from sim.noise import NormalStream
-from sim.stick_slip import StickSlip
+from sim.noise import NormalStream, StickSlip
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.results import Swing
 from tester.analysis.swing import LIMIT_PERCENT, UNKNOWN, swing_of

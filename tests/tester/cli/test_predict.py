@@ -136,7 +136,7 @@ def test_each_bound_that_is_left_is_said(capsys: pytest.CaptureFixture[str]) -> 
 
 def test_the_other_law_of_the_paper_warns_too_and_a_foreign_one_does_not(capsys: pytest.CaptureFixture[str]) -> None:
     assert warnings(capsys, model="v2", load="50 N")
-    assert not warnings(capsys, model="tests.sim.physics.test_data_range:flat", load="50 N")
+    assert not warnings(capsys, model="tests.sim.physics.test_caveats:flat", load="50 N")
 
 
 def test_a_belt_that_would_run_backwards_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from sim.machines.wheel_on_belt.harm import HarmObserver, Truth
 from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.kinds import load_rig
 from tester.run.simulated import spec_of
+from tests.campaigns.faults.wheel_harm import HarmObserver, Truth
 
 
 @pytest.fixture

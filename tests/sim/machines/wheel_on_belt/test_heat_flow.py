@@ -14,6 +14,7 @@ from sim.physics.parameters import SensorParameters, ThermalParameters, WheelPar
 from sim.physics.thermal import CALM_STEP_S, ThermalModel
 from sim.sensors import TemperatureSensor
 from tests.sim.physics.test_thermal import LOSSLESS, stored_j
+from tests.sim.physics.thermal_example import surface_temperature
 
 AMBIENT_C = 25.0
 
@@ -53,7 +54,7 @@ def test_temperatures_after_each_calm_step_are_those_of_fine_ones(share: float, 
             if tick * dt < CALM_AFTER_S or flow.state.cells_c is last:
                 continue
             compared, last = compared + 1, flow.state.cells_c
-            expected_c = reference.surface_temperature(expected, friction_w, AMBIENT_C, float(touching), rotating)
+            expected_c = surface_temperature(reference, expected, friction_w, AMBIENT_C, float(touching), rotating)
             greatest_c = max(greatest_c, surface_c)
             assert surface_c == pytest.approx(expected_c, abs=0.02)
             assert flow.state.hub_c == pytest.approx(expected.hub_c, abs=0.02)

@@ -14,8 +14,7 @@ from sim.machines.wheel_on_belt.scatter import WheelSetting
 from sim.physics.contact import ContactModel
 from sim.physics.friction import KNOWN, FrictionModel, UnknownCompoundError
 from sim.physics.parameters import ContactParameters, DriveParameters, SimParameters
-from sim.physics.slip import cornering_factor, predict, predict_forces, slip_velocity, traction_direction
-from sim.physics.wear import radius_loss_mm, running_in_factor
+from sim.physics.slip import cornering_factor, predict, slip_velocity, traction_direction
 
 EXACT = SimParameters(noise=0.0, scatter=0.0, running_in=0.0, growth=0.0, ambient=25.0)
 ROUND = replace(EXACT, contact=ContactParameters(runout=0.0))
@@ -103,7 +102,7 @@ def test_rubbing_is_what_the_formulas_say(
         wheel_m_s = 0.0005 * diameter_mm * WHEEL_RAD_S
         vx, vy, slip_m_s = slip_velocity(wheel_m_s, belt_m_s, sideslip_deg)
         mu = FrictionModel("1#", model).mu(surface_c, max(plant.force_z_n, 20.0), slip_m_s)
-        mu *= cornering_factor("1#", sideslip_deg) * running_in_factor(0.15, 10.0, sliding_m)
+        mu *= cornering_factor("1#", sideslip_deg) * (1.0 + 0.15 * math.exp(-sliding_m / 10.0))
         mu *= plant.wheel_factor * plant.condition_factor * plant.run_factor
         within = plant.mu / mu / (1.0 - 0.1 * math.exp(-touched_s / 0.25))
         assert within == pytest.approx(1.0, abs=0.06)
@@ -111,7 +110,7 @@ def test_rubbing_is_what_the_formulas_say(
         forces = (plant.force_x_n, plant.force_y_n)
         assert forces == pytest.approx((plant.mu * plant.force_z_n * cx, plant.mu * plant.force_z_n * cy), rel=1e-12)
         assert plant.sliding_m == pytest.approx(sliding_m + 0.01 * slip_m_s, rel=1e-12)
-        worn_mm = radius_loss_mm(0.08, plant.force_z_n, 0.01 * slip_m_s, diameter_mm, 30.0)
+        worn_mm = 0.08 * plant.force_z_n * 0.01 * slip_m_s / (math.pi * diameter_mm * 30.0)  # Archard
         assert diameter_mm - plant.diameter_mm == pytest.approx(2.0 * worn_mm, rel=1e-6, abs=1e-13)
 
 
@@ -121,13 +120,14 @@ def test_running_in_is_that_of_the_formula_at_any_distance(sliding_m: float) -> 
     for plant in (worn, never):
         plant.install(1, 1, "1#", True, sliding_m=sliding_m)
         run(plant, 0.01, 200.0)
-    assert worn.mu / never.mu == pytest.approx(running_in_factor(0.15, 10.0, sliding_m), rel=1e-12)
+    assert worn.mu / never.mu == pytest.approx((1.0 + 0.15 * math.exp(-sliding_m / 10.0)), rel=1e-12)
 
 
 def test_force_has_the_direction_of_the_slip() -> None:
     plant = mounted(replace(ROUND, wear=0.0))
     run(plant, 1.5, 200.0, sideslip_deg=20.0)
-    fx, fy = predict_forces("1#", 0.3, 200.0, plant.surface_c, 20.0)
+    friction_n = 200.0 * predict("1#", 0.3, 200.0, plant.surface_c, 20.0)
+    fx, fy = (friction_n * share for share in traction_direction(*slip_velocity(0.8, 0.5, 20.0)[:2]))
     assert (plant.force_x_n, plant.force_y_n) == pytest.approx((fx, fy), rel=2e-3)
 
 

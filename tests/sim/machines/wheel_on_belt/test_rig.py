@@ -8,7 +8,6 @@ import pytest
 
 from drivers.canopen.objects import MAX_TORQUE, OperationMode
 from drivers.cia402 import INTERNAL_LIMIT, State
-from sim.machines.wheel_on_belt.harm import FORCE_N
 from sim.machines.wheel_on_belt.plant import Plant
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.controller_slave import ControllerSlave
@@ -16,6 +15,7 @@ from sim.nodes.motion import VelocityAxis
 from sim.rig import LONGEST_STEP_S, SHORTEST_STEP_S, SimRig
 from tester.kinds import load_rig
 from tester.run.simulated import spec_of
+from tests.campaigns.faults.wheel_harm import FORCE_N
 from tests.tester.kinds.wheel_on_belt.bench import Simulation, in_contact
 
 

@@ -9,9 +9,10 @@ from typing import Any
 
 import pytest
 
-from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor, run_factor, stated_sigma, wheel_factor
+from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor, run_factor, wheel_factor
 from sim.noise import Autoregressive, NormalStream
 from sim.physics.parameters import SimParameters
+from tests.campaigns.acceptance.sigma import stated_sigma
 
 QUIET = replace(SimParameters(), scatter=0.0)
 MIDDLE = WheelSetting(0.3, 200.0, (0.0, 0.0), 40.0)

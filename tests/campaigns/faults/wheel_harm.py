@@ -1,4 +1,4 @@
-"""Harm, as the plant sees it: an observer that looks at what is, never at what somebody measured or meant.
+"""Harm, as the plant sees it: an observer of what is, never of measurements or intentions.
 
 The figures are those of docs/kinds/wheel-on-belt.md [A].
 """
@@ -46,7 +46,7 @@ class Truth:
     def of(cls, rig: WheelRig) -> Truth:
         """Look at a rig."""
         plant = rig.plant
-        return cls(plant.force_z_n, plant.slip_m_s, rig.rim_m_s, rig.belt_m_s, heat_flowing_w(rig))
+        return cls(plant.force_z_n, plant.slip_m_s, rig.rim_m_s, rig.belt_m_s, rig.heat_flowing_w)
 
     def unsafe(self, *, creeping: bool = False, force_stays: bool = False, heat_stays: bool = False) -> list[str]:
         """Return what is missing to the safe state of invariant I5; empty when the rig is safe.
@@ -65,12 +65,6 @@ class Truth:
         if not self.slip_m_s < (CREEP_M_S if creeping else STILL_M_S):
             missing.append(f"slip {self.slip_m_s:.3f} m/s")
         return missing
-
-
-def heat_flowing_w(rig: WheelRig) -> float:
-    """Return the power that reaches the jacket, W."""
-    io = next((drive.io for drive in rig.axes.values() if drive.io is not None), None)
-    return rig.jacket.heater_w if io is not None and io.contactor_closed else 0.0
 
 
 @dataclass(slots=True)
@@ -116,7 +110,7 @@ class HarmObserver:
             self._note("hub temperature", f"{plant.heat.hub_c:.0f} degC at {now:.2f} s, at most {HUB_C:g} degC")
         wheel, belt = abs(rig.rim_m_s), abs(rig.belt_m_s)
         self._rubbing(now, dt, force_n, wheel, belt)
-        if wheel < STILL_M_S and heat_flowing_w(rig) > 0.0:
+        if wheel < STILL_M_S and rig.heat_flowing_w > 0.0:
             self._heat_since_s = min(self._heat_since_s, now)
             if now - self._heat_since_s > COLD_STAND_S:
                 self._note("heat on a standing wheel", f"at {now:.2f} s, for more than {COLD_STAND_S:g} s")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sim.physics.data_range import LOAD_N, SLIP_M_S, TEMPERATURE_C, caveats
+from sim.physics.slip import LOAD_N, SLIP_M_S, TEMPERATURE_C, caveats
 from tester.kinds.wheel_on_belt.fit.data import APPENDICES, rows
 
 
