@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
-from sim.physics.data_range import caveats
 from sim.physics.friction import MODEL_NAMES, UnknownCompoundError
-from sim.physics.slip import predict
+from sim.physics.slip import caveats, predict
 from tester.analysis.fit.fit_law import Sourced
 from tester.analysis.fit.fit_part import FitPart, PublishedTable
 from tester.base.axes import Setpoint
