@@ -63,7 +63,7 @@ def terms_of(cell_sensitivity: float, record: str) -> tuple[Term, ...]:
     return (*TERMS, sensitivity)
 
 
-BETWEEN_PERCENT: Final = 100.0 * sum(one.standard for one in TERMS if one.acts is Acts.PIECE)
+BETWEEN_PERCENT: Final = 100.0 * sum(term.standard for term in TERMS if term.acts is Acts.PIECE)
 """Standard deviation from wheel to wheel of one compound, as stated."""
 
 def instruments_budget(

@@ -1,4 +1,4 @@
-"""What a step of this machine may see and do: the wheel on the rig, its contact, the gates, the load cell's zero."""
+"""The context of this machine's steps: the wheel on the rig, its contact, the gates, the load cell's zero."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ class InterlockInputs(Inputs):
         """Take over what the rig's own heatings have shown, before the first scan."""
         widest, beyond = self.parameters[hub.HEAT_SHARE], self.parameters[hub.HEAT_SHARE_KNOWN]
         self.heat.share = known.share(widest, beyond)
-        self.heat_known = known.told(widest, beyond)
+        self.heat_known = known.words(widest, beyond)
 
     def _forget_readings(self, now: float) -> None:
         """Compare no temperature with the one before."""

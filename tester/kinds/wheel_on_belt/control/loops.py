@@ -92,7 +92,7 @@ class LoadLoop(Contact):
         return self.contact_mm + worn if worn > 0.0 else self.contact_mm
 
     def _track_contact(self, force: float, readings: Readings, loop: LoadLoopConfig) -> None:
-        """Note touching; a load that comes again before the contact was open says nothing about where it begins."""
+        """Note touching; a load that returns before the contact was open does not show where it begins."""
         self._look_open(force, loop)
         if not self.in_contact and force > loop.touch_load_n:
             self.in_contact = True

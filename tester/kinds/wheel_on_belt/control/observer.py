@@ -105,9 +105,9 @@ class ThermalObserver:
         flow_in = self._links[0] * (hub_c - cells[0])
         self.given_j += dt * flow_in
         last = len(cells) - 1
-        for i, here in enumerate(cells):
-            flow_out = self._links[i + 1] * (here - cells[i + 1]) if i < last else outer * (here - surface)
-            cells[i] = here + dt * (flow_in - flow_out - self._sides[i] * (here - ambient)) / self._cell_j_k[i]
+        for i, cell_c in enumerate(cells):
+            flow_out = self._links[i + 1] * (cell_c - cells[i + 1]) if i < last else outer * (cell_c - surface)
+            cells[i] = cell_c + dt * (flow_in - flow_out - self._sides[i] * (cell_c - ambient)) / self._cell_j_k[i]
             flow_in = flow_out
         gain = (1.0 - self._share) * power_w + belt * (surface - self.belt_c)
         self.belt_c += dt * (gain - self._belt_to_air * (self.belt_c - ambient)) / self._belt_j_k

@@ -24,7 +24,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 HARD_LOAD_N: Final = 500.0
 HARD_HUB_C: Final = 155.0
 HARD_SURFACE_C: Final = 130.0
-"""Beyond these is harm (docs/kinds/wheel-on-belt.md), whatever a rig file or a recipe says."""
+"""Beyond these is harm (docs/kinds/wheel-on-belt.md), whatever a rig file or a recipe allows."""
 _RADIANS: Final = pi / 180.0
 
 

@@ -21,12 +21,12 @@ _REFERENCE = (V2_TEMPERATURE_C, V2_LOAD_N, V2_SLIP_M_S)
 
 def staged(points: Sequence[FitPoint]) -> dict[str, tuple[float, ...]]:
     """Return the parameters of each compound in the normalised form; raises MissingExtraError."""
-    return {compound: joint_of(one) for compound, one in staged_table_3(points).items()}
+    return {compound: joint_of(parameters) for compound, parameters in staged_table_3(points).items()}
 
 
 def staged_table_3(points: Sequence[FitPoint]) -> dict[str, PaperParameters]:
     """Return the parameters of each compound as Table 3 has them; raises MissingExtraError."""
-    return {compound: _staged(own) for compound, own in by_group(points).items()}
+    return {compound: _staged(compound_points) for compound, compound_points in by_group(points).items()}
 
 
 def _staged(points: Sequence[FitPoint]) -> PaperParameters:
@@ -35,7 +35,7 @@ def _staged(points: Sequence[FitPoint]) -> PaperParameters:
     loads, mu_of_load = _varied(points, LOAD)
     slips, mu_of_slip = _varied(points, SLIP)
     temperatures, mu_of_temperature = _varied(points, TEMPERATURE)
-    reference = next(one.value for one in points if one.nominal == _REFERENCE)
+    reference = next(point.value for point in points if point.nominal == _REFERENCE)
 
     def load(p: Array) -> Array:
         return p[0] * (loads / V2_LOAD_N) ** p[1] - mu_of_load
@@ -58,9 +58,9 @@ def _varied(points: Sequence[FitPoint], variable: int) -> tuple[Array, Array]:
     """Return values of one variable and coefficients, of the conditions that are at the reference in the others."""
     import numpy as np
 
-    own = [
-        one
-        for one in points
-        if all(i == variable or one.nominal[i] == at for i, at in enumerate(_REFERENCE))
+    varied = [
+        point
+        for point in points
+        if all(i == variable or point.nominal[i] == at for i, at in enumerate(_REFERENCE))
     ]  # fmt: skip
-    return np.array([one.nominal[variable] for one in own]), np.array([one.value for one in own])
+    return np.array([point.nominal[variable] for point in varied]), np.array([point.value for point in varied])

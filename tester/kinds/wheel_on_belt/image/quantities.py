@@ -1,4 +1,4 @@
-"""The channels of a wheel on a belt. A line here is all that most parts of the system know of a quantity.
+"""The channels of a wheel on a belt. Most parts of the system know a quantity only by its line here.
 
 Forces are in the wheel frame: x along the wheel's plane (positive = the belt drags the wheel back), y lateral, z
 normal. Speeds of the wheel are rim speeds.

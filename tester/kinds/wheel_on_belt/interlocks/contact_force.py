@@ -49,9 +49,9 @@ WINDOW_S: Final = 0.1
 PLACES: Final = 64
 """Readings kept: at the sliding rate of the scan a window takes a quarter of them."""
 LEARNED_N: Final = 15.0
-"""A change of force by this much says how stiff the contact is, N [A]: twice the runout's part."""
+"""A change of force by this much shows how stiff the contact is, N [A]: twice the runout's part."""
 SEEN_S: Final = 0.2
-"""How long such changes must go on until the stiffness counts as seen, s [A]."""
+"""How long such changes must last until the stiffness counts as seen, s [A]."""
 LEARNING_S: Final = 1.0
 """Over this long it is averaged, s [A]: ten times what a step is in the comparison."""
 SOFTEST: Final = 0.5

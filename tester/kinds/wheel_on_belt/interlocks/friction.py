@@ -149,7 +149,7 @@ BELT_TORQUE_DELAY_S: Final = Parameter(
 
 
 def _driven(v: Inputs) -> bool:
-    """Tell whether the belt's drive has a torque to judge: without power it shows none ("drive dropped out")."""
+    """Return whether the belt's drive has a torque to judge: without power it shows none ("drive dropped out")."""
     return v.confirmed and v.readings.drives_enabled
 
 
@@ -193,8 +193,8 @@ BELT_PULL_NM: Final = Parameter(
 def _sense(v: Inputs) -> float:
     """Return which way friction acts on the belt for sure: 1 onwards, -1 back, 0 unsure.
 
-    Both speeds say so where it slides clearly. Else the load cell does, as long as scans are slow: then nothing is told
-    to change, and friction does not turn round between two readings.
+    Both speeds show it where it slides clearly. Else the load cell does, as long as scans are slow: no command changes
+    then, and friction does not turn round between two readings.
     """
     r, p = v.readings, v.parameters
     clear, wheel_m_s = p[CLEAR_SLIP_M_S], r.wheel_speed_m_s

@@ -120,8 +120,8 @@ FIRST: Final = 3
 NEWEST: Final = 20
 """So many of the newest are looked at [A]: some weeks of runs."""
 LEAST_SHARE: Final = 0.06
-"""A ratio below 1 tightens to this at most [A]: a hub that holds its temperature is balanced by what it loses, of which
-heating up says little."""
+"""A ratio below 1 tightens to this at most [A]: a hub that holds its temperature is balanced by what it loses,
+which heating up hardly shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,8 +143,8 @@ class KnownRatio:
             return widest
         return min(widest, max(self.ratio * (1.0 + known) - 1.0, LEAST_SHARE))
 
-    def told(self, widest: float, known: float) -> str:
-        """Return it in words."""
+    def words(self, widest: float, known: float) -> str:
+        """Return the history and the share that follows from it, in words."""
         share = self.share(widest, known)
         row = f"a row tells from {100.0 * share:.0f} %"
         if self.count == 0:

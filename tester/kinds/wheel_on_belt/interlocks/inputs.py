@@ -1,6 +1,6 @@
-"""What the conditions of interlocks may look at: plain data, brought up to date once a scan.
+"""Inputs of the interlocks' conditions: plain data, brought up to date once a scan (``control.interlock_inputs``).
 
-``control.interlock_inputs`` fills it. What is not known stays NaN, infinite or the value that trips.
+Unknown values stay NaN, infinite or at the value that trips.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ class Inputs(ScanInputs):
     least_n: float = inf
     """The least force since contact was last wanted: what is lifting does not get firmer."""
     contact_mm: float = inf
-    """Where the press touches the wheel: as it was touched last, less its wear since, or as its diameter says."""
+    """Where the press touches the wheel: as it was touched last, less its wear since, or by its diameter."""
     friction_n: float = 0.0
     friction_w: float = 0.0
     """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
@@ -137,7 +137,7 @@ CLEAR_MM: Final = Parameter(
 
 
 def standing(v: Inputs) -> bool:
-    """Tell whether wheel and belt are known to stand; what is old or unknown is not standing."""
+    """Return whether wheel and belt are known to stand; old or unknown speeds are not standing."""
     r, p = v.readings, v.parameters
     since, slow = r.now_s - p[SPEEDS_OLD_S], p[STANDING_M_S]
     return (
@@ -149,15 +149,15 @@ def standing(v: Inputs) -> bool:
 
 
 def contactor_open(v: Inputs) -> bool:
-    """Tell whether the heater's contactor is known to be open."""
+    """Return whether the heater's contactor is known to be open."""
     r = v.readings
     return not r.contactor_closed and r.now_s - r.inputs_at_s <= v.parameters[STALE_INPUTS_S]
 
 
 def unloaded(v: Inputs) -> bool:
-    """Tell whether the contact is known to be open: by a fresh force, or by the press standing clear of it.
+    """Return whether the contact is known to be open: by a fresh force, or by a press clear of it.
 
-    The position only counts where the cell says nothing: it is stale, invalid, or repeats itself.
+    The position only counts where the cell shows nothing: it is stale, invalid, or repeats itself.
     """
     r, old_s = v.readings, v.parameters[SPEEDS_OLD_S]
     if r.cell_valid and r.now_s - r.cell_at_s <= old_s:

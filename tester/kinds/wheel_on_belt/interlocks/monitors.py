@@ -133,7 +133,7 @@ class SurfaceMonitor:
 
 @dataclass(slots=True)
 class PressTracker:
-    """How far the press has come towards the contact beyond what it was told to."""
+    """How far the press has come towards the contact beyond its commands."""
 
     ramp_mm_s2: float
     """Of a slow ramp."""

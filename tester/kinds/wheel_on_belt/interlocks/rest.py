@@ -28,7 +28,7 @@ def _moving(v: Inputs) -> bool:
 
 
 def _still(v: Inputs) -> bool:
-    """Tell whether a run whose drives are off, or on their way to operation, stands: a person may be near.
+    """Return whether a run whose drives are off, or on their way to operation, stands: a person may be near.
 
     A drive without power may be turned by hand; one without news counts as powered.
     """

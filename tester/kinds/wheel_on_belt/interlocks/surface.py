@@ -44,7 +44,7 @@ SURFACE_HOT: Final[Row] = Interlock(
 
 
 def _surface_wanted(v: Inputs) -> bool:
-    """Tell whether anything depends on the surface temperature: a contact, or a heat."""
+    """Return whether anything depends on the surface temperature: a contact, or a heat."""
     return v.pressing or -_INF < v.demand.surface_c < _INF
 
 
@@ -59,7 +59,7 @@ SURFACE_JUMP: Final[Row] = Interlock(
 )
 
 def _measures(v: Inputs) -> bool:
-    """Tell whether the thermometer sees the tread go by: of one spot of a standing wheel the model knows nothing."""
+    """Return whether the thermometer sees the tread pass: the model has no value for one spot of a standing wheel."""
     return v.readings.surface_valid and v.turning
 
 

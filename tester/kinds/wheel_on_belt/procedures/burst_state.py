@@ -187,7 +187,7 @@ class CentredBursts:
     def _band_needed(self, ctx: Context) -> str:
         """Work out how fast the surface warms and which band would hold one whole revolution; return it as text.
 
-        The trend's filter needs seconds to follow: of a short burst the rise from reading to reading says more.
+        The trend's filter needs seconds to follow: in a short burst the rise from reading to reading is more exact.
         A band in which nothing could be counted is never reported as sufficient.
         """
         r, burst = ctx.readings, self.burst

@@ -189,7 +189,7 @@ class MeasureRepeat(CentredBursts):
             self.moves = Sequence()
 
     def _begin_run_in(self, ctx: Context) -> None:
-        """Bring the slip in for a pulse of which nothing counts: its samples belong to no burst."""
+        """Bring the slip in for a pulse that does not count: its samples belong to no burst."""
         self.phase = Phase.RUN_IN
         ctx.demand.belt_speed_m_s = self.belt_m_s
         self._aim(ctx)

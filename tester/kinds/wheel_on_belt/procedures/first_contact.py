@@ -1,4 +1,4 @@
-"""A wheel's first contact: at little load the belt goes past the wheel's speed either way; friction must turn round.
+"""A wheel's first contact: at a small load the belt passes the wheel's speed either way; friction must reverse.
 
 Rolling, friction is zero where wheel and belt are equally fast. If it does not change its sign while the belt goes from
 somewhat faster to somewhat slower than the wheel, one of the two is not as fast as it is taken to be: it turns the
@@ -36,7 +36,7 @@ NEAR: Final = 1.2
 
 
 class Touch:
-    """Press to a little load; the wheel must be where its diameter says."""
+    """Press to a little load; the wheel must be where its diameter puts it."""
 
     def __init__(self, load_n: float, off_mm: float) -> None:
         """``off_mm``: how far from where it should be the wheel may be touched."""
@@ -117,14 +117,14 @@ class SpeedSweep:
         if not self.moves.step(ctx):
             return False
         faster, slower = self.faster, self.slower
-        found = (
+        text = (
             f"Fx {faster.friction_n / faster.count:.1f} N with the belt at {faster.turn.belt_m_s:.3f} m/s,"
             f" {slower.friction_n / slower.count:.1f} N at {slower.turn.belt_m_s:.3f} m/s,"
             f" wheel at {self.wheel_m_s:g} m/s"
         )
         if not (faster.sign < 0.0 < slower.sign):
-            raise MoveFailedError(f"{OFF}: {found}")
-        ctx.journal.event(ctx.now, "first contact", f"friction turns round with the slip: {found}")
+            raise MoveFailedError(f"{OFF}: {text}")
+        ctx.journal.event(ctx.now, "first contact", f"friction turns round with the slip: {text}")
         return True
 
 

@@ -34,9 +34,9 @@ class LiftStage(Enum):
 
 
 class Unloaded:
-    """Lifts the press, one call of ``step`` a scan, and from then on says by ``trouble`` whether it stays unloaded.
+    """Lifts the press, one call of ``step`` a scan; ``trouble`` then returns whether it stays unloaded.
 
-    ``failure`` says why the rig is not known to be unloaded; "" while nothing speaks against it.
+    ``failure``: why the rig is not known to be unloaded; "" while nothing contradicts it.
     """
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
@@ -140,7 +140,7 @@ class Unloaded:
 
 
 def loaded(raw: Sequence[float], rig: RigConfig) -> str:
-    """Return "" or what a cell that is to be unloaded shows; ``raw``: Fx, Fy, Fz in N and Mz in N m, without tare."""
+    """Return "" or the load on a cell that should be unloaded; ``raw``: Fx, Fy, Fz in N and Mz in N m, without tare."""
     fx, fy, fz, _ = raw
     friction_n, bound_n = hypot(fx, fy), rig.arming.unloaded_n
     if abs(fz) <= bound_n and friction_n <= bound_n:

@@ -148,7 +148,7 @@ class TakeTare(ZeroOfCell):
         """Drift of the zero from the reference, N: that of the force that has moved most."""
 
     def step(self, ctx: Context) -> bool:
-        """Done when the average is taken; ``failed`` says why the zero is not to be trusted."""
+        """Done when the average is taken; ``failed``: why the zero is not trustworthy."""
         r = ctx.readings
         if not self.averaged(ctx, r.cell_at_s, r.cell, valid=r.cell_valid):
             return bool(self.failed)

@@ -57,7 +57,7 @@ class WheelResults(StoredResults[Context]):
         return predicted_loss_mm(step, rig)
 
 
-THERMOMETER_K: Final = next(one.bound for one in TERMS if one.name == "thermometer")
+THERMOMETER_K: Final = next(term.bound for term in TERMS if term.name == "thermometer")
 """Bias of the thermometer, K, at most."""
 HUB_K: Final = 0.5
 """Error of the hub's sensor, K, at most [A]: Pt100 class B at 60 degC is 0.6 K, and the line through the slip ring is

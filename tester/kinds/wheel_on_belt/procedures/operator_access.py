@@ -1,4 +1,4 @@
-"""A person at the rig: asked only once he may go near, and left only once he has gone away."""
+"""A person at the rig: asked only once it is safe to go near, with the run resumed only once the person has left."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ class Standing(Move):
 
 
 class Free(Move):
-    """Wait until the load cell shows a free wheel, without tare: whoever was at it may have left it on the belt."""
+    """Wait until the load cell shows a free wheel, without tare: a person may have left it on the belt."""
 
-    limit_s = 30.0  # [A]; a hand that is still at the wheel
+    limit_s = 30.0  # [A]; a hand may still be at the wheel
     name = "waiting for a load cell that shows a free wheel"
 
     def step(self, ctx: Context) -> bool:
@@ -53,8 +53,8 @@ class Free(Move):
 class AskAtRest:
     """Put a question about the wheel: cool enough to touch, lifted, standing, heat and drives off.
 
-    A hot wheel turns on slowly, unloaded, until its hub may be touched: standing it would bake in one spot. There is
-    no question, and so nothing to be answered, before all of it is reached.
+    A hot wheel turns on slowly, unloaded, until its hub may be touched: standing it would bake in one spot. The
+    question is asked only once all of it is reached.
     """
 
     def __init__(self, text: str) -> None:
@@ -67,7 +67,7 @@ class AskAtRest:
         self.free = Sequence(Free())
 
     def resume(self, ctx: Context) -> None:
-        """Go on cooling, or coming to a stand."""
+        """Resume cooling, or coming to a stand."""
         self.free.resume(ctx)
         if isinstance(self.moves, CoolDown | Sequence):
             self.moves.resume(ctx)

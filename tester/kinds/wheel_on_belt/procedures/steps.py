@@ -1,4 +1,4 @@
-"""Which activity serves which step of a plan, and what the plan did not foresee: a worn wheel, a person at it."""
+"""Which activity serves which step of a plan, and unforeseen work: a worn wheel, a person at it."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class WheelProcedures(Procedures[Context]):
         """The wheel of the last condition. A new one measures at least one condition, else changing never ends."""
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step does."""
+        """Return a step in words, as a line."""
         return title(step)
 
     def number_after(self, last: int) -> None:
@@ -65,7 +65,7 @@ class WheelProcedures(Procedures[Context]):
         return isinstance(activity, MeasureWheelCondition) and activity.measuring is not None
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: Context) -> Activity[Context]:
-        """Return what serves a step."""
+        """Return the activity that serves a step."""
         match step:
             case Install():
                 return InstallWheel(step, self.reference_tare)
@@ -89,7 +89,7 @@ class WheelProcedures(Procedures[Context]):
                 raise TypeError(f"{step.kind}: no step of this machine")
 
     def before(self, step: Step, ctx: Context) -> Unforeseen[Context] | None:
-        """Return what has to be done before a condition can begin: a wheel changed, a look at it."""
+        """Return the work before a condition can begin: a wheel changed, a look at it."""
         if not isinstance(step, WheelCondition):
             return None
         if self._wheel_too_worn(step, ctx):
@@ -102,7 +102,7 @@ class WheelProcedures(Procedures[Context]):
         return Unforeseen(steps=[PromptStep(INSERTED, WEAR_CHECK)])
 
     def after(self, activity: Activity[Context], to_come: Sequence[Step], ctx: Context) -> Unforeseen[Context] | None:
-        """Return what a step leads to: a check of the wheel, a contact to be shown, a wheel to be warmed again."""
+        """Return the work after a step: a check of the wheel, a contact to be shown, a wheel to be warmed again."""
         if isinstance(activity, CheckByRolling | CheckByPerson):
             self.unchecked = None
         if isinstance(activity, MeasureWheelCondition | InstallWheel | ShowContact) and activity.failed:
@@ -118,10 +118,10 @@ class WheelProcedures(Procedures[Context]):
         return None
 
     def _attended(self, follower: Step) -> Unforeseen[Context]:
-        """Return what a person's having been at the wheel leads to."""
-        # The wheel may have been off, the belt another one: before anything else the contact is shown again.
+        """Return the steps after a person was at the wheel."""
+        # The wheel may have been off, or the belt changed: the contact is shown again before anything else.
         shown = self.reference_tare and not isinstance(follower, Install | PromptStep)
-        # And it has cooled: nothing is measured before it is warm again.
+        # It has cooled meanwhile: it is warmed before anything is measured.
         surface = follower.setpoint.number("temperature") if isinstance(follower, WheelCondition) else None
         warmed = [Heat(INSERTED, surface)] if surface is not None else []
         return Unforeseen(ShowContact(self.reference_tare) if shown else None, steps=warmed)
@@ -130,7 +130,7 @@ class WheelProcedures(Procedures[Context]):
 
     def _mounted(self, activity: InstallWheel, to_come: Sequence[Step]) -> Unforeseen[Context] | None:
         """Check a new wheel as it is mounted, before it is ground in: then its diameter is known."""
-        first = next((one for one in to_come if isinstance(one, WheelCondition | Install)), None)
+        first = next((step for step in to_come if isinstance(step, WheelCondition | Install)), None)
         new = activity.install.worn is None
         if new and isinstance(first, WheelCondition) and first.wear_check == "each_condition":
             return Unforeseen(CheckByRolling(first.setpoint.number("wheel_speed"), self.reference_tare), WEAR_CHECK)
@@ -139,7 +139,7 @@ class WheelProcedures(Procedures[Context]):
     def _measured(self, step: WheelCondition, to_come: Sequence[Step], ctx: Context) -> Unforeseen[Context] | None:
         """Note that a condition is over; check the wheel where no check of the next condition will."""
         self._note_measured(step, ctx)
-        follower = next((one for one in to_come if isinstance(one, WheelCondition | Install)), None)
+        follower = next((later for later in to_come if isinstance(later, WheelCondition | Install)), None)
         checked_next = isinstance(follower, WheelCondition) and follower.wear_check == step.wear_check
         if self.unchecked is None or checked_next:
             return None
@@ -183,7 +183,7 @@ def _heat(step: Heat, to_come: Sequence[Step], ctx: Context) -> HeatUp:
 
 
 def title(step: Step) -> str:
-    """Return a line that says what a step does."""
+    """Return a step in words, as a line."""
     match step:
         case Install():
             return f"{'mount again' if step.again else 'install'} wheel {step.wheel} ({step.compound})"

@@ -20,7 +20,7 @@ HEAT_LOAD_N: Final = 200.0
 HEAT_AT_MOST_S: Final = 5400.0
 """Longest heating up to one temperature [A]."""
 COOL_AT_MOST_S: Final = 3 * 3600.0
-"""Longest cooling of a hub before a person may touch it; then a prompt says how warm it is [A]."""
+"""Longest cooling of a hub before a person may touch it; then a prompt shows how warm it is [A]."""
 
 SHOW_S: Final = 1.0
 """Period for reporting the progress of a wait, s."""
@@ -66,7 +66,7 @@ class SoakTo:
         self.reached = False
 
     def step(self, ctx: Context) -> bool:
-        """Done when soaked or given up; ``reached`` tells which."""
+        """Done when soaked or given up; ``reached`` shows which."""
         if not isfinite(self.began_s):
             self.began_s = ctx.now
         ctx.demand.surface_c = self.target_c
@@ -117,7 +117,7 @@ class HeatUp:
         return True
 
     def _note_balance(self, ctx: Context) -> None:
-        """Record what this heating says of ``observer.thermal``: heat put in over heat shown, where there was enough.
+        """Record this heating's evidence on ``observer.thermal``: heat put in over heat shown, where there was enough.
 
         After a hold, or with a person at the wheel, it is not comparable and not reported. With its data it is evidence
         for runs to come (tester.kinds.wheel_on_belt.run.past_runs).
@@ -161,7 +161,7 @@ class RestStep:
         self.ask_when_late = ask_when_late
 
     def resume(self, ctx: Context) -> None:
-        """Go on standing, or coming to a stand."""
+        """Resume standing, or coming to a stand."""
         self.moves.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
@@ -203,11 +203,11 @@ class CoolDown:
         self.shown_s = float("-inf")
 
     def resume(self, ctx: Context) -> None:
-        """Go on turning, or beginning to."""
+        """Resume turning, or beginning to."""
         self.moves.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
-        """Done when cool, or out of time (the prompt to install follows and tells the temperature)."""
+        """Done when cool, or out of time (the prompt to install follows and shows the temperature)."""
         ctx.demand.surface_c = float("nan")
         if not self.turning:
             self.turning = self.moves.step(ctx)

@@ -113,7 +113,7 @@ class CheckByRolling:
 
 
 class CheckByPerson:
-    """Ask for the wheel's diameter; an answer with a number is a check, any other says that none was measured."""
+    """Ask for the wheel's diameter; an answer with a number is a check, any other means that none was measured."""
 
     def __init__(self, before: int = NO_CONDITION) -> None:
         """``before``: the condition to come."""
@@ -121,7 +121,7 @@ class CheckByPerson:
         self.ask = AskAtRest(QUESTION)
 
     def resume(self, ctx: Context) -> None:
-        """Go on coming to rest."""
+        """Resume coming to rest."""
         self.ask.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
@@ -130,15 +130,15 @@ class CheckByPerson:
             return False
         asked = self.ask.ask
         answer = ctx.prompts.asked[asked.number - 1].answer if asked is not None else None
-        found = measured_mm(answer or "")
+        found_mm = measured_mm(answer or "")
         wheel = ctx.wheel
-        if found is None:
+        if found_mm is None:
             ctx.journal.event(ctx.now, "wear", f'no diameter measured: "{answer}"')
             return True
         layer_mm = 2.0 * ctx.rig.observer.wheel.rubber_layer
         least_mm, most_mm = wheel.installed_mm - layer_mm, wheel.installed_mm + MORE_THAN_NEW_MM
-        if not least_mm <= found <= most_mm:
-            text = f"{found:g} mm cannot be the wheel's diameter (expected {least_mm:g} to {most_mm:g} mm)"
+        if not least_mm <= found_mm <= most_mm:
+            text = f"{found_mm:g} mm cannot be the wheel's diameter (expected {least_mm:g} to {most_mm:g} mm)"
             ctx.journal.event(ctx.now, "wear", text, "warning")
             self.ask = AskAtRest(f"{text}: {QUESTION}")
             return False
@@ -147,13 +147,13 @@ class CheckByPerson:
         if not isfinite(wheel.by_hand_s):
             wheel.by_hand_s = ctx.now
         u_mm = hypot(wear.gauge_mm, wear.growth_mm_per_k * wear.check_rubber_k)
-        loss_mm = wheel.installed_mm - (found - wear.growth_mm(mean_c))
+        loss_mm = wheel.installed_mm - (found_mm - wear.growth_mm(mean_c))
         conclude(ctx, self.before, Taken("person", wheel.by_hand_s, loss_mm, u_mm, mean_c))
         return True
 
 
 MORE_THAN_NEW_MM: Final = 2.0
-"""A wheel may measure this much more than the rig file says of a new one, mm [A]: moulds differ."""
+"""A wheel may measure this much more than a new one of the rig file, mm [A]: moulds differ."""
 
 
 def measured_mm(answer: str) -> float | None:
@@ -212,9 +212,9 @@ def conclude(ctx: Context, before: int, taken: Taken) -> None:
 
 
 def _learn_rate(wheel: WheelLife, check: WearCheck) -> None:
-    """Reckon with the rate that two checks have shown, where it is clear of their uncertainty.
+    """Use the rate that two checks have shown, where it is clear of their uncertainty.
 
-    A wrong rate makes the wheel slip unseen where its speed is to match the belt's: the line speed is reckoned with
+    A wrong rate makes the wheel slip unseen where its speed is to match the belt's: the line speed is computed from
     the estimated diameter.
     """
     last = wheel.last_check

@@ -43,7 +43,7 @@ class ShowContact:
 
     @property
     def failed(self) -> str:
-        """Why the run cannot go on with this zero, or ""."""
+        """Why the run cannot continue with this zero, or ""."""
         return self.tare.failed if self.tare is not None else ""
 
 
@@ -89,7 +89,7 @@ class InstallWheel:
 
     @property
     def failed(self) -> str:
-        """Why the run cannot go on with this wheel, or ""."""
+        """Why the run cannot continue with this wheel, or ""."""
         return self.contact.failed if self.contact is not None else ""
 
     def _mount(self, ctx: Context) -> None:
@@ -114,19 +114,19 @@ class InstallWheel:
         )  # fmt: skip
 
     def _back_on(self, ctx: Context) -> bool:
-        """Go on with a wheel that was taken off: the last of its specimen. False where none was."""
+        """Put the last wheel of the specimen back on and return True; return False without one."""
         step = self.install
         wheel = ctx.shelf.pop((step.specimen, step.replicate), None)
         if wheel is None:
             return False
         ctx.attendant.mount_again(wheel.specimen, wheel.wheel, wheel.compound, wheel.cold_mm, wheel.sliding_m)
-        # Where the press stood at its first check says nothing once it was off.
+        # The press's place at its first check does not apply to a wheel that was off.
         ctx.put_on(replace(wheel, reference=None, last_check=None))
         ctx.view.wheel_changed(ctx.now)
         return True
 
     def _remount(self, ctx: Context, worn: WornState) -> None:
-        """Go on with a wheel as the store knows it: its record, its first tare and its number stay."""
+        """Resume with a wheel as the store knows it: its record, its first tare and its number stay."""
         step = self.install
         ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
         wheel = wheel_of(

@@ -30,7 +30,7 @@ def is_due(ctx: Context) -> bool:
 
 
 class ZeroCheck:
-    """Lift at matched speeds, let the cell settle, and take its zero; how far it has moved goes into the record."""
+    """Lift at matched speeds, let the cell settle, take its zero, and record its drift."""
 
     def __init__(self, wheel_speed_m_s: float, reference_tare: list[float]) -> None:
         """``reference_tare``: the wheel's first zero."""

@@ -16,7 +16,7 @@ class Body:
     """Hub and rubber as one heat store; temperatures are its mean, degC."""
 
     def __init__(self, rig: RigConfig) -> None:
-        """Work out heat capacities (J/K) and losses (W/K) from what the rig file says of the wheel."""
+        """Work out heat capacities (J/K) and losses (W/K) from the rig file's parameters of the wheel."""
         believed = rig.observer
         thermal, wheel = believed.thermal, believed.wheel
         outer, inner = 0.5e-3 * wheel.outer_diameter, 0.5e-3 * (wheel.outer_diameter - 2.0 * wheel.rubber_layer)

@@ -15,7 +15,7 @@ class EstimateConstants:
     person_s: float = 600.0
     """A person mounts a wheel or does what a prompt asks; a simulated rig takes no time for it."""
     install_s: float = 18.5
-    """Standstill, drives off and on, tare 2.1; first contact 16.4 with the way to the wheel. After a question, too."""
+    """Standstill, drives off and on, tare 2.1; first contact 16.4 with the way to the wheel. Also after a question."""
     pre_grind_moves_s: float = 10.0
     """Turn, load, bring slip in, take it out, lift."""
     repeat_moves_s: float = 4.8

@@ -1,7 +1,7 @@
 """Cost of measuring one condition: closed formulas, looked up again by setpoint and settings.
 
-How long a slip pulse may last follows from the square root of time by which friction heats a half-space (H. S.
-Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: rise = 2 q sqrt(t / pi) / sqrt(k rho c)).
+How long a slip pulse may last follows from the rise of a half-space under friction, which goes with the square root
+of time (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: 2 q sqrt(t / pi) / sqrt(k rho c)).
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ConditionMotion(NamedTuple):
     soak_s: float
     """Before the first repeat."""
     window_s: float
-    """Collected a repeat, with what some of them go on."""
+    """Collected a repeat, extensions included."""
     edge_s: float
     """Sliding in a pulse that does not count."""
     repeat_s: float

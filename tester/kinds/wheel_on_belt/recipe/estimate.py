@@ -46,10 +46,10 @@ def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float
     """Return by how much sooner and later, s, precisions are reached that a run's own deviation decides."""
     sooner_s = later_s = 0.0
     least, most = SURE
-    for step, one in zip(plan.steps, steps, strict=True):
-        if isinstance(step, WheelCondition) and step.until_percent is not None and one.repeats:
-            moves_s = one.seconds - one.waiting_s
-            values = one.repeats / repeats_each(step)
+    for step, estimate in zip(plan.steps, steps, strict=True):
+        if isinstance(step, WheelCondition) and step.until_percent is not None and estimate.repeats:
+            moves_s = estimate.seconds - estimate.waiting_s
+            values = estimate.repeats / repeats_each(step)
             sooner_s += (1.0 - min(max(least * least, step.repeats / values), 1.0)) * moves_s
             later_s += (max(min(most * most, step.at_most / values), 1.0) - 1.0) * moves_s
     return sooner_s, later_s
@@ -90,18 +90,18 @@ class WheelEstimator:
         result: list[StepEstimate] = []
         for place, step in enumerate(plan.steps):
             if isinstance(step, WheelCondition):
-                one = self.condition(step)
+                estimate = self.condition(step)
                 looked_at = step.wear_check == "prompt"
                 if looked_at or prompted:
                     if last is not None:
                         body_c = self.body.steady_c(last.setpoint.number("temperature"))
-                    one = self._after_person(one, step, body_c, asked=looked_at)
+                    estimate = self._after_person(estimate, step, body_c, asked=looked_at)
                     prompted = False
                 if step.until_percent is not None:
-                    one = self._until(before, step, one)
-                one = self.order.after(before, step.setpoint, one)
+                    estimate = self._until(before, step, estimate)
+                estimate = self.order.after(before, step.setpoint, estimate)
                 last = step
-                result.append(one._replace(seconds=one.seconds + self._checks_s(plan, place, step)))
+                result.append(estimate._replace(seconds=estimate.seconds + self._checks_s(plan, place, step)))
                 continue
             prompted = isinstance(step, PromptStep)
             if last is not None:
@@ -110,15 +110,15 @@ class WheelEstimator:
             if self._begins_part(plan, place, part):
                 body_c, before = self.ambient_c, Before(self.ambient_c)
             if cold_rubber and isinstance(step, Rest):
-                one = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
+                estimate = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
             else:
                 if isinstance(step, Install):
                     compound, part = step.compound, (step.specimen, step.replicate)
                 cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, PromptStep))
                 if isinstance(step, Heat):
                     before.heat(self.body.surface_c(body_c))
-                one, body_c = self._preparation(step, compound, body_c)
-            result.append(one._replace(seconds=one.seconds + self._checks_s(plan, place, step)))
+                estimate, body_c = self._preparation(step, compound, body_c)
+            result.append(estimate._replace(seconds=estimate.seconds + self._checks_s(plan, place, step)))
         return result
 
     def _checks_s(self, plan: Plan, place: int, step: Step) -> float:
@@ -128,7 +128,7 @@ class WheelEstimator:
         last condition (``WheelProcedures``).
         """
         behind = (plan.steps[at] for at in range(place + 1, len(plan.steps)))
-        follower = next((one for one in behind if isinstance(one, WheelCondition | Install)), None)
+        follower = next((later for later in behind if isinstance(later, WheelCondition | Install)), None)
         checked_next = isinstance(follower, WheelCondition) and follower.wear_check == "each_condition"
         if isinstance(step, Install) and step.worn is None and isinstance(follower, WheelCondition):
             return checked_next * self._roll_check_s(follower)
@@ -156,22 +156,22 @@ class WheelEstimator:
     def _in_parts(self, plan: Plan) -> bool:
         return self.parts and not (isinstance(plan, WheelPlan) and plan.references)  # that of manual mode is plain
 
-    def _until(self, before: Before, step: WheelCondition, one: StepEstimate) -> StepEstimate:
+    def _until(self, before: Before, step: WheelCondition, estimate: StepEstimate) -> StepEstimate:
         """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
-        repeats, each = one.repeats, repeats_each(step)
-        if one.held and before.pooled < POOLED_DF:
+        repeats, each = estimate.repeats, repeats_each(step)
+        if estimate.held and before.pooled < POOLED_DF:
             repeats = each * expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
         before.pooled += int(repeats) // each - 1
-        if repeats == one.repeats:
-            return one
-        share = repeats / one.repeats
+        if repeats == estimate.repeats:
+            return estimate
+        share = repeats / estimate.repeats
         soak_s = step.soak.for_s + self.constants.next_condition_s
-        return one._replace(
-            seconds=soak_s + share * (one.seconds - soak_s),
-            sliding_m=share * one.sliding_m,
-            loss_mm=share * one.loss_mm,
-            friction_j=share * one.friction_j,
-            waiting_s=share * one.waiting_s,
+        return estimate._replace(
+            seconds=soak_s + share * (estimate.seconds - soak_s),
+            sliding_m=share * estimate.sliding_m,
+            loss_mm=share * estimate.loss_mm,
+            friction_j=share * estimate.friction_j,
+            waiting_s=share * estimate.waiting_s,
             repeats=repeats,
         )
 
@@ -182,12 +182,12 @@ class WheelEstimator:
         repeats that are made up for come one by one (Poisson); a precision's repeats follow the run's own deviation.
         """
         seconds, waits_s, scattered = 0.0, down_s, 0.0
-        for one in steps:
-            took_s = one.seconds
+        for estimate in steps:
+            took_s = estimate.seconds
             seconds += took_s
-            waits_s += one.waiting_s
-            if one.repeats:
-                scattered += MADE_UP * took_s * took_s / one.repeats
+            waits_s += estimate.waiting_s
+            if estimate.repeats:
+                scattered += MADE_UP * took_s * took_s / estimate.repeats
         sooner_s, later_s = _precision_range_s(plan, steps)
         seconds += down_s
         low = seconds - (1.0 - self.constants.waits_least) * waits_s - sooner_s
@@ -209,13 +209,13 @@ class WheelEstimator:
         """Yield how worn the wheel will be in the middle of each condition, and whether it is checked around it."""
         worn: dict[int, float] = {}
         wheel = 0
-        for step, one in zip(plan.steps, steps, strict=True):
+        for step, estimate in zip(plan.steps, steps, strict=True):
             if isinstance(step, Install):
                 wheel = step.wheel
             before_mm = worn.get(wheel, 0.0)
-            worn[wheel] = before_mm + one.loss_mm
+            worn[wheel] = before_mm + estimate.loss_mm
             if isinstance(step, WheelCondition):
-                yield Outlook(before_mm + 0.5 * one.loss_mm, checked=step.wear_check != "never")
+                yield Outlook(before_mm + 0.5 * estimate.loss_mm, checked=step.wear_check != "never")
 
     def reversible(self, step: ConditionStep) -> bool:
         """Return whether a condition could be measured in both directions: it slides, and no angle is set."""
@@ -253,17 +253,19 @@ class WheelEstimator:
         """Return what a condition takes, without the heating before it."""
         return self.costs.of(step.setpoint, step)
 
-    def _after_person(self, one: StepEstimate, step: WheelCondition, body_c: float, *, asked: bool) -> StepEstimate:
-        """Return a condition's estimate with what a person at the wheel costs: cooling, his time, warming again.
+    def _after_person(
+        self, estimate: StepEstimate, step: WheelCondition, body_c: float, *, asked: bool
+    ) -> StepEstimate:
+        """Return a condition's estimate with what a person at the wheel costs: cooling, their time, warming again.
 
         ``asked``: the cooling and the person are not in a prompt's step before it, but in the condition's own check.
         """
-        seconds = one.seconds
+        seconds = estimate.seconds
         if asked:
             person, body_c = self._asking(body_c)
             seconds += person.seconds
         warmed, _ = self._preparation(Heat(step.index, step.setpoint.number("temperature")), "", body_c)
-        return one._replace(seconds=seconds + warmed.seconds)
+        return estimate._replace(seconds=seconds + warmed.seconds)
 
     def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
         """Return what a question at the wheel takes: cooling, turning, until it may be touched; its contact again."""
@@ -290,8 +292,8 @@ class WheelEstimator:
             case Install():
                 return StepEstimate(c.install_s + self.person_s), self.body.with_new_rubber(body_c)
             case PreGrind():
-                one = self.pre_grind(step, compound)
-                return one, body_c + self.body.warmed_k(self.costs.rubber_share * one.friction_j)
+                estimate = self.pre_grind(step, compound)
+                return estimate, body_c + self.body.warmed_k(self.costs.rubber_share * estimate.friction_j)
             case Rest():
                 cooled = math.inf if step.until_c is None else step.until_c + step.within_k
                 wait = max(step.at_least_s, self.body.cooling_s(body_c, cooled, turning=False))

@@ -113,20 +113,20 @@ class _Expansion:
         self.count = 0
         self.at_c: float | None = None
         """Surface of the wheel that is on, as the last steps left it; None of a new one."""
-        self.every_condition = [one.prompt for one in recipe.steps if one.every == "condition"]
-        self.every_temperature = [one.prompt for one in recipe.steps if one.every == "temperature"]
+        self.every_condition = [step.prompt for step in recipe.steps if step.every == "condition"]
+        self.every_temperature = [step.prompt for step in recipe.steps if step.every == "temperature"]
 
     def plan(self) -> WheelPlan:
         """Return the whole plan."""
         recipe = self.recipe
         specimens = tuple(
-            Specimen(index, one.compound, one.note) for index, one in enumerate(recipe.specimens, start=1)
+            Specimen(index, model.compound, model.note) for index, model in enumerate(recipe.specimens, start=1)
         )
         for specimen in specimens:
             compound = specimen.compound
-            setpoints = [Setpoint(compound, one.values, recipe.axes) for one in self.conditions]
-            cost = self.estimator.costs.of
-            costs = [cost(setpoint, one.settings) for setpoint, one in zip(setpoints, self.conditions, strict=True)]
+            setpoints = [Setpoint(compound, condition.values, recipe.axes) for condition in self.conditions]
+            hows = [condition.settings for condition in self.conditions]
+            costs = [self.estimator.costs.of(setpoint, how) for setpoint, how in zip(setpoints, hows, strict=True)]
             for replicate in range(1, recipe.replicates + 1):
                 self._replicate(specimen, replicate, setpoints, costs)
         if self.references.reserved is not None and self.count:
@@ -139,7 +139,7 @@ class _Expansion:
             specimens=(*specimens, *self.references.specimens),
             wear=tuple(wheel.wear() for wheel in self.wheels),
             replace_after_mm=recipe.wheel.replace_after,
-            min_valid=min((one.settings.min_valid for one in self.conditions), default=1),
+            min_valid=min((condition.settings.min_valid for condition in self.conditions), default=1),
             prepare=self.prepare,
             metadata=metadata_of(recipe) | self.references.metadata,
             references=self.references.made,
@@ -156,7 +156,7 @@ class _Expansion:
             setpoint = Setpoint(specimen.compound, watch.values, self.recipe.axes)
             # Row 0, where the lists wrap round: the reference is the last of both.
             setpoints, costs = [*setpoints, setpoint], [*costs, self.estimator.costs.of(setpoint, watch.settings)]
-        losses = [[costs[one.row - 1].loss_mm for one in block] for block in blocks]
+        losses = [[costs[condition.row - 1].loss_mm for condition in block] for block in blocks]
         wheel = self._new_wheel(specimen, replicate, None)
         changes = change_points(losses, wheel.loss_mm, self.recipe.wheel.replace_after)
         for block, points in zip(blocks, changes, strict=True):
@@ -164,8 +164,8 @@ class _Expansion:
                 wheel = self._new_wheel(specimen, replicate, None)
             self._prompts(self.every_temperature)
             warm = False
-            for position, one in enumerate(block):
-                held_c = self.held(one.values)
+            for position, condition in enumerate(block):
+                held_c = self.held(condition.values)
                 if position and position in points:
                     wheel = self._new_wheel(specimen, replicate, held_c)
                 elif self.references.due_on_reserved():
@@ -173,12 +173,12 @@ class _Expansion:
                 elif not warm or held_c != self.at_c:
                     self.steps += self.references.heating(len(self.steps), self.at_c, held_c)
                 warm, self.at_c = True, held_c
-                if not one.row:
-                    self._measure(wheel, one, setpoints[-1], costs[-1], reference=True)
+                if not condition.row:
+                    self._measure(wheel, condition, setpoints[-1], costs[-1], reference=True)
                     continue
                 if self.every_condition:
                     self._prompts(self.every_condition)
-                self._measure(wheel, one, setpoints[one.row - 1], costs[one.row - 1])
+                self._measure(wheel, condition, setpoints[condition.row - 1], costs[condition.row - 1])
 
     def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> _Wheel:
         if self.references.reserved is not None and self.conditions:
@@ -205,17 +205,17 @@ class _Expansion:
 
     def _on_reserved(self, reserved: ReservedWheel) -> None:
         """Measure the reference condition on the wheel that is reserved for it."""
-        one, specimen = self.references.condition, self.references.specimens[0]
-        assert one is not None
-        held_c = self.held(one.values)
+        condition, specimen = self.references.condition, self.references.specimens[0]
+        assert condition is not None
+        held_c = self.held(condition.values)
         if not reserved.number:
             wheel = self._mount(specimen, 1, held_c)
             reserved.number = wheel.number
         else:
             wheel = self.wheels[reserved.number - 1]
             self._remount(wheel, specimen, held_c)
-        setpoint = Setpoint(specimen.compound, one.values, self.recipe.axes)
-        self._measure(wheel, one, setpoint, self.estimator.costs.of(setpoint, one.settings), reference=True)
+        setpoint = Setpoint(specimen.compound, condition.values, self.recipe.axes)
+        self._measure(wheel, condition, setpoint, self.estimator.costs.of(setpoint, condition.settings), reference=True)
 
     def _exchanged(self, wheel: _Wheel, specimen: Specimen, held_c: float) -> None:
         """Put the reserved wheel on for a reference, then the present one again."""
@@ -231,13 +231,13 @@ class _Expansion:
     def _measure(
         self,
         wheel: _Wheel,
-        one: Condition[WheelSettings],
+        condition: Condition[WheelSettings],
         setpoint: Setpoint,
         cost: StepEstimate,
         *,
         reference: bool = False,
     ) -> None:
-        _, row, grid, how = one
+        _, row, grid, how = condition
         steps = self.steps
         wheel.conditions += 1
         wheel.loss_mm += cost.loss_mm
@@ -270,6 +270,6 @@ def _prepare(recipe: WheelRecipe, rig: RigConfig) -> PreparePolicy:
         if grind is None
         else PreGrind(INSERTED, grind.wheel_speed, grind.belt_speed, grind.load, grind.duration),
         rest=None if rest is None else Rest(INSERTED, rest.at_least, rest.until, rest.within, rest.at_most),
-        person_steps=tuple(one.prompt for one in recipe.steps if one.every == "wheel"),
+        person_steps=tuple(step.prompt for step in recipe.steps if step.every == "wheel"),
         ready_c=rig.ambient_c,
     )

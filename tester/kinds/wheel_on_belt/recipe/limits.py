@@ -49,7 +49,7 @@ def greatest_load_n(rig: RigConfig) -> float:
     return rig.limits.load_n - RIPPLE_N
 
 
-class Given(NamedTuple):
+class Entry(NamedTuple):
     """A quantity in the file: its value in the requested unit, and its place."""
 
     value: float
@@ -86,7 +86,7 @@ class _Limits:
     def __init__(self, tree: Tree, rig: RigConfig) -> None:
         self.tree = tree
         self.rig = rig
-        stated = self._given(("ambient",), "degC")
+        stated = self._entries(("ambient",), "degC")
         self.ambient_c = stated[0].value if stated else rig.ambient_c
         self.ambient_from = "ambient of this recipe" if stated else f'ambient of rig "{rig.name}"'
         places: list[Location] = [("specimens", index, "compound") for index in self._indices(("specimens",))]
@@ -123,57 +123,58 @@ class _Limits:
         node = self._node(at)
         return range(len(node)) if isinstance(node, list) else range(0)
 
-    def _given(self, at: Location, unit: str) -> list[Given]:
+    def _entries(self, at: Location, unit: str) -> list[Entry]:
         """Return the readable quantities of an axis or a single value; an empty list where there is none."""
         node = self._node(at)
         if node is None:
             # A reference condition has defaults, which a rig may not be able to hold either.
-            return [Given(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
+            return [Entry(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
         quantity = Quantity(unit)
-        places = [((*at, index), one) for index, one in enumerate(node)] if isinstance(node, list) else [(at, node)]
-        quantities: list[Given] = []
+        places = [((*at, index), item) for index, item in enumerate(node)] if isinstance(node, list) else [(at, node)]
+        quantities: list[Entry] = []
         for place, value in places:
             try:
-                quantities.append(Given(quantity.read(value), place))
+                quantities.append(Entry(quantity.read(value), place))
             except UnitError:
                 continue
         return quantities
 
-    def _limit(self, key: str, value: float, unit: str) -> str:
-        return f'(limit {show(value, unit)}: {key} of rig "{self.rig.name}")'
+    def _beyond(self, entry: Entry, text: str, key: str, limit: float, unit: str) -> Problem:
+        """Return the problem of a value that is beyond the rig's limit ``key``."""
+        return self.tree.problem(entry.at, f'{text} (limit {show(limit, unit)}: {key} of rig "{self.rig.name}")')
 
-    def _above(self, given: Given, limit: float, unit: str, key: str) -> Iterator[Problem]:
+    def _above(self, entry: Entry, limit: float, unit: str, key: str) -> Iterator[Problem]:
         """Yield a problem for a value (of either sign) beyond a limit."""
-        if abs(given.value) > limit:
-            name = next(piece for piece in reversed(given.at) if isinstance(piece, str))
-            message = f"{name}: {show(given.value, unit)} is more than the rig allows"
-            yield self.tree.problem(given.at, f"{message} {self._limit(key, limit, unit)}")
+        if abs(entry.value) > limit:
+            name = next(piece for piece in reversed(entry.at) if isinstance(piece, str))
+            message = f"{name}: {show(entry.value, unit)} is more than the rig allows"
+            yield self._beyond(entry, message, key, limit, unit)
 
-    def _too_light(self, given: Given) -> Iterator[Problem]:
+    def _too_light(self, entry: Entry) -> Iterator[Problem]:
         """Yield a problem for a load too near to touching to be held; the schema reports a value that is no load."""
         touch_n = self.rig.loops.load.touch_load_n
         least_n = least_load_n(self.rig)
-        if 0.0 < given.value < least_n:
-            asked, touching = show(given.value, "N"), show(touch_n, "N")
+        if 0.0 < entry.value < least_n:
+            asked, touching = show(entry.value, "N"), show(touch_n, "N")
             message = f"load: {asked} is too near to touching, which is {touching}, to be held"
             source = f'{TOUCHES:g} x loops.load.touch_load of rig "{self.rig.name}"'
-            yield self.tree.problem(given.at, f"{message} (expected at least {show(least_n, 'N')}: {source})")
+            yield self.tree.problem(entry.at, f"{message} (expected at least {show(least_n, 'N')}: {source})")
 
-    def _too_heavy(self, given: Given) -> Iterator[Problem]:
+    def _too_heavy(self, entry: Entry) -> Iterator[Problem]:
         """Yield a problem for a load that is beyond its limit, or gets there with every turn of the wheel."""
         limit_n, most_n = self.rig.limits.load_n, greatest_load_n(self.rig)
-        yield from self._above(given, limit_n, "N", "limits.load")
-        if most_n < given.value <= limit_n:
-            message = f"load: {show(given.value, 'N')} is too near to limits.load, {show(limit_n, 'N')}, to be held"
+        yield from self._above(entry, limit_n, "N", "limits.load")
+        if most_n < entry.value <= limit_n:
+            message = f"load: {show(entry.value, 'N')} is too near to limits.load, {show(limit_n, 'N')}, to be held"
             source = f'{show(RIPPLE_N, "N")} of runout below limits.load of rig "{self.rig.name}"'
-            yield self.tree.problem(given.at, f"{message} (expected at most {show(most_n, 'N')}: {source})")
+            yield self.tree.problem(entry.at, f"{message} (expected at most {show(most_n, 'N')}: {source})")
 
-    def _by_hand(self, given: Given, axis: Axis, *, driven: bool) -> Iterator[Problem]:
+    def _by_hand(self, entry: Entry, axis: Axis, *, driven: bool) -> Iterator[Problem]:
         """Yield a problem for an angle on an axis that a person sets: every burst turns it in and out."""
-        if given.value != 0.0 and not driven:
-            asked = show(given.value, axis.recipe_unit)
+        if entry.value != 0.0 and not driven:
+            asked = show(entry.value, axis.recipe_unit)
             message = f"{axis.name}: {asked} needs a driven axis; this rig's is set by hand"
-            yield self.tree.problem(given.at, f'{message} ({axis.drive} of rig "{self.rig.name}")')
+            yield self.tree.problem(entry.at, f'{message} ({axis.drive} of rig "{self.rig.name}")')
 
     # -- what may be wrong --------------------------------------------------------------------------------------
 
@@ -190,41 +191,41 @@ class _Limits:
             yield self.tree.problem(at, f"{message} (expected one of {', '.join(KNOWN)})")
 
     def _wheel_speeds(self, at: Location) -> Iterator[Problem]:
-        for wheel in self._given((*at, "wheel_speed"), "m/s"):
+        for wheel in self._entries((*at, "wheel_speed"), "m/s"):
             yield from self._above(wheel, self.rig.limits.wheel_speed_m_s, "m/s", "limits.wheel_speed")
 
     def _pre_grind(self) -> Iterator[Problem]:
         at: Location = ("pre_grind",)
         limits = self.rig.limits
         yield from self._wheel_speeds(at)
-        for belt in self._given((*at, "belt_speed"), "m/s"):
+        for belt in self._entries((*at, "belt_speed"), "m/s"):
             yield from self._above(belt, limits.belt_speed_m_s, "m/s", "limits.belt_speed")
-            for wheel, load in product(self._given((*at, "wheel_speed"), "m/s"), self._given((*at, "load"), "N")):
+            for wheel, load in product(self._entries((*at, "wheel_speed"), "m/s"), self._entries((*at, "load"), "N")):
                 motion = Motion(wheel.value, belt.value, 0.0, abs(wheel.value - belt.value))
                 yield from self._powers([load], [motion], [self.ambient_c])
-        for load in self._given((*at, "load"), "N"):
+        for load in self._entries((*at, "load"), "N"):
             yield from self._too_heavy(load)
             yield from self._too_light(load)
 
     def _rest(self) -> Iterator[Problem]:
-        until = self._given(("rest", "until"), "degC")
-        within = self._given(("rest", "within"), "K")
-        for given in until:
-            highest = given.value + (within[0].value if within else DEFAULT_BAND_K)
+        until = self._entries(("rest", "until"), "degC")
+        within = self._entries(("rest", "within"), "K")
+        for entry in until:
+            highest = entry.value + (within[0].value if within else DEFAULT_BAND_K)
             if highest <= self.ambient_c:
                 message = f"until: a wheel at rest does not cool to {show(highest, 'degC')}"
-                yield self.tree.problem(given.at, f"{message} ({show(self.ambient_c, 'degC')}: {self.ambient_from})")
+                yield self.tree.problem(entry.at, f"{message} ({show(self.ambient_c, 'degC')}: {self.ambient_from})")
 
     def _grid(self, at: Location) -> Iterator[Problem]:
         limits = self.rig.limits
-        loads = self._given((*at, "load"), "N")
+        loads = self._entries((*at, "load"), "N")
         for load in loads:
             yield from self._too_heavy(load)
             yield from self._too_light(load)
         driven, allowed = self.rig.axes.driven(), limits.positions()
         for axis in POSITIONED:
             most = allowed[axis.name]
-            for angle in self._given((*at, axis.name), axis.recipe_unit):
+            for angle in self._entries((*at, axis.name), axis.recipe_unit):
                 yield from self._above(angle, most, axis.recipe_unit, axis.limit)
                 yield from self._by_hand(angle, axis, driven=axis.name in driven)
         yield from self._wheel_speeds(at)
@@ -234,75 +235,73 @@ class _Limits:
         band_k = self._band_k(at)
         # Within its band rubber may be colder, and friction the greater by several per cent a kelvin.
         temperatures = [
-            max(one.value + off_k, self.ambient_c)
-            for one in self._given((*at, "temperature"), "degC")
+            max(entry.value + off_k, self.ambient_c)
+            for entry in self._entries((*at, "temperature"), "degC")
             for off_k in (-band_k, 0.0, band_k)
         ]
         yield from self._powers(loads, motions, temperatures)
 
     def _band_k(self, at: Location) -> float:
-        bands = self._given((*at, "temperature_band"), "K") or self._given(("measure", "temperature_band"), "K")
+        bands = self._entries((*at, "temperature_band"), "K") or self._entries(("measure", "temperature_band"), "K")
         return bands[0].value if bands else DEFAULT_BAND_K
 
     def _temperatures(self, at: Location) -> Iterator[Problem]:
         surface_c, jacket_c = self.rig.limits.surface_c, self.rig.limits.jacket_c
         band = self._band_k(at)
-        for given in self._given((*at, "temperature"), "degC"):
-            reached = f"temperature: {show(given.value, 'degC')} with its band of {show(band, 'K')}"
-            if given.value + band > surface_c:
-                source = self._limit("limits.surface", surface_c, "degC")
-                yield self.tree.problem(given.at, f"{reached} is hotter than the rig allows rubber {source}")
-            elif given.value + band > surface_c - OVERHEAT_K:
-                source = self._limit("limits.surface", surface_c, "degC")
+        for entry in self._entries((*at, "temperature"), "degC"):
+            reached = f"temperature: {show(entry.value, 'degC')} with its band of {show(band, 'K')}"
+            if entry.value + band > surface_c:
+                message = f"{reached} is hotter than the rig allows rubber"
+                yield self._beyond(entry, message, "limits.surface", surface_c, "degC")
+            elif entry.value + band > surface_c - OVERHEAT_K:
                 nearer = f"leaves less than {show(OVERHEAT_K, 'K')}, by which a burst overshoots, to what rubber may be"
-                yield self.tree.problem(given.at, f"{reached} {nearer} {source}")
-            if given.value > jacket_c:
-                source = self._limit("limits.jacket", jacket_c, "degC")
-                yield self.tree.problem(given.at, f"{reached} is hotter than the jacket may get {source}")
-            if given.value + band < self.ambient_c:
+                yield self._beyond(entry, f"{reached} {nearer}", "limits.surface", surface_c, "degC")
+            if entry.value > jacket_c:
+                message = f"{reached} is hotter than the jacket may get"
+                yield self._beyond(entry, message, "limits.jacket", jacket_c, "degC")
+            if entry.value + band < self.ambient_c:
                 source = f"({show(self.ambient_c, 'degC')}: {self.ambient_from})"
-                yield self.tree.problem(given.at, f"{reached} is below ambient, and the rig cannot cool {source}")
+                yield self.tree.problem(entry.at, f"{reached} is below ambient, and the rig cannot cool {source}")
 
     def _slips(self, at: Location) -> Iterator[Problem]:
         belt_limit, most = self.rig.limits.belt_speed_m_s, self.rig.interlocks.max_slip_m_s
         for slip, wheel, sign in product(
-            self._given((*at, "slip_velocity"), "m/s"), self._speeds(at), (1.0, -1.0) if self._both(at) else (1.0,)
+            self._entries((*at, "slip_velocity"), "m/s"), self._speeds(at), (1.0, -1.0) if self._both(at) else (1.0,)
         ):
             belt = round(wheel - sign * slip.value, 9)
             turned = ", reversed by both_directions," if sign < 0.0 else ""
             asked = f"slip_velocity: {show(slip.value, 'm/s')}{turned} at a wheel speed of {show(wheel, 'm/s')}"
             if belt > belt_limit:
-                source = self._limit("limits.belt_speed", belt_limit, "m/s")
-                yield self.tree.problem(slip.at, f"{asked} needs {show(belt, 'm/s')} of the belt {source}")
+                message = f"{asked} needs {show(belt, 'm/s')} of the belt"
+                yield self._beyond(slip, message, "limits.belt_speed", belt_limit, "m/s")
             if abs(slip.value) > most:
-                source = self._limit("interlocks.max_slip", most, "m/s")
-                yield self.tree.problem(slip.at, f"{asked} is more than is ever loaded {source}")
+                yield self._beyond(slip, f"{asked} is more than is ever loaded", "interlocks.max_slip", most, "m/s")
                 continue
             off = 0.01 * self.rig.gates.speed_percent * (wheel + abs(belt))
             if abs(slip.value) + off > most:
-                source = self._limit("interlocks.max_slip", most, "m/s")
                 nearer = f"leaves less than {show(off, 'm/s')}, by which the speeds may be off (gates.speed)"
-                yield self.tree.problem(slip.at, f"{asked} {nearer}, to what is ever loaded {source}")
+                message = f"{asked} {nearer}, to what is ever loaded"
+                yield self._beyond(slip, message, "interlocks.max_slip", most, "m/s")
 
     def _both(self, at: Location) -> bool:
         """Return whether a grid is measured in both directions of slip."""
-        own = self._node((*at, "both_directions"))
-        return (self._node(("measure", "both_directions")) if own is None else own) is True
+        stated = self._node((*at, "both_directions"))
+        return (self._node(("measure", "both_directions")) if stated is None else stated) is True
 
     def _speeds(self, at: Location) -> list[float]:
-        own = self._given((*at, "wheel_speed"), "m/s") or self._given(("measure", "wheel_speed"), "m/s")
-        return list(dict.fromkeys(one.value for one in own))
+        speeds = self._entries((*at, "wheel_speed"), "m/s") or self._entries(("measure", "wheel_speed"), "m/s")
+        return list(dict.fromkeys(speed.value for speed in speeds))
 
     def _motions(self, at: Location) -> list[Motion]:
-        slips = dict.fromkeys(one.value for one in self._given((*at, "slip_velocity"), "m/s"))
-        angles = dict.fromkeys(one.value for one in self._given((*at, "sideslip"), "deg")) or {0.0: None}
+        slips = dict.fromkeys(entry.value for entry in self._entries((*at, "slip_velocity"), "m/s"))
+        angles = dict.fromkeys(entry.value for entry in self._entries((*at, "sideslip"), "deg")) or {0.0: None}
         motions: list[Motion] = []
         for wheel, slip, angle in product(self._speeds(at), slips, angles):
             belt = wheel - slip
             motions.append(Motion(wheel, belt, angle, slip_velocity(wheel, belt, angle)[2]))
         return motions
 
-    def _powers(self, loads: list[Given], motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
+    def _powers(self, loads: list[Entry], motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
         """Yield a problem for every load that makes too much friction heat somewhere, naming the worst place."""
         pressing = [load for load in loads if load.value > 0.0]
         if not motions or not temperatures or not pressing:
@@ -311,7 +310,7 @@ class _Limits:
         for name, model in self.models.items():
             # Both friction models are a factor of temperature times one of load and slip: the worst temperature
             # is the same everywhere.
-            hottest = max(temperatures, key=lambda one: model.mu(one, pressing[0].value, motions[0].slip))
+            hottest = max(temperatures, key=lambda at_c: model.mu(at_c, pressing[0].value, motions[0].slip))
             cases += [
                 _Case(name, model, hottest, motion.slip, cornering_factor(name, motion.sideslip_deg))
                 for motion in motions
@@ -319,7 +318,7 @@ class _Limits:
         for load in pressing:
             yield from self._power(load, cases)
 
-    def _power(self, load: Given, cases: list[_Case]) -> Iterator[Problem]:
+    def _power(self, load: Entry, cases: list[_Case]) -> Iterator[Problem]:
         limit = self.rig.limits.slip_power_w
         newtons, most, worst = load.value, limit / (1.0 + POWER_SCATTER), None
         for case in cases:
@@ -332,4 +331,4 @@ class _Limits:
             message = f"load: {show(newtons, 'N')} makes {most:.0f} W of friction heat at {where}"
             if most <= limit:
                 message += f", and with the scatter of friction {100.0 * POWER_SCATTER:.0f} % more"
-            yield self.tree.problem(load.at, f"{message} {self._limit('limits.slip_power', limit, 'W')}")
+            yield self._beyond(load, message, "limits.slip_power", limit, "W")

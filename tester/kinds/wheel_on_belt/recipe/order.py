@@ -54,15 +54,15 @@ class OrderCosts:
             return c.heat_near_s
         return c.heat_s + c.heat_per_k_s * (rise_k - 1.0) + c.heat_level_s * max(from_c - self.ambient_c, 0.0)
 
-    def after(self, before: Before, sp: Setpoint, one: StepEstimate) -> StepEstimate:
+    def after(self, before: Before, sp: Setpoint, estimate: StepEstimate) -> StepEstimate:
         """Return a condition's estimate with what its place costs, and note what it leaves to the next."""
         c = self.constants
-        heat_w, from_c = one.heat_w, before.from_c
+        heat_w, from_c = estimate.heat_w, before.from_c
         if from_c is not None:
             waiting_s = self._settle_s(from_c, sp.number("temperature"))
             if heat_w > 0.0:
                 share = max(c.settled_share - waiting_s / c.settled_s, 0.0)
-                waiting_s += (share - 1.0) * one.waiting_s
+                waiting_s += (share - 1.0) * estimate.waiting_s
             else:
                 waiting_s *= c.rolling_settle
             before.from_c = None
@@ -76,12 +76,12 @@ class OrderCosts:
         else:
             waiting_s = 0.0
             if before.heat_w > heat_w:
-                waiting_s = (c.after_hotter - 1.0) * one.waiting_s
+                waiting_s = (c.after_hotter - 1.0) * estimate.waiting_s
             if before.heat_w > c.sunk_from_w:
                 waiting_s += min(c.sunk_s_w * (before.heat_w - c.sunk_from_w), c.sunk_most_s)
         before.heat_w = heat_w
         before.rolled = heat_w <= 0.0
-        return one._replace(seconds=one.seconds + waiting_s, waiting_s=one.waiting_s + waiting_s)
+        return estimate._replace(seconds=estimate.seconds + waiting_s, waiting_s=estimate.waiting_s + waiting_s)
 
     def _settle_s(self, from_c: float, to_c: float) -> float:
         """Return the seconds in contact from reaching a temperature until it is stable."""

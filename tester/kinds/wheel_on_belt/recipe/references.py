@@ -26,12 +26,12 @@ AT: Final[Location] = (REFERENCE,)
 """Its place in a recipe."""
 
 
-def as_grid(one: ReferenceModel, recipe: WheelRecipe) -> WheelGrid:
+def as_grid(reference: ReferenceModel, recipe: WheelRecipe) -> WheelGrid:
     """Return a reference condition as a grid of one condition."""
-    held = {name: [getattr(one, name)] for name in REFERENCE_HELD}
-    speed = None if one.wheel_speed is None else [one.wheel_speed]
-    others: dict[str, Any] = {"name": REFERENCE, "wheel_speed": speed, "repeats": one.repeats}
-    return cast("WheelGrid", grid_model(recipe.axes, recipe.part.grid).model_construct(**held, **others))
+    values = {name: [getattr(reference, name)] for name in REFERENCE_HELD}
+    speed = None if reference.wheel_speed is None else [reference.wheel_speed]
+    others: dict[str, Any] = {"name": REFERENCE, "wheel_speed": speed, "repeats": reference.repeats}
+    return cast("WheelGrid", grid_model(recipe.axes, recipe.part.grid).model_construct(**values, **others))
 
 
 def reference_condition(recipe: WheelRecipe) -> Condition[WheelSettings] | None:
@@ -48,8 +48,8 @@ def reference_condition(recipe: WheelRecipe) -> Condition[WheelSettings] | None:
 
 def reference_problems(recipe: WheelRecipe, tree: Tree) -> Iterator[Problem]:
     """Yield what makes no sense in a recipe's reference condition, whatever the rig."""
-    one, measure = recipe.reference, recipe.measure
-    if one is None:
+    reference, measure = recipe.reference, recipe.measure
+    if reference is None:
         return
     if not recipe.grids or measure is None:
         yield tree.problem(AT, "reference: there is nothing to measure between references (expected grids)")
@@ -58,10 +58,10 @@ def reference_problems(recipe: WheelRecipe, tree: Tree) -> Iterator[Problem]:
         if grid.name == REFERENCE:
             message = f"a grid {shown(REFERENCE)} would be taken for the reference condition (expected another name)"
             yield tree.problem(("grids", index, "name"), message)
-    if one.compound is not None and one.wheel is None:
+    if reference.compound is not None and reference.wheel is None:
         message = "compound: a reference on whichever wheel is on has that wheel's compound (expected wheel with it)"
         yield tree.problem((*AT, "compound"), message)
-    if measure.combine == "paper" and one.repeats is not None and one.repeats.at_least != CLOSEST_OF:
+    if measure.combine == "paper" and reference.repeats is not None and reference.repeats.at_least != CLOSEST_OF:
         message = f"repeats: combine: paper takes the closest two of {CLOSEST_OF} (expected {CLOSEST_OF})"
         yield tree.problem((*AT, "repeats"), message)
-    yield from recipe.part.sense(measure, as_grid(one, recipe), AT, tree)
+    yield from recipe.part.sense(measure, as_grid(reference, recipe), AT, tree)

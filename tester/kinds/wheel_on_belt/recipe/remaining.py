@@ -1,9 +1,9 @@
 """The rest of a plan after an interruption: the fifth reader of the plan's steps.
 
-Goes on at the first condition that is not over, with the wheel that is on the rig if that is the one it is to be
-measured with: it is mounted as it is (worn), ground in only where that was not complete, rested where nothing had been
-measured on it, then heated again. Every specimen is looked at by itself, because a simulated run may measure them at
-the same time; but not with references, where all that comes after what is left first is left, too.
+It begins at the first condition that is not over. The wheel on the rig stays if that condition belongs to it: it is
+mounted as it is (worn), ground in only where that was not complete, rested where nothing had been measured on it, then
+heated again. Specimens are resumed separately, because a simulated run may measure them at the same time. With
+references, everything behind the first step that is left is left as well.
 """
 
 from __future__ import annotations
@@ -59,22 +59,22 @@ def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> lis
     if not wheels:
         return list(segment)
     wheel = wheels[-1]
-    mounted = {one.number for one in wheels}
+    mounted = {each.number for each in wheels}
     if not places:
         return _only_prepared(plan, segment, wheel, mounted)
     if not left:
         return []
-    here = left[0]
-    over = max((place for place in places if place < here), default=-1)
-    if any(isinstance(step, Install) and step.wheel not in mounted for step in segment[over + 1 : here]):
+    begin = left[0]
+    over = max((place for place in places if place < begin), default=-1)
+    if any(isinstance(step, Install) and step.wheel not in mounted for step in segment[over + 1 : begin]):
         return list(segment[over + 1 :])
-    condition = segment[here]
+    condition = segment[begin]
     assert isinstance(condition, WheelCondition)
     steps = [_mounted(plan, wheel), *_prepare(plan, wheel)]
-    if numbers[here] not in stand.begun:
-        steps += [s for s in segment[over + 1 : here] if isinstance(s, PromptStep) and s.text not in _person(plan)]
+    if numbers[begin] not in stand.begun:
+        steps += [s for s in segment[over + 1 : begin] if isinstance(s, PromptStep) and s.text not in _person(plan)]
     steps.append(Heat(INSERTED, condition.setpoint.number("temperature")))
-    return [*steps, *segment[here:]]
+    return [*steps, *segment[begin:]]
 
 
 def _only_prepared(plan: WheelPlan, segment: Sequence[WheelStep], wheel: Mounted, mounted: set[int]) -> list[WheelStep]:

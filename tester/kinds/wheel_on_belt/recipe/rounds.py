@@ -1,4 +1,4 @@
-"""When the reference condition comes round in a plan: at the start, after every so many conditions, and at the end.
+"""When the reference condition is due in a plan: at the start, after every so many conditions, and at the end.
 
 On the present wheel it is one of the conditions, and its wear counts with theirs. A wheel that is reserved for
 it has to be put on each time: it comes round at every change of the wheel as well, where that costs one change more
@@ -69,19 +69,19 @@ class ReferenceRounds:
         """Return the blocks of a replicate with the reference before every condition at which it is due."""
         assert self.condition is not None
         count, begun = self.since, bool(self.made)
-        found: list[list[Condition[WheelSettings]]] = []
+        filled_blocks: list[list[Condition[WheelSettings]]] = []
         for block in blocks:
             filled: list[Condition[WheelSettings]] = []
-            for one in block:
+            for condition in block:
                 if not begun or count >= self.every:
                     filled.append(self.condition)
                     begun, count = True, 0
-                filled.append(one)
+                filled.append(condition)
                 count += 1
-            found.append(filled)
-        if found and (specimen, replicate) == self._last:
-            found[-1].append(self.condition)
-        return found
+            filled_blocks.append(filled)
+        if filled_blocks and (specimen, replicate) == self._last:
+            filled_blocks[-1].append(self.condition)
+        return filled_blocks
 
     def next_row(self) -> int:
         """Return the row of the next reference, behind all of the recipe's own."""

@@ -94,7 +94,7 @@ class WheelGrid(GridModel, frozen=True):
 
 
 REFERENCE_HELD: Final = {"slip_velocity": 0.3, "load": 200.0, "temperature": 40.0}
-"""What a reference condition is held at unless the recipe says otherwise, m/s, N, degC: slip and load of the paper's
+"""Setpoints of a reference condition that the recipe leaves out, m/s, N, degC: slip and load of the paper's
 middle condition, and a temperature that a hot wheel falls to within the hour and a cold one rises to within minutes
 [A]."""
 _WARMTH = AXES["temperature"]
@@ -135,7 +135,7 @@ def for_wheels(recipe: Recipe) -> WheelRecipe:
     return recipe
 
 
-Said = TypeVar("Said", bool, float)
+Setting = TypeVar("Setting", bool, float)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,10 +164,10 @@ def wheel_settings(measure: MeasureModel, grid: GridModel) -> WheelSettings:
         common.soak,
         grid.max_bursts or measure.max_bursts,
         grid.wear_check or measure.wear_check,
-        _said(grid.run_in_after_reversal, measure.run_in_after_reversal),
-        both_directions=_said(grid.both_directions, measure.both_directions),
+        _of_grid(grid.run_in_after_reversal, measure.run_in_after_reversal),
+        both_directions=_of_grid(grid.both_directions, measure.both_directions),
     )
 
 
-def _said(own: Said | None, common: Said) -> Said:
-    return common if own is None else own
+def _of_grid(setting: Setting | None, common: Setting) -> Setting:
+    return common if setting is None else setting

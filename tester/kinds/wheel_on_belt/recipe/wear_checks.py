@@ -17,7 +17,7 @@ from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelRecipe, whe
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 _WORST_AT_MOST = ("load", *(axis.name for axis in AXES if axis.drive))
-"""Axes of which the greatest value wears most: the load, and the angles."""
+"""Axes whose greatest value wears most: the load, and the angles."""
 
 
 def wear_problems(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Problem]:
@@ -31,13 +31,14 @@ def wear_problems(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Probl
         return [tree.problem(at, message)]
     ground = 0.0
     if recipe.pre_grind is not None:
-        one = recipe.pre_grind
-        ground = costs.ground_mm(one.load, abs(one.wheel_speed - one.belt_speed) * one.duration)
+        grind = recipe.pre_grind
+        ground = costs.ground_mm(grind.load, abs(grind.wheel_speed - grind.belt_speed) * grind.duration)
     problems: list[Problem] = []
+    compounds = [specimen.compound for specimen in recipe.specimens]
     for index, grid in enumerate(recipe.grids):
         compound, worst = max(
-            ((one.compound, _worst_loss_mm(recipe, grid, one.compound, costs)) for one in recipe.specimens),
-            key=lambda entry: entry[1],
+            ((compound, _worst_loss_mm(recipe, grid, compound, costs)) for compound in compounds),
+            key=lambda loss: loss[1],
         )
         if ground + worst > allowed:
             wear = f"{worst:.2f} mm of diameter with {shown(compound)}, after {ground:.2f} mm of pre-grinding"
@@ -47,7 +48,7 @@ def wear_problems(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Probl
 
 
 def _watched(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Problem]:
-    """Return that all references together wear the wheel that is reserved for them out."""
+    """Return a problem if all references together wear out the wheel that is reserved for them."""
     if recipe.reference is None or recipe.reference.wheel is None:
         return []
     plan, allowed = expand(recipe, rig), recipe.wheel.replace_after
@@ -65,8 +66,8 @@ def _worst_loss_mm(recipe: WheelRecipe, grid: WheelGrid, compound: str, costs: C
     if recipe.measure is None:
         return 0.0
     settings = wheel_settings(recipe.measure, grid)
-    values = {
-        name: (max(numbers(held), key=abs),) if name in _WORST_AT_MOST else held
-        for name, held in axis_values(recipe.measure, grid).items()
+    worst = {
+        name: (max(numbers(values), key=abs),) if name in _WORST_AT_MOST else values
+        for name, values in axis_values(recipe.measure, grid).items()
     }
-    return max(costs.of(Setpoint(compound, held, grid.axes), settings).loss_mm for held in product(*values.values()))
+    return max(costs.of(Setpoint(compound, values, grid.axes), settings).loss_mm for values in product(*worst.values()))

@@ -56,7 +56,7 @@ def prepare_wheel(
 
     ``cool`` where the hub may be hot from what was measured before: then the new rubber, which takes the hub's
     temperature, also waits until its surface is near ambient before it is ground. ``heat_c``
-    brings it back to the temperature of the conditions that go on; None where a Heat follows anyway.
+    brings it back to the temperature of the conditions that follow; None where a Heat follows anyway.
     """
     grind, rest = prepare.pre_grind, prepare.rest
     steps: list[WheelStep] = [Cool(next(numbers))] if cool else []

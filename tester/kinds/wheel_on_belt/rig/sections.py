@@ -81,7 +81,7 @@ class _AxesConfig:
 
     def driven(self) -> dict[str, AxisConfig]:
         """Return the axes that have a drive, by name."""
-        axes: dict[str, AxisConfig | None] = {one.name: getattr(self, one.name) for one in fields(self)}
+        axes: dict[str, AxisConfig | None] = {name: getattr(self, name) for name in (at.name for at in fields(self))}
         return {name: axis for name, axis in axes.items() if axis is not None}
 
 
@@ -102,9 +102,9 @@ if TYPE_CHECKING:
             ...
 
 else:
-    _LIMITS = ((one.field, Annotated[float, one.recipe_unit, Range(ge=0.0, le=one.most)]) for one in POSITIONED)
+    _LIMITS = ((axis.field, Annotated[float, axis.recipe_unit, Range(ge=0.0, le=axis.most)]) for axis in POSITIONED)
     LimitsConfig = _with(_LimitsConfig, _LIMITS)
-    AxesConfig = _with(_AxesConfig, ((one.name, AxisConfig | None) for one in POSITIONED))
+    AxesConfig = _with(_AxesConfig, ((axis.name, AxisConfig | None) for axis in POSITIONED))
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +187,7 @@ else:
 
 
 def interlock_values(section: InterlocksConfig) -> Values:
-    """Return what a rig's section ``interlocks`` says, by parameter."""
+    """Return the values of a rig's section ``interlocks``, by parameter."""
     return values_of(section, PARAMETERS)
 
 
@@ -254,7 +254,7 @@ class CertificatesConfig(CalibrationConfig):
     cell_sensitivity: Annotated[float, "1", Range(ge=0.0, le=0.05)] = 0.0
     """Of Fx over Fz, as found and with its standard uncertainty (commission.weights); 0: not in the budget."""
     record: str = ""
-    """Name of the entry that says so: the SHA-256 of the step ``cell`` in the record of the commissioning."""
+    """Name of the entry with that value: the SHA-256 of the step ``cell`` in the record of the commissioning."""
 
 
 @dataclass(frozen=True, slots=True)

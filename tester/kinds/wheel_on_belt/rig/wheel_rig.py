@@ -96,7 +96,7 @@ def _skew(rig: RigConfig) -> _Found:
 
 
 def _heat_off(rig: RigConfig) -> _Found:
-    """The heat ends without this program: by a lease, or by what the file says that the machine has instead."""
+    """The heat ends without this program: by a lease, or by the machine's substitute that the file names."""
     for name, device in rig.devices.items():
         if device.heat_off and (name != "jacket" or device.heat_off not in HEAT_OFF):
             expected = "it is the jacket's" if name != "jacket" else f"expected {' or '.join(HEAT_OFF)}"
@@ -130,9 +130,9 @@ RIPPLE_N: Final = 10.0
 
 
 def with_torque_limit(rig: RigConfig) -> RigConfig:
-    """Return a rig whose press drive has the torque for ``limits.load``, or less where the file says so.
+    """Return a rig whose press drive has the torque for ``limits.load``, or less where the file has less.
 
-    A press without ``screw`` keeps what the file says: nothing is known of what its torque does.
+    A press without ``screw`` keeps the file's value: the effect of its torque is unknown.
     """
     press = rig.axes.press
     if press.screw is None:

@@ -36,7 +36,7 @@ from tester.store.resumable import ResumePoint
 
 
 def take_up(procedures: WheelProcedures, results: WheelResults, point: ResumePoint) -> None:
-    """Let the procedures of the remaining plan know what is committed: repeats, wheels, the load cell's reference
+    """Hand the procedures of the remaining plan what is committed: repeats, wheels, the load cell's reference
     zero."""
     results.earlier = dict(point.conditions)
     results.pool = point.pool
@@ -51,17 +51,17 @@ def take_up(procedures: WheelProcedures, results: WheelResults, point: ResumePoi
 
 
 def take_up_wheels(ctx: Context, plan: WheelPlan, stand: Stand) -> None:
-    """Know the belt that is on, and the wheels that were, for a plan with references; others have a belt a part."""
+    """Restore the belt that is on, and the wheels that were, for a plan with references; others have a belt a part."""
     if not plan.references:
         return
     ctx.belt_travel_m = stand.travel_m
     if stand.travel_m > 0.0:
         ctx.attendant.belt_travelled(stand.travel_m)
-    for one in stand.mounted:
-        compound = plan.specimen(one.specimen).compound
-        wheel = wheel_of(ctx.rig.geometry, one.specimen, one.replicate, one.number, compound, one.diameter_mm)
-        wheel.sliding_m, wheel.condition = one.sliding_m, one.last_condition
-        ctx.shelf[(one.specimen, one.replicate)] = wheel
+    for piece in stand.mounted:
+        compound = plan.specimen(piece.specimen).compound
+        wheel = wheel_of(ctx.rig.geometry, piece.specimen, piece.replicate, piece.number, compound, piece.diameter_mm)
+        wheel.sliding_m, wheel.condition = piece.sliding_m, piece.last_condition
+        ctx.shelf[(piece.specimen, piece.replicate)] = wheel
 
 
 def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:

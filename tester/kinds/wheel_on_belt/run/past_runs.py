@@ -28,9 +28,9 @@ from tester.store.run_reader import RunReader
 
 KIND: Final = "heat"
 LEAST_RISE_K: Final = 20.0
-"""A hub that rose by less in a heating says little: a sensor that lags by 1 K is 5 % of it [A]."""
+"""A smaller rise of the hub in a heating is no evidence: a sensor that lags by 1 K is 5 % of it [A]."""
 LEAST_J: Final = 10e3
-"""From this heat on a balance says something, J [A]: what a late sensor hides is 2 % of it."""
+"""A balance with less heat is no evidence, J [A]: of this much, a late sensor hides 2 %."""
 _IN_HEAT: Final = frozenset(row.name for row in (*hub.ROWS, *surface.ROWS))
 """Trips after which the run's heat data is not trusted."""
 
@@ -50,7 +50,7 @@ def beliefs_of(rig: RigConfig) -> str:
 def known_heat(runs: Path, rig: RigConfig) -> KnownRatio:
     """Return the facts about a rig's heat balance from the runs in a folder, except runs under way.
 
-    A run that cannot be read is no evidence, nor one that tripped in heat.
+    A run that cannot be read is no evidence, nor is one that tripped in heat.
     """
     return known_from([ratio for folder in run_folders(runs) for ratio in _evidence(folder, rig)], rig)
 
@@ -64,7 +64,7 @@ def _evidence(folder: Path, rig: RigConfig) -> list[float]:
     """Return the ratios of a run's heatings, where they are evidence."""
     with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
         ratios = ratios_of(reader.event_data(KIND), rig)
-        if ratios and _IN_HEAT.isdisjoint(one.interlock for one in reader.trips()) and under_way(folder) is None:
+        if ratios and _IN_HEAT.isdisjoint(trip.interlock for trip in reader.trips()) and under_way(folder) is None:
             return ratios
     return []
 
@@ -84,12 +84,12 @@ def ratios_of(data: Iterable[str], rig: RigConfig) -> list[float]:
 
 def ring_of(reader: RunReader, name: str) -> RingRun:
     """Return a run's record of its ring. Raises StoreError if it is unreadable."""
-    found = RingRun(name, reader.run().info.started_utc)
+    ring = RingRun(name, reader.run().info.started_utc)
     for counter, value in reader.bus_statistics(BUS):
         if counter == "wheel":
-            found.segments.append(RingSegment())
+            ring.segments.append(RingSegment())
             continue
-        segment = found.segments[-1]
+        segment = ring.segments[-1]
         what, _, place = counter.partition(" ")
         if counter == "turns":
             segment.turns = value
@@ -99,7 +99,7 @@ def ring_of(reader: RunReader, name: str) -> RingRun:
             segment.requests[int(place)] = round(value)
         elif what == "errors":
             segment.errors[int(place)] = round(value)
-    return found
+    return ring
 
 
 RING: Final = RingPart(

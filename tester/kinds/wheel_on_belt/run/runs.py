@@ -48,8 +48,8 @@ def split(plan: Plan) -> tuple[Part, ...]:
 
 def _part_of(plan: Plan, steps: tuple[Step, ...], wheels: set[int]) -> Plan:
     """Return the plan of some of the steps, with the wear of their wheels."""
-    own = WheelPlan.of(plan)
-    return replace(own, steps=steps, wear=tuple(one for one in own.wear if one.wheel in wheels))
+    whole = WheelPlan.of(plan)
+    return replace(whole, steps=steps, wear=tuple(wear for wear in whole.wear if wear.wheel in wheels))
 
 
 def _starts(steps: Sequence[Step]) -> list[int]:

@@ -65,11 +65,11 @@ def _tare_utc(reader: RunReader) -> str:
 
 def wheel_check(left: WheelLeft | None) -> Check:
     """Return what is known of the wheel that is on; a run begins by asking for a fresh one."""
-    one = left.wheel if left is not None else None
-    if one is None or not isfinite(one.diameter_mm):
+    wheel = left.wheel if left is not None else None
+    if wheel is None or not isfinite(wheel.diameter_mm):
         return Check("wheel", None, "none on record; a fresh one comes")
-    worn_mm = max(one.installed_diameter_mm - one.diameter_mm, 0.0)
-    text = f"{one.compound}, {one.diameter_mm:.2f} mm, {worn_mm:.2f} mm worn off in {one.sliding_m:.0f} m"
+    worn_mm = max(wheel.installed_diameter_mm - wheel.diameter_mm, 0.0)
+    text = f"{wheel.compound}, {wheel.diameter_mm:.2f} mm, {worn_mm:.2f} mm worn off in {wheel.sliding_m:.0f} m"
     return Check("wheel", None, f"last {text}; a fresh one comes")
 
 
@@ -89,7 +89,7 @@ def heat_check(heat: KnownRatio, rig: RigConfig) -> Check:
     """Return the limit for unexplained heat; a history that does not tighten it deserves a look."""
     limits = rig.interlocks
     tighter = heat.share(limits.heat_share, limits.heat_share_known) < limits.heat_share
-    return Check("heat balance", tighter or None, heat.told(limits.heat_share, limits.heat_share_known))
+    return Check("heat balance", tighter or None, heat.words(limits.heat_share, limits.heat_share_known))
 
 
 def age_words(seconds: float) -> str:

@@ -1,4 +1,4 @@
-"""Manual mode of this machine: its axes, the size of their steps, and the reasons for refusing one.
+"""Manual mode of this machine: its axes, their steps, and the reasons for refusing a step.
 
 Single speeds and angles move only lifted: under load a wheel that turns faster than its belt grinds.
 """
@@ -37,14 +37,14 @@ UNLOADED_N: Final = 5.0
 STANDING_M_S: Final = 0.02
 TARE_S: Final = 2.0
 
-POSITION_STEPS: Final = {one.name: one.step for one in POSITIONED}
+POSITION_STEPS: Final = {axis.name: axis.step for axis in POSITIONED}
 
 HAND: Final = (
     HandAxis("wheel", "Wheel speed", "0.05 m/s a step, lifted"),
     HandAxis("belt", "Belt speed", "0.05 m/s a step, lifted"),
     HandAxis("both", "Both speeds", "0.05 m/s a step"),
     HandAxis("press", "Load", "10 N a step, speeds equal"),
-    *(HandAxis(one.name, one.name.capitalize(), f"{one.step:g}{one.symbol} a step, lifted") for one in POSITIONED),
+    *(HandAxis(axis.name, axis.name.capitalize(), f"{axis.step:g}{axis.symbol} a step, lifted") for axis in POSITIONED),
     HandAxis("heat", "Heating", "1 K a step, turning"),
 )
 """In the order of the screen."""

@@ -34,7 +34,7 @@ PLOTS: Final = (
 )
 """The most important first: a low screen shows two, a narrow one three."""
 BY_HAND: Final = (
-    "wheel_speed", "belt_speed", "slip", "load", "press", *(one.name for one in POSITIONED), "surface", "hub", "heat",
+    "wheel_speed", "belt_speed", "slip", "load", "press", *(axis.name for axis in POSITIONED), "surface", "hub", "heat",
 )  # fmt: skip
 """Values that change in manual mode."""
 

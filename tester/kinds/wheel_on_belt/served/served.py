@@ -52,7 +52,7 @@ class WheelOnBelt:
     quantities: Quantities = QUANTITIES
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step does."""
+        """Return a step of a plan in words, as a line."""
         return title(step)
 
     def panel(self, engine: Engine) -> WheelPanel:

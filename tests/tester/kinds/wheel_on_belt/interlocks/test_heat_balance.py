@@ -218,11 +218,12 @@ def test_a_ratio_that_falls_tightens() -> None:
 
 
 def test_what_is_known_is_said_with_what_the_row_tells_from() -> None:
-    assert NO_HISTORY.told(WIDEST, KNOWN) == "no history yet; a row tells from 30 %"
-    assert KnownRatio(4, 1.02, 0.03).told(WIDEST, KNOWN) == (
+    assert NO_HISTORY.words(WIDEST, KNOWN) == "no history yet; a row tells from 30 %"
+    assert KnownRatio(4, 1.02, 0.03).words(WIDEST, KNOWN) == (
         "known from 4 heatings, ratio 1.02, 0.03 apart; a row tells from 14 %"
     )
 
 
 def test_a_history_that_tightens_nothing_asks_for_a_measurement() -> None:
-    assert KnownRatio(4, 1.25).told(WIDEST, KNOWN).endswith("from 30 %: measure observer.thermal, or check the sensors")
+    text = KnownRatio(4, 1.25).words(WIDEST, KNOWN)
+    assert text.endswith("from 30 %: measure observer.thermal, or check the sensors")
