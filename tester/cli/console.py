@@ -15,16 +15,16 @@ from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
-from tester.base.keys import FAST_STOP, HELP, HOLD, STOP, commands_of, pieces_of
+from tester.base.keys import FAST_STOP, HELP, HOLD, STOP, Meaning, commands_of, pieces_of
 from tester.base.words import conditions_done, duration
 from tester.cli.command_keys import keys_of
 from tester.cli.ending import ending_lines
 from tester.machine.context import Progress as RunProgress
-from tester.machine.prompts import DONE, Prompt, Prompts
+from tester.machine.prompts import DONE, Prompt, Prompts, Question
 from tester.machine.time_left import RunPosition
 
 ASKED = f'type "{DONE}" and Enter when it is done'
-MOST_TYPED = 20
+MOST_TYPED = 200
 END_OF_INPUT = "\x04"
 """Ctrl+D."""
 
@@ -96,6 +96,9 @@ class Outlet:
 class Console:
     """Standard output is data (JSON lines, the run's folder), standard error is for people."""
 
+    always: tuple[Meaning, ...] = (STOP, FAST_STOP, HOLD)
+    """Keys that keep their meaning while a question waits: all others belong to its answer."""
+
     def __init__(self, *, as_json: bool, answer_yes: bool) -> None:
         """``answer_yes``: prompts are answered without asking."""
         self.as_json = as_json
@@ -160,23 +163,24 @@ class Console:
         progress.update(self._tasks[part], completed=share, description=text)
 
     def commands(self) -> list[str]:
-        """Return what a person asked for by a key; while a question stands letters are for its answer."""
+        """Return the commands of the pressed keys; while a question waits, letters belong to its answer."""
         pressed = self._keys.pressed()
         if self._question is None or self._question.answer is not None:
             return commands_of(pressed)
-        found: list[str] = []
+        commands: list[str] = []
         for piece, meaning in pieces_of(pressed):
-            if meaning in (STOP, FAST_STOP, HOLD):
-                found.append(meaning.command)
+            if meaning in self.always:
+                commands.append(meaning.command)
             elif piece in ("\r", "\n"):
-                self._answer(self._question)
+                typed, self._typed = self._typed, ""
+                self.answer(self._question, typed)
             elif piece in ("\b", "\x7f"):
                 self._typed = self._typed[:-1]
             elif piece == END_OF_INPUT:
                 self.message("that is no answer: Ctrl+C stops the run")
-            else:
+            elif piece.isprintable():
                 self._typed = (self._typed + piece)[:MOST_TYPED]
-        return found
+        return commands
 
     def end(self) -> None:
         """Take the progress line away, and give the keyboard back."""
@@ -208,7 +212,7 @@ class Console:
     # -- prompts ----------------------------------------------------------------------------------------------
 
     def attend(self, prompts: Prompts) -> None:
-        """Put the question that waits; never blocks the scan. What was typed before it stood is no answer to it."""
+        """Put the waiting question; never blocks the scan. Keys typed before it are no answer to it."""
         waiting = prompts.waiting
         if waiting is None or waiting is self._question:
             return
@@ -216,16 +220,18 @@ class Console:
         self._keys.pressed()
         self._typed = ""
         self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text})
-        self.message(f"{waiting.text} - {ASKED}")
+        self.put(waiting.question)
 
-    def _answer(self, question: Prompt) -> None:
-        """Take the word that was typed, if it is the one."""
-        typed, self._typed = self._typed, ""
-        if typed == DONE:
-            question.answer = DONE
-            self.message(f"answered: {DONE}")
+    def put(self, question: Question) -> None:
+        """Show a question."""
+        self.message(f"{question.text} - {ASKED}")
+
+    def answer(self, prompt: Prompt, typed: str) -> None:
+        """Take a typed line as the answer, if it is one."""
+        if prompt.reply(typed):
+            self.put(prompt.question)
         else:
-            self.message(f"{question.text} - {ASKED}")
+            self.message(f"answered: {prompt.answer}")
 
 
 def standing_words(at: RunPosition) -> str:

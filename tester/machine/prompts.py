@@ -1,23 +1,105 @@
-"""Questions for a person. A prompt waits, with the drives off, until it is answered."""
+"""Questions to a person: in a run, which waits with the drives off, and while a rig is commissioned.
+
+A terminal, a screen, the service and a test's person answer the same ``Prompt``. A question never blocks a scan.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import Enum
+from math import inf, isfinite
+from typing import Final
+
+from tester.base.units import UnitError, parse, units_like
 
 DONE, NOT_YET = "yes", "no"
-"""The exact words that answer a question; the second leaves it waiting."""
+"""The exact words that answer a run's question; the second leaves it waiting."""
+GO: Final = "go"
+"""The word that starts a motion."""
+
+
+class Asks(Enum):
+    """The kind of answer that a question needs."""
+
+    CHOICE = "choice"
+    """One of ``Question.choices``."""
+    QUANTITY = "quantity"
+    """A number in ``Question.unit``, or with a unit of the same kind."""
+    TEXT = "text"
+    """A line of text."""
+    KEY = "key"
+    """The word GO: it starts a short motion."""
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """One question. ``key``: its name, the same in every commissioning; ``text``: for the person."""
+
+    key: str
+    text: str
+    asks: Asks
+    choices: tuple[str, ...] = ()
+    unit: str = ""
+
+    def refusal(self, answer: str) -> str:
+        """Return why a text is not a valid answer, "" if it is."""
+        text = answer.strip()
+        if self.asks is Asks.CHOICE:
+            return "" if text in self.choices else f"expected one of: {', '.join(self.choices)}"
+        if self.asks is Asks.KEY:
+            return "" if text in (GO, "no") else f'expected "{GO}", or "no" to leave this step'
+        if self.asks is Asks.QUANTITY:
+            try:
+                self.value(text)
+            except UnitError as error:
+                return str(error)
+        return "" if text else "expected a text"
+
+    def value(self, answer: str) -> float:
+        """Return a quantity in ``unit``; a bare number counts as in that unit. Raises UnitError."""
+        text = answer.strip()
+        try:
+            bare = float(text)
+        except ValueError:
+            return parse(text, self.unit)
+        if not isfinite(bare):
+            raise UnitError(f"{text} is not a number (expected one in {self.unit})")
+        return bare
+
+    @property
+    def hint(self) -> str:
+        """The valid answers, in words."""
+        if self.asks is Asks.CHOICE:
+            return " / ".join(self.choices)
+        if self.asks is Asks.KEY:
+            return f"{GO} / no"
+        if self.asks is Asks.QUANTITY:
+            return f"a number in {self.unit}, or with a unit ({', '.join(units_like(self.unit))})"
+        return "a line of text"
 
 
 @dataclass(slots=True)
 class Prompt:
-    """One question; ``answer`` is None while it waits."""
+    """One asked question; ``answer`` is None while it waits."""
 
     number: int
     at_s: float
-    text: str
+    question: Question
     answer: str | None = None
     by: str = ""
     """Who answered; "" if unknown."""
+
+    @property
+    def text(self) -> str:
+        """The question, for the person."""
+        return self.question.text
+
+    def reply(self, text: str) -> str:
+        """Take an answer; return why it is refused, "" if it counts."""
+        refusal = self.question.refusal(text)
+        if not refusal:
+            self.answer = text.strip()
+        return refusal
 
 
 @dataclass(slots=True)
@@ -30,15 +112,25 @@ class Prompts:
     automatic: bool = False
     real: bool = False
     asked: list[Prompt] = field(default_factory=list[Prompt])
+    now_s: float = inf
+    """Rig time of a commissioning, s; infinity while no rig runs."""
 
     def answers_itself(self, *, near: bool) -> bool:
         """Return whether the prompt is answered automatically. ``near``: it asks a person to come near the machine."""
         return self.automatic and not (near and self.real)
 
     def ask(self, now: float, text: str, *, near: bool = True) -> Prompt:
-        """Ask a question and return its prompt; it may already be answered."""
-        answer = "yes (automatic)" if self.answers_itself(near=near) else None
-        prompt = Prompt(len(self.asked) + 1, now, text, answer)
+        """Ask a run's question and return its prompt; it may already be answered."""
+        prompt = self._put(now, Question(f"prompt {len(self.asked) + 1}", text, Asks.CHOICE, (DONE,)))
+        prompt.answer = "yes (automatic)" if self.answers_itself(near=near) else None
+        return prompt
+
+    def put(self, question: Question) -> Prompt:
+        """Ask a question of a commissioning and return its prompt."""
+        return self._put(self.now_s, question)
+
+    def _put(self, at_s: float, question: Question) -> Prompt:
+        prompt = Prompt(len(self.asked) + 1, at_s, question)
         self.asked.append(prompt)
         return prompt
 

@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import inf
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from tester.analysis.schemes import misalignment
-from tester.base.keys import FAST_STOP, MEANINGS, STOP
 from tester.base.words import finite
-from tester.machine.commission.person import Asks, Person, Question, StepRefused
+from tester.machine.commission.person import Person, StepRefused
 from tester.machine.context import Progress
-from tester.machine.prompts import DONE, Prompt, Prompts
+from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
 from tester.store.run_reader import RunReader
-
-STOPS: Final = frozenset({STOP.command, FAST_STOP.command})
-COMMANDS: Final = frozenset(meaning.command for meaning in MEANINGS)
 
 
 class PersonScreen:
@@ -31,52 +26,32 @@ class PersonScreen:
         self.person = person
         self.answer_yes = answer_yes
         self.can_ask = not answer_yes
-        self.stopped = False
-        self._asked: Prompt | None = None
         self._title = ""
 
     def begin(self, name: str) -> None:
         """Report that the run begins."""
-        self.person.tell(f"  run {name}")
+        self.person.message(f"  run {name}")
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Report each step as it begins."""
         if run.title != self._title:
             self._title = run.title
-            self.person.tell(f"  {100 * at.share:3.0f} %  {run.title}")
+            self.person.message(f"  {100 * at.share:3.0f} %  {run.title}")
 
     def attend(self, prompts: Prompts) -> None:
-        """Ask the waiting question, and take its answer."""
-        waiting = prompts.waiting
-        if waiting is None:
-            return
-        if waiting is not self._asked:
-            self._asked = waiting
-            self._put(waiting)
-            return
-        answer = self.person.taken(inf)
-        if answer is None:
-            return
-        if answer.strip() == DONE:
-            waiting.answer = DONE
-        else:
-            self._put(waiting)
-
-    def _put(self, prompt: Prompt) -> None:
-        self.person.put(Question(f"prompt {prompt.number}", prompt.text, Asks.CHOICE, (DONE,)))
+        """Let the person answer."""
+        self.person.attend(prompts)
 
     def commands(self) -> list[str]:
         """Return the person's commands."""
-        wanted = [command for command in self.person.poll() if command in COMMANDS]
-        self.stopped = self.stopped or not STOPS.isdisjoint(wanted)
-        return wanted
+        return self.person.commands()
 
     def end(self) -> None:
         """Do nothing: there is no progress display."""
 
     def message(self, text: str) -> None:
         """Show the message."""
-        self.person.tell(f"  {text}")
+        self.person.message(f"  {text}")
 
     def emit(self, record: dict[str, object]) -> None:
         """Do nothing: no program reads records here."""
@@ -90,7 +65,7 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.yaml"
     path.write_text(text, encoding="utf-8")
-    screen = PersonScreen(person, answer_yes=not person.time_stands and _scripted(person))
+    screen = PersonScreen(person, answer_yes=person.scripted)
     session = Session(replace(options, recipe=str(path)), screen)
     code = session.run()
     ending, where = session.ending, session.folder
@@ -115,8 +90,3 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
         "run": where.name, "rig_s": rig_s, "conditions": conditions, "angle_deg": finite(angle.deg),
         "angle_expanded_deg": finite(angle.expanded_deg),
     }  # fmt: skip
-
-
-def _scripted(person: Person) -> bool:
-    """Return whether the person reads a simulated rig: the run then mounts and answers by itself."""
-    return hasattr(person, "at")

@@ -15,9 +15,9 @@ from tester.base.lock import ExclusiveUse, RigInUseError, user
 from tester.base.processes import handled
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.rig import Rig
-from tester.machine.commission.commission_step import AtTheTwin, CommissionPart
+from tester.machine.commission.commission_step import CommissionPart
 from tester.machine.commission.person import Person
-from tester.machine.commission.record import FOLDER, CommissionRecord, Onlooker, record_path
+from tester.machine.commission.record import FOLDER, CommissionRecord, record_path
 from tester.machine.commission.step_engine import Commissioning, CommissionOutcome
 from tester.machine.rig_ports import Ports
 from tester.machine.tickers import TickedWorld
@@ -51,14 +51,8 @@ def part_of(rig: Rig) -> CommissionPart:
     return part()
 
 
-def commission(
-    rig: Rig,
-    options: CommissionOptions,
-    person: Person,
-    twin: AtTheTwin | None = None,
-    onlooker: Onlooker | None = None,
-) -> CommissionOutcome:
-    """Guide a person through commissioning a rig; ``twin``: the person, if it reads a simulated rig.
+def commission(rig: Rig, options: CommissionOptions, person: Person) -> CommissionOutcome:
+    """Guide a person through commissioning a rig.
 
     Raises CannotStartError, InvalidSource, RecordError, OSError.
     """
@@ -79,25 +73,23 @@ def commission(
             rig,
             person,
             record,
-            lambda: _connect(rig, options.seed, twin),
+            lambda: _connect(rig, options.seed, person),
             lambda name, text: run_recipe(session, path.parent, person, name, text),
             options.lapse,
-            onlooker,
             {"compound": options.compound} if options.compound else {},
         )
         with stopped_by_signals(walk):
             return walk.run()
 
 
-def _connect(rig: Rig, seed: int, twin: AtTheTwin | None) -> tuple[Ports, TickedWorld | None, Any]:
+def _connect(rig: Rig, seed: int, person: Person) -> tuple[Ports, TickedWorld | None, Any]:
     """Open the wires of a rig for exclusive use until they are closed. Raises CannotStartError, BusLost."""
     with ExitStack() as opened:
         use = opened.enter_context(ExclusiveUse())
         hold_rig(use, rig, FOLDER)
         ports, world, hands = connect_ports(rig, seed, None)
         opened.callback(ports.close)
-        if twin is not None:
-            twin.at(hands)
+        person.at(hands)
         return Ports(ports.can, ports.lines, ports.pace, opened.pop_all()), world, hands
 
 

@@ -6,12 +6,13 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
 from typing import Any, Protocol
 
+from drivers.ports import BusLost
 from tester.base.config_reader import as_tree
 from tester.inputs.rig import Rig
-from tester.machine.commission.person import AskPerson, Dialogue, Person
+from tester.machine.commission.person import Dialogue, Person, Waits
+from tester.machine.prompts import Prompt, Prompts, Question
 from tester.machine.rig_ports import Ports
 
 
@@ -34,7 +35,7 @@ class Seat(Protocol):
         ...
 
     def tick(self, now: float) -> float:
-        """Do everything due at ``now`` s; return the time of the next call."""
+        """Do everything due at ``now`` s; return the time of the next call. Raises BusLost."""
         ...
 
     def stop(self, why: str, *, fast: bool = False) -> None:
@@ -117,8 +118,8 @@ def _at(tree: object, keys: list[str]) -> object:
     for key in keys:
         if not isinstance(tree, Mapping):
             return None
-        here: Mapping[str, object] = tree  # pyright: ignore[reportUnknownVariableType]
-        tree = here.get(key)
+        section: Mapping[str, object] = tree  # pyright: ignore[reportUnknownVariableType]
+        tree = section.get(key)
     return tree
 
 
@@ -132,79 +133,69 @@ class Walk:
         self.ended = False
         """The procedure has ended, or given up."""
         self.error: Exception | None = None
-        self.now_s = 0.0
+        self.lost = ""
+        """Why the bus is gone; "" while it works."""
         self._procedure = procedure
-        self._awaited: Any = None
-        self._begun = False
+        self._prompts = Prompts(now_s=0.0)
+        self._awaited: Waits | None = None
+        self._prompt: Prompt | None = None
+
+    @property
+    def now_s(self) -> float:
+        """Rig time, s."""
+        return self._prompts.now_s
 
     @property
     def finished(self) -> bool:
-        """Whether the rig is at rest."""
-        return self.seat.finished
+        """Whether the rig is at rest, or out of reach."""
+        return bool(self.lost) or self.seat.finished
 
     @property
     def waiting(self) -> bool:
         """Whether simulated time stops because a person thinks."""
-        asked = isinstance(self._awaited, AskPerson) and not self.ended and not self.seat.finished
-        return asked and self.person.time_stands and self.seat.ready and self.person.taken(inf) is None
+        asked = self._prompt is not None and self._prompt.answer is None and not self.ended and not self.finished
+        return asked and self.person.time_stands and self.seat.ready
 
     def tick(self, now: float) -> float:
         """Tick the rig, then resume the procedure as far as possible."""
-        self.now_s = now
-        due = self.seat.tick(now)
+        self._prompts.now_s = now
+        try:
+            due = self.seat.tick(now)
+        except BusLost as lost:
+            self.lost = str(lost)
+            return now
         if self.seat.ready and not self.seat.finished and not self.ended:
-            self._go_on(now)
+            self._resume(now)
         return due
 
     def stop(self, why: str, *, fast: bool = False) -> None:
-        """Give the step up."""
+        """End the step: bring the rig to rest."""
         self.ended = True
         self.seat.stop(why, fast=fast)
 
-    def _go_on(self, now: float) -> None:
+    def _resume(self, now: float) -> None:
         """Resume the procedure as long as its condition is already met."""
         try:
-            if not self._begun:
-                self._begun = True
+            if self._awaited is None:
                 self._await(next(self._procedure))
             while not self.ended and (answer := self._answer(now)) is not None:
                 self._await(self._procedure.send(answer))
         except StopIteration:
-            self._end("step done")
+            self.stop("step done")
         except Exception as error:  # noqa: BLE001 - whatever it raises, the rig stops first; raised again later
             self.error = error
-            self._end("step given up")
+            self.stop("step given up")
 
-    def _await(self, awaited: Any) -> None:
+    def _await(self, awaited: Waits) -> None:
         self._awaited = awaited
-        if isinstance(awaited, AskPerson):
-            self.person.put(awaited.question)
+        self._prompt = self._prompts.put(awaited) if isinstance(awaited, Question) else None
 
     def _answer(self, now: float) -> str | None:
         """Return the value to resume the procedure with; None while it has to wait."""
-        if not isinstance(self._awaited, AskPerson):
-            return "" if self._awaited(now) else None
-        answer = self.person.taken(now)
-        if answer is None:
-            return None
-        refusal = self._awaited.question.refusal(answer)
-        if refusal:
-            self.person.tell(refusal)
-            self.person.put(self._awaited.question)
-            return None
-        return answer
-
-    def _end(self, why: str) -> None:
-        self.ended = True
-        self.seat.stop(why)
-
-
-class AtTheTwin(Person, Protocol):
-    """A person who reads the true values of a simulated rig."""
-
-    def at(self, hands: Any) -> None:
-        """Move to a rig with newly opened wires; ``hands``: the simulated rig."""
-        ...
+        if not isinstance(self._awaited, Question):
+            return "" if self._awaited is not None and self._awaited(now) else None
+        self.person.attend(self._prompts)
+        return self._prompt.answer if self._prompt is not None else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,4 +205,4 @@ class CommissionPart:
     steps: tuple[CommissionStep, ...]
     compounds: tuple[str, ...]
     """Compounds with a model for the expected coefficient; any other is only a name."""
-    twin: Callable[[Callable[[str], None]], AtTheTwin]
+    twin: Callable[[Callable[[str], None]], Person]

@@ -1,148 +1,89 @@
-"""Questions to the person who commissions a rig, and the interface that represents the person.
-
-A terminal, a screen and a test's person are the same to the engine: it asks a question, and checks for an answer
-between ticks. A question never blocks a scan.
-"""
+"""The person who commissions a rig: the interface of the fronts, and what a procedure can ask of a person."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from dataclasses import dataclass
-from enum import Enum
-from math import isfinite
-from typing import Protocol
+from typing import TYPE_CHECKING, Any
 
-from tester.base.units import UnitError, parse, units_like
+from tester.machine.prompts import GO, Asks, Prompts, Question
 
-
-class Asks(Enum):
-    """The kind of answer that a question needs."""
-
-    CHOICE = "choice"
-    """One of ``Question.choices``."""
-    QUANTITY = "quantity"
-    """A number in ``Question.unit``, or with a unit of the same kind."""
-    TEXT = "text"
-    """A line of text."""
-    KEY = "key"
-    """The word GO: it starts a short motion."""
+if TYPE_CHECKING:
+    from tester.machine.commission.commission_step import CommissionStep, Walk
+    from tester.machine.commission.record import RecordEntry
 
 
-GO = "go"
-"""The word that starts a motion."""
+class Person:
+    """The person who commissions: a terminal, a screen, or a script that reads a simulated rig.
 
+    The engine calls every method in its own thread, between ticks; none may block.
+    """
 
-@dataclass(frozen=True, slots=True)
-class Question:
-    """One question. ``key``: its name, the same in every commissioning; ``text``: for the person."""
+    time_stands: bool = True
+    """A simulated rig's time stops while this person thinks; a scripted person takes rig time."""
+    scripted: bool = False
+    """The person reads a simulated rig: a recipe mounts wheels and answers by itself."""
 
-    key: str
-    text: str
-    asks: Asks
-    choices: tuple[str, ...] = ()
-    unit: str = ""
+    def at(self, hands: Any) -> None:
+        """Move to a rig with newly opened wires; ``hands``: the simulated rig."""
 
-    def refusal(self, answer: str) -> str:
-        """Return why a text is not a valid answer, "" if it is."""
-        text = answer.strip()
-        if self.asks is Asks.CHOICE:
-            return "" if text in self.choices else f"expected one of: {', '.join(self.choices)}"
-        if self.asks is Asks.KEY:
-            return "" if text in (GO, "no") else f'expected "{GO}", or "no" to leave this step'
-        if self.asks is Asks.QUANTITY:
-            try:
-                self.value(text)
-            except UnitError as error:
-                return str(error)
-        return "" if text else "expected a text"
-
-    def value(self, answer: str) -> float:
-        """Return a quantity in ``unit``; a bare number counts as in that unit. Raises UnitError."""
-        text = answer.strip()
-        try:
-            bare = float(text)
-        except ValueError:
-            return parse(text, self.unit)
-        if not isfinite(bare):
-            raise UnitError(f"{text} is not a number (expected one in {self.unit})")
-        return bare
-
-    @property
-    def hint(self) -> str:
-        """The valid answers, in words."""
-        if self.asks is Asks.CHOICE:
-            return " / ".join(self.choices)
-        if self.asks is Asks.KEY:
-            return f"{GO} / no"
-        if self.asks is Asks.QUANTITY:
-            return f"a number in {self.unit}, or with a unit ({', '.join(units_like(self.unit))})"
-        return "a line of text"
-
-
-class Person(Protocol):
-    """The person who commissions: a front of the engine."""
-
-    @property
-    def time_stands(self) -> bool:
-        """Whether a simulated rig's time stops while this person thinks; a scripted person takes rig time."""
-        ...
-
-    def tell(self, text: str) -> None:
+    def message(self, text: str) -> None:
         """Show a message."""
-        ...
+        raise NotImplementedError
 
-    def put(self, question: Question) -> None:
-        """Ask a question; the one before is answered or withdrawn."""
-        ...
+    def attend(self, prompts: Prompts) -> None:
+        """Ask the waiting question, and answer it once its answer is known."""
+        raise NotImplementedError
 
-    def taken(self, now_s: float) -> str | None:
-        """Return the answer, None without one; ``now_s``: rig time, s, infinity if no rig runs."""
-        ...
+    def commands(self) -> list[str]:
+        """Return the commands given since the last call (tester.base.keys)."""
+        return []
 
-    def poll(self) -> list[str]:
-        """Return the commands typed since the last call (tester.base.keys): "stop", "fast stop"."""
-        ...
+    def entered(self, entry: RecordEntry) -> None:
+        """Take an entry that was just recorded."""
+
+    def look(self, step: CommissionStep, walk: Walk) -> None:
+        """Look at the rig in a step; called about every tester.machine.tickers.POLL_S of wall time."""
 
 
 class StepRefused(Exception):  # noqa: N818 - a finding for a person
     """A step does not pass: the finding and the remedy, for people and for the record."""
 
 
-@dataclass(frozen=True, slots=True)
-class AskPerson:
-    """Wait for a valid answer."""
-
-    question: Question
-
-
 Until = Callable[[float], bool]
 """Wait for a condition: called once a tick with rig time, s."""
-Waits = AskPerson | Until
+Waits = Question | Until
+"""A procedure waits for a valid answer, or for a condition."""
 Dialogue = Generator[Waits, str, None]
 Measured = Generator[Waits, str, float]
 
 
 def choose(key: str, text: str, *choices: str) -> Generator[Waits, str, str]:
     """Ask for one of several words."""
-    return (yield AskPerson(Question(key, text, Asks.CHOICE, choices))).strip()
+    return (yield Question(key, text, Asks.CHOICE, choices))
 
 
 def measure(key: str, text: str, unit: str) -> Measured:
     """Ask for a quantity; return it in ``unit``."""
     question = Question(key, text, Asks.QUANTITY, unit=unit)
-    return question.value((yield AskPerson(question)))
+    return question.value((yield question))
 
 
 def line(key: str, text: str) -> Generator[Waits, str, str]:
     """Ask for a line of text."""
-    return (yield AskPerson(Question(key, text, Asks.TEXT))).strip()
+    return (yield Question(key, text, Asks.TEXT))
 
 
-def press(key: str, text: str) -> Dialogue:
-    """Ask for the word that starts a motion; raises StepRefused for "no"."""
-    answer = (yield AskPerson(Question(key, text, Asks.KEY))).strip()
-    if answer != GO:
-        raise StepRefused(f"left by the person at: {text}")
+def press(key: str, text: str, guarded: Callable[[], bool] = lambda: True) -> Dialogue:
+    """Ask for the word that starts a motion, again while ``guarded`` finds guard or safety chain open.
+
+    Raises StepRefused for "no".
+    """
+    asked = text
+    while (yield Question(key, asked, Asks.KEY)) == GO:
+        if guarded():
+            return
+        asked = f"the guard or the safety chain is open: close it, and again; {text}"
+    raise StepRefused(f"left by the person at: {asked}")
 
 
 def wait(seconds: float) -> Dialogue:

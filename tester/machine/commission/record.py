@@ -1,9 +1,8 @@
 """The record of a rig's commissioning: a file of JSON lines that is only appended to.
 
-Each entry says when, who, under which rig file (its SHA-256), which step, and what came of it; it holds the hash of the
-entry before, so that a line that was changed or taken out shows (as docs/decisions/0026 for runs). An entry is on the
-disk before the next thing happens: written, flushed and synced. A line that was cut off by a kill is passed over, and
-the next entry begins on a line of its own.
+Each entry holds time, author, rig file (its SHA-256), step and result, and the hash of the entry before it, so that a
+changed or removed line shows. An entry is written, flushed and synced before anything else happens. A line that a kill
+cut off is skipped, and the next entry begins on a line of its own.
 """
 
 from __future__ import annotations
@@ -13,12 +12,13 @@ import json
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from tester.inputs.rig import Rig
-from tester.machine.commission.commission_step import CommissionStep, Walk, sections_sha256
+from tester.machine.commission.commission_step import CommissionStep, sections_sha256
+from tester.store.disk import sync_folder
 
 BEGUN, READING, DONE, REFUSED = "begun", "reading", "done", "refused"
 """Kinds of entry about a step: its begin, a reading in it, its success, its refusal."""
@@ -56,15 +56,8 @@ class RecordEntry:
 
     def body(self) -> str:
         """Return the line without its own hash."""
-        return json.dumps(
-            {
-                "at": self.at, "by": self.by, "rig": self.rig, "rig_sha256": self.rig_sha256,
-                "sections": self.sections, "step": self.step, "what": self.what, "text": self.text,
-                "values": dict(self.values), "previous": self.previous,
-            },
-            ensure_ascii=False,
-            allow_nan=False,
-        )  # fmt: skip
+        fields = {name: value for name, value in asdict(self).items() if name != "sha256"}
+        return json.dumps(fields, ensure_ascii=False, allow_nan=False)
 
 
 class CommissionRecord:
@@ -110,13 +103,11 @@ class CommissionRecord:
     ) -> RecordEntry:
         """Append an entry; it is on the disk when this returns. Raises OSError, ValueError for what is no number."""
         previous = self.entries[-1].sha256 if self.entries else FIRST
-        made = RecordEntry(self._utc(), self.by, rig, rig_sha256, sections, step, what, text, values or {}, previous)
-        body = made.body()
-        sha256 = hashlib.sha256(body.encode()).hexdigest()
-        entry = RecordEntry(
-            made.at, made.by, rig, rig_sha256, sections, step, what, text, made.values, previous, sha256
-        )
-        written = f'{body[:-1]}, "sha256": "{sha256}"}}\n'
+        at = self._utc()
+        unsigned = RecordEntry(at, self.by, rig, rig_sha256, sections, step, what, text, values or {}, previous)
+        body = unsigned.body()
+        entry = replace(unsigned, sha256=hashlib.sha256(body.encode()).hexdigest())
+        written = f'{body[:-1]}, "sha256": "{entry.sha256}"}}\n'
         new = not self.path.exists()
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with self.path.open("ab") as file:
@@ -125,7 +116,7 @@ class CommissionRecord:
             os.fsync(file.fileno())
         self.torn = False
         if new:
-            _sync_folder(self.path.parent)
+            sync_folder(self.path.parent)
         self.entries.append(entry)
         return entry
 
@@ -148,29 +139,6 @@ def _entry(raw: bytes) -> RecordEntry | None:
     except (ValueError, TypeError, KeyError, AttributeError):
         return None
     return entry if hashlib.sha256(entry.body().encode()).hexdigest() == sha256 else None
-
-
-def _sync_folder(folder: Path) -> None:
-    """Sync a new file's name to the disk, on systems that support it (POSIX)."""
-    if os.name != "posix":
-        return
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-class Onlooker(Protocol):
-    """Called in the engine's thread, between ticks: must not block, and changes nothing."""
-
-    def entered(self, entry: RecordEntry) -> None:
-        """Take an entry that was just recorded."""
-        ...
-
-    def look(self, step: CommissionStep, walk: Walk) -> None:
-        """Look at the rig in a step; called about every tester.machine.tickers.POLL_S of wall time."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)

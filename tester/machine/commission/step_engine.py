@@ -7,19 +7,21 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from enum import Enum
-from math import inf
 from typing import Any
 
 from drivers.ports import BusLost
 from tester.base import clock
+from tester.base.keys import FAST_STOP, STOP
 from tester.inputs.rig import Rig
 from tester.machine.commission.commission_step import Alone, CommissionStep, Notes, Walk, sections_sha256
-from tester.machine.commission.person import Asks, Person, Question, StepRefused
-from tester.machine.commission.record import BEGUN, DONE, READING, REFUSED, CommissionRecord, Onlooker, RecordEntry
+from tester.machine.commission.person import Person, StepRefused
+from tester.machine.commission.record import BEGUN, DONE, READING, REFUSED, CommissionRecord, RecordEntry
+from tester.machine.prompts import Asks, Prompts, Question
 from tester.machine.rig_ports import Ports
 from tester.machine.tickers import POLL_S, TickedWorld, TickStatistics, run_real_time, run_simulated
 
 STOPPED = "stopped by the operator"
+STOPS = {STOP.command, FAST_STOP.command}
 
 
 class Ended(Enum):
@@ -34,13 +36,17 @@ class Ended(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CommissionOutcome:
-    """How it ended, at which step, and the text; ``rig_s``: rig time of its steps, s, by step in ``took_s``."""
+    """How it ended, at which step, and the text; ``took_s``: rig time of each step, s."""
 
     ended: Ended
     step: str = ""
     text: str = ""
-    rig_s: float = 0.0
     took_s: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def rig_s(self) -> float:
+        """Rig time of all steps, s."""
+        return sum(seconds for _, seconds in self.took_s)
 
 
 class Commissioning:
@@ -55,7 +61,6 @@ class Commissioning:
         connect: Callable[[], tuple[Ports, TickedWorld | None, Any]],
         run_recipe: Callable[[str, str], Mapping[str, Any]],
         lapse: float | None = None,
-        onlooker: Onlooker | None = None,
         given: Mapping[str, str] | None = None,
     ) -> None:
         """Take the parts; connect nothing yet.
@@ -68,12 +73,10 @@ class Commissioning:
         self.rig = rig
         self.person = person
         self.record = record
-        self.rig_s = 0.0
         self._took_s: list[tuple[str, float]] = []
         self._connect = connect
         self._run_recipe = run_recipe
         self._lapse = lapse
-        self._onlooker = onlooker
         self._given = dict(given or {})
         self._rig_sha256 = hashlib.sha256(rig.text.encode()).hexdigest()
         self._walk: Walk | None = None
@@ -87,58 +90,54 @@ class Commissioning:
 
     def run(self) -> CommissionOutcome:
         """Run the steps that are not done. Raises OSError if the record cannot be written."""
-        last = self.record.last
         for number, step in enumerate(self.steps, 1):
             label = f"{number}/{len(self.steps)} {step.title}"
             done = self.record.standing(step.name, self._sections(step))
             if done is not None:
-                self.person.tell(f"{label}: stands ({done.at[:10]}, {done.by}): {done.text}")
+                self.person.message(f"{label}: stands ({done.at[:10]}, {done.by}): {done.text}")
                 continue
-            before = last(step.name)
+            before = self.record.last(step.name)
             if before is not None and before.what == BEGUN:
-                self.person.tell(f"{label}: was cut off; it starts again")
+                self.person.message(f"{label}: was cut off; it starts again")
             elif before is not None and before.what == DONE:
-                self.person.tell(f"{label}: the rig file has changed under it since {before.at[:10]}; done again")
+                self.person.message(f"{label}: the rig file has changed under it since {before.at[:10]}; done again")
             answer = self._ask(Question(f"begin {step.name}", f"{label}: begin?", Asks.CHOICE, ("yes", "no")))
             if self._stopped or answer != "yes":
                 return self._outcome(Ended.STOPPED if self._stopped else Ended.LEFT, step)
             outcome = self._do(step)
             if outcome is not None:
                 return outcome
-        return CommissionOutcome(Ended.DONE, rig_s=self.rig_s, took_s=tuple(self._took_s))
+        return CommissionOutcome(Ended.DONE, took_s=tuple(self._took_s))
 
     def _outcome(self, ended: Ended, step: CommissionStep, text: str = "") -> CommissionOutcome:
-        return CommissionOutcome(ended, step.name, text, self.rig_s, tuple(self._took_s))
+        return CommissionOutcome(ended, step.name, text, tuple(self._took_s))
 
     def _do(self, step: CommissionStep) -> CommissionOutcome | None:
         """Run a step; return the outcome if it ends the commissioning, None if that continues."""
         self._add(step, BEGUN)
-        before_s = self.rig_s
         notes = Notes(
-            self.person.tell, lambda text, values: self._add(step, READING, text, values), self._done(), self._given
+            self.person.message, lambda text, values: self._add(step, READING, text, values), self._done(), self._given
         )
+        self._took_s.append((step.name, 0.0))
         try:
-            try:
-                failed = self._alone(step, notes) if step.seat is None else self._seated(step, notes)
-            finally:
-                self._took_s.append((step.name, self.rig_s - before_s))
+            failed = self._alone(step, notes) if step.seat is None else self._seated(step, notes)
         except StepRefused as refused:
             self._add(step, REFUSED, str(refused))
-            self.person.tell(f"REFUSED: {refused}")
+            self.person.message(f"REFUSED: {refused}")
             return self._outcome(Ended.REFUSED, step, str(refused))
         if failed:
             self._add(step, REFUSED, failed)
-            self.person.tell(f"FAILED: {failed}")
+            self.person.message(f"FAILED: {failed}")
             return self._outcome(Ended.STOPPED if self._stopped else Ended.FAILED, step, failed)
-        entry = self._add(step, DONE, notes.text, {**notes.values, "rig_s": round(self.rig_s - before_s, 1)})
-        self.person.tell(f"passed: {notes.text}")
-        self.person.tell(f"  on record: {entry.sha256}")
+        entry = self._add(step, DONE, notes.text, {**notes.values, "rig_s": round(self._took_s[-1][1], 1)})
+        self.person.message(f"passed: {notes.text}")
+        self.person.message(f"  on record: {entry.sha256}")
         return None
 
     def _alone(self, step: CommissionStep, notes: Notes) -> str:
         assert step.alone is not None
         step.alone(Alone(self.rig, self.person, self._run_recipe), notes)
-        self.rig_s += float(notes.values.get("rig_s", 0.0))
+        self._took_s[-1] = (step.name, float(notes.values.get("rig_s", 0.0)))
         return ""
 
     def _seated(self, step: CommissionStep, notes: Notes) -> str:
@@ -154,26 +153,24 @@ class Commissioning:
             walk = self._walk = Walk(seat, step.procedure(seat, notes), self.person)
             try:
                 self._tick(step, walk, world, ports)
-            except BusLost as lost:
-                return str(lost)
             finally:
                 self._walk = None
-                self.rig_s += walk.now_s
-                if not seat.finished:
+                self._took_s[-1] = (step.name, walk.now_s)
+                if not walk.finished:
                     seat.abandon()
         if walk.error is not None:
             raise walk.error
         if self._stopped:
             return STOPPED
-        return seat.reason if seat.reason or walk.ended else "the rig ended before the step did"
+        reason = walk.lost or seat.reason
+        return reason if reason or walk.ended else "the rig ended before the step did"
 
     def _tick(self, step: CommissionStep, walk: Walk, world: TickedWorld | None, ports: Ports) -> None:
         def poll(_now_s: float) -> None:
-            if self._onlooker is not None:
-                self._onlooker.look(step, walk)
-            for command in self.person.poll():
-                if command in ("stop", "fast stop"):
-                    self.stop(fast=command == "fast stop")
+            self.person.look(step, walk)
+            for command in self.person.commands():
+                if command in STOPS:
+                    self.stop(fast=command == FAST_STOP.command)
 
         if world is not None:
             run_simulated(walk, world, lapse=self._lapse, poll=poll)
@@ -182,20 +179,14 @@ class Commissioning:
 
     def _ask(self, question: Question) -> str:
         """Ask a question while no rig runs."""
-        self.person.put(question)
-        while not self._stopped:
-            for command in self.person.poll():
-                self._stopped = self._stopped or command in ("stop", "fast stop")
-            answer = self.person.taken(inf)
-            if answer is None:
-                clock.sleep_until(clock.monotonic() + POLL_S)
-                continue
-            refusal = question.refusal(answer)
-            if not refusal:
-                return answer.strip()
-            self.person.tell(refusal)
-            self.person.put(question)
-        return ""
+        prompts = Prompts()
+        prompt = prompts.put(question)
+        while True:
+            self.person.attend(prompts)
+            self._stopped = self._stopped or not STOPS.isdisjoint(self.person.commands())
+            if self._stopped or prompt.answer is not None:
+                return prompt.answer or ""
+            clock.sleep_until(clock.monotonic() + POLL_S)
 
     def _sections(self, step: CommissionStep) -> str:
         return sections_sha256(self.rig, step.sections)
@@ -209,6 +200,5 @@ class Commissioning:
     ) -> RecordEntry:
         sections = self._sections(step)
         entry = self.record.add(self.rig.name, self._rig_sha256, sections, step.name, what, text, values)
-        if self._onlooker is not None:
-            self._onlooker.entered(entry)
+        self.person.entered(entry)
         return entry

@@ -11,10 +11,10 @@ from tester.base import clock
 from tester.base.source import InvalidSource
 from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
-from tester.machine.commission.commission_step import AtTheTwin, CommissionStep
-from tester.machine.commission.person import Question
+from tester.machine.commission.commission_step import CommissionStep
 from tester.machine.commission.record import CommissionRecord, RecordError, StepStanding, record_path, standing_of
 from tester.machine.commission.step_engine import CommissionOutcome, Ended
+from tester.machine.prompts import Question
 from tester.run.commissioning import CommissionOptions, commission, part_of
 from tester.run.endings import CannotStartError
 from tester.store.record_schema import StoreError
@@ -51,8 +51,8 @@ class GuideView:
 class Guide:
     """Runs the engine, as often as the person wants; the record determines where it resumes."""
 
-    def __init__(self, load: Callable[[], Rig], options: CommissionOptions, twin: AtTheTwin | None = None) -> None:
-        """``load`` reads the rig file and raises InvalidSource; ``twin`` receives the simulated rig."""
+    def __init__(self, load: Callable[[], Rig], options: CommissionOptions) -> None:
+        """``load`` reads the rig file and raises InvalidSource."""
         self.options = options
         self.rig = load()
         self.steps: tuple[CommissionStep, ...] = part_of(self.rig).steps
@@ -62,7 +62,7 @@ class Guide:
         self.trouble = ""
         self.crash: BaseException | None = None
         """An error of the program itself: raised again when the screen ends."""
-        self._load, self._twin = load, twin
+        self._load = load
         self._thread: Thread | None = None
         self._standing: tuple[StepStanding, ...] = ()
         self._now = ""
@@ -102,7 +102,7 @@ class Guide:
 
     def _work(self) -> None:
         try:
-            self.outcome = commission(self.rig, self.options, self.person, self._twin, self.person)
+            self.outcome = commission(self.rig, self.options, self.person)
         except REFUSALS as error:
             self.trouble = in_words(error)
         except BaseException as error:  # noqa: BLE001 - shown at once, and raised again when the screen closes

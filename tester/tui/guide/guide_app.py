@@ -18,8 +18,8 @@ from textual.widgets.option_list import Option
 
 from tester.base import clock, keys
 from tester.base.trouble import in_words
-from tester.machine.commission.person import Asks, Question
 from tester.machine.commission.record import RecordError
+from tester.machine.prompts import Asks, Question
 from tester.tui.dialogs.dialog import Dialog, TextDialog
 from tester.tui.formatting import clean
 from tester.tui.gone import SMALLEST
@@ -180,7 +180,7 @@ class GuideApp(LookApp):
         hint.refusal = refusal
         hint.redraw()
         if not refusal and self.guide.person.answer(question, answer):
-            self.guide.person.tell(f"> {answer}")
+            self.guide.person.message(f"> {answer}")
             event.input.value = ""
             self.look()
 

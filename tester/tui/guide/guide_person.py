@@ -6,14 +6,14 @@ from collections import deque
 from dataclasses import dataclass
 from math import inf
 from queue import Empty, SimpleQueue
-from threading import Lock
 from typing import Final
 
 from tester.base import clock
 from tester.base.keys import FAST_STOP, STOP
 from tester.machine.commission.commission_step import CommissionStep, StepReading, Walk
-from tester.machine.commission.person import Question
+from tester.machine.commission.person import Person
 from tester.machine.commission.record import RecordEntry
+from tester.machine.prompts import Prompt, Prompts, Question
 
 KEPT: Final = 500
 """Number of messages kept."""
@@ -30,8 +30,8 @@ class Live:
     readings: tuple[StepReading, ...]
 
 
-class ScreenPerson:
-    """A person for the engine (tester.machine.commission.person.Person) who also looks on (Onlooker)."""
+class ScreenPerson(Person):
+    """The person at the screen: questions, answers, commands and readings pass between the two threads."""
 
     def __init__(self, *, time_stands: bool) -> None:
         """``time_stands``: true for a rig simulated in this process."""
@@ -40,33 +40,19 @@ class ScreenPerson:
         self.entries: deque[RecordEntry] = deque()
         """Recorded entries that are not shown yet."""
         self.live: Live | None = None
-        self._lock = Lock()
-        self._question: Question | None = None
-        self._answer: str | None = None
+        self._prompt: Prompt | None = None
         self._commands: SimpleQueue[str] = SimpleQueue()
         self._looked_s = -inf
 
     # -- the engine's side ------------------------------------------------------------------------------------
 
-    def tell(self, text: str) -> None:
-        """Show a message."""
+    def message(self, text: str) -> None:
         self.said.append(text)
 
-    def put(self, question: Question) -> None:
-        """Ask a question; the one before is answered or withdrawn."""
-        with self._lock:
-            self._question, self._answer = question, None
+    def attend(self, prompts: Prompts) -> None:
+        self._prompt = prompts.waiting
 
-    def taken(self, now_s: float) -> str | None:
-        """Return the answer; while a rig runs (``now_s`` finite), also remove it."""
-        with self._lock:
-            answer = self._answer
-            if answer is not None and now_s < inf:
-                self._answer = self._question = None
-            return answer
-
-    def poll(self) -> list[str]:
-        """Return the commands since the last call."""
+    def commands(self) -> list[str]:
         commands: list[str] = []
         while True:
             try:
@@ -75,7 +61,6 @@ class ScreenPerson:
                 return commands
 
     def entered(self, entry: RecordEntry) -> None:
-        """Note a recorded entry."""
         self.entries.append(entry)
 
     def look(self, step: CommissionStep, walk: Walk) -> None:
@@ -92,20 +77,18 @@ class ScreenPerson:
     @property
     def asked(self) -> Question | None:
         """Return the question that waits for an answer."""
-        with self._lock:
-            return self._question if self._answer is None else None
+        prompt = self._prompt
+        return prompt.question if prompt is not None and prompt.answer is None else None
 
     def answer(self, question: Question, text: str) -> bool:
-        """Answer a question; return False if it no longer waits."""
-        with self._lock:
-            if self._question is not question or self._answer is not None:
-                return False
-            self._answer = text
-            return True
+        """Answer a question; return False if it no longer waits, or refuses the text."""
+        prompt = self._prompt
+        waits = prompt is not None and prompt.question is question and prompt.answer is None
+        return waits and prompt is not None and not prompt.reply(text)
 
     def press(self, *, fast: bool = False) -> None:
         """STOP, from any thread; pressing again has no further effect."""
-        self._commands.put((FAST_STOP if fast else STOP).command)
+        self.command((FAST_STOP if fast else STOP).command)
 
     def command(self, command: str) -> None:
         """Give another command (tester.base.keys)."""
@@ -113,13 +96,10 @@ class ScreenPerson:
 
     def begin(self) -> None:
         """Discard questions and commands of an engine that has ended."""
-        self.poll()
-        self.live = None
-        with self._lock:
-            self._question = self._answer = None
+        self.commands()
+        self.end()
 
     def end(self) -> None:
         """Called when the engine ends. Pending questions are dropped."""
-        with self._lock:
-            self._question = self._answer = None
+        self._prompt = None
         self.live = None

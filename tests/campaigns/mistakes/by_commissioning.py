@@ -19,8 +19,8 @@ from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
 from tester.kinds.wheel_on_belt.commission.jog import AXES
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.commission.person import Question
 from tester.machine.commission.step_engine import Ended
+from tester.machine.prompts import Question
 from tests.campaigns.mistakes.mistake import Mistake
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed
 

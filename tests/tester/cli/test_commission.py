@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from tester.cli.commission_person import TerminalPerson
+from tester.cli.commission_command import TerminalPerson
 from tester.cli.main import invoke
 from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
-from tester.machine.commission.person import Question
 from tester.machine.commission.record import CommissionRecord, record_path
 from tester.machine.commission.step_engine import Ended
+from tester.machine.prompts import Question
 from tester.run.commissioning import CommissionOptions, commission
 from tester.run.kind_lookup import load_rig
 from tester.store.run_reader import RunReader
@@ -30,7 +30,8 @@ class AtKeys(TerminalPerson):
         from tester.cli.command_keys import keys_of
 
         self.stream = os.fdopen(slave, "r")
-        super().__init__(time_stands=True, keys=keys_of(self.stream))
+        super().__init__(time_stands=True)
+        self._keys = keys_of(self.stream)
         self.twin = twin
         self.master = master
         self.to_type = b""
@@ -39,7 +40,7 @@ class AtKeys(TerminalPerson):
     def at(self, hands: object) -> None:
         self.twin.at(hands)  # type: ignore[arg-type]
 
-    def tell(self, text: str) -> None:
+    def message(self, text: str) -> None:
         self.said.append(text)
 
     def put(self, question: Question) -> None:
@@ -48,11 +49,11 @@ class AtKeys(TerminalPerson):
         self.twin.prepare(question)
         self.to_type = (self.twin.answer(question) + "\r").encode()
 
-    def poll(self) -> list[str]:
+    def commands(self) -> list[str]:
         typed, self.to_type = self.to_type, b""
         if typed:
             os.write(self.master, typed)
-        return super().poll()
+        return super().commands()
 
 
 def at_keys(tmp_path: Path, *steps: str) -> tuple[Bench, AtKeys]:
@@ -69,7 +70,7 @@ def at_keys(tmp_path: Path, *steps: str) -> tuple[Bench, AtKeys]:
 def test_a_person_commissions_with_real_keys_from_the_start_to_the_coefficient(tmp_path: Path) -> None:
     _, person = at_keys(tmp_path)
     try:
-        outcome = commission(load_rig("sim", ()), CommissionOptions(out=tmp_path), person, person)
+        outcome = commission(load_rig("sim", ()), CommissionOptions(out=tmp_path), person)
     finally:
         person.end()
     assert outcome.ended is Ended.DONE, outcome
@@ -118,7 +119,7 @@ def test_a_stop_key_stops_while_a_question_stands(tmp_path: Path, key: bytes) ->
 
 def test_nobody_at_the_terminal_is_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert invoke(["commission", "sim", "--out", str(tmp_path)]) == 2
-    assert "nobody is at this terminal" in capfd.readouterr().err
+    assert "no interactive terminal" in capfd.readouterr().err
 
 
 def test_a_compound_that_the_twin_has_no_model_of_is_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

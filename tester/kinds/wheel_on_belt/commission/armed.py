@@ -6,10 +6,9 @@ Control, interlocks, limits and stops are those of a run; only the demand comes 
 from __future__ import annotations
 
 from collections.abc import Generator
-from math import isfinite, nan
+from math import isfinite
 from typing import Any
 
-from drivers.ports import BusLost
 from tester.kinds.wheel_on_belt.commission.moves import COMMISSIONING, MovesExecutor
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import rig_bounds
@@ -30,7 +29,6 @@ class ArmedSeat:
     def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
         """Send nothing; the simulated rig gets a new wheel."""
         self.rig = rig
-        self.hands = hands
         self.run = build_run(rig, WheelPlan(COMMISSIONING, (), (), 1), ports, hands, NullRecorder(), Prompts())
         self.executor = MovesExecutor()
         engine = self.run.engine
@@ -38,8 +36,7 @@ class ArmedSeat:
         engine.control.bounds = rig_bounds(rig)
         self.ctx: Context = engine.ctx
         hands.install(1, 1, "1#", new_specimen=True)
-        self._told = False
-        self._lost = ""
+        self._stopped = False
 
     @property
     def ready(self) -> bool:
@@ -49,7 +46,7 @@ class ArmedSeat:
     @property
     def finished(self) -> bool:
         """At rest and released."""
-        return bool(self._lost) or self.run.finished
+        return self.run.finished
 
     @property
     def reason(self) -> str:
@@ -57,24 +54,15 @@ class ArmedSeat:
         trip = self.run.engine.control.state.trip
         if trip is not None:
             return f"{trip.name}: {trip.text}"
-        return self._lost or self.executor.failed or ("" if self._told else self.run.reason)
-
-    @property
-    def shown(self) -> str:
-        """Results of the arming for the drives."""
-        return self.run.connector.shown
+        return self.executor.failed or ("" if self._stopped else self.run.reason)
 
     def tick(self, now: float) -> float:
         """Do what is due."""
-        try:
-            return self.run.tick(now)
-        except BusLost as lost:
-            self._lost = str(lost)
-            return now
+        return self.run.tick(now)
 
     def stop(self, why: str, *, fast: bool = False) -> None:
         """Stop as a run does; a warm wheel keeps turning until it may come to rest."""
-        self._told = True
+        self._stopped = True
         self.executor.activity = None
         self.run.request_stop(why, fast=fast)
 
@@ -87,10 +75,6 @@ class ArmedSeat:
         self.executor.activity = activity
         executor = self.executor
         yield lambda now_s: executor.activity is None and not executor.failed
-
-    def cold(self) -> None:
-        """Want no heat."""
-        self.ctx.demand.surface_c = nan
 
 
 def mean_temperatures(seat: ArmedSeat, seconds: float) -> Generator[Waits, str, tuple[float, float]]:

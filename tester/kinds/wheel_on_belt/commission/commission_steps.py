@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, Final
 
 from sim.physics.friction import KNOWN
 from tester.kinds.wheel_on_belt.commission import first, jog, readings, thermometer, touch, watchdogs, weights
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
-from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.commission.commission_step import CommissionPart, CommissionStep, Notes
-from tester.machine.commission.person import Dialogue
+from tester.machine.commission.commission_step import CommissionPart, CommissionStep
 from tester.machine.rig_ports import Ports
 
 _BUS: Final = ("can", "lines", "devices")
@@ -23,8 +23,8 @@ _HOMED: Final = tuple(f"axes.{axis.name}" for axis in POSITIONED)
 _JOGGED: Final = tuple(f"jog {axis.name}" for axis in jog.AXES)
 
 
-def _quiet(rig: Any, ports: Ports, hands: Any) -> QuietSeat:
-    return QuietSeat(RigConfig.of(rig), ports, hands, jog.SPEEDS)
+def _quiet(rig: Any, ports: Ports, hands: Any) -> JogSeat:
+    return JogSeat(RigConfig.of(rig), ports, jog.SPEEDS)
 
 
 def _armed(rig: Any, ports: Ports, hands: Any) -> ArmedSeat:
@@ -32,20 +32,17 @@ def _armed(rig: Any, ports: Ports, hands: Any) -> ArmedSeat:
 
 
 def _trial(rig: Any, ports: Ports, hands: Any) -> watchdogs.TrialSeat:
-    return watchdogs.TrialSeat(RigConfig.of(rig), ports, hands)
+    return watchdogs.TrialSeat(RigConfig.of(rig), ports)
 
 
 def _jog(axis: jog.JoggedAxis) -> CommissionStep:
-    def procedure(seat: QuietSeat, notes: Notes) -> Dialogue:
-        return jog.jog_axis(axis, seat, notes)
-
     return CommissionStep(
         f"jog {axis.name}",
         f"direction and scale of the {axis.name} axis",
         (f"axes.{axis.name}", *(("geometry",) if axis.name == "press" else ())),
         ("identify",),
         _quiet,
-        procedure,
+        partial(jog.jog_axis, axis),
         readings=readings.of_axis(axis),
     )
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import degrees, pi
 from typing import Final
 
-from tester.kinds.wheel_on_belt.commission.quiet import JogSpeeds, QuietSeat
+from tester.kinds.wheel_on_belt.commission.quiet import JogSeat, JogSpeeds
 from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
 
@@ -61,7 +61,7 @@ mark of such an instrument tells [A]."""
 SPEEDS: Final = {axis.name: axis.speeds for axis in AXES}
 
 
-def jog_axis(axis: JoggedAxis, seat: QuietSeat, notes: Notes) -> Dialogue:
+def jog_axis(axis: JoggedAxis, seat: JogSeat, notes: Notes) -> Dialogue:
     """Jog an axis for direction and scale; raises StepRefused."""
     if axis.name not in seat.believed.axes.driven():
         notes.text = "set by hand: nothing to jog"
@@ -108,24 +108,16 @@ def jog_axis(axis: JoggedAxis, seat: QuietSeat, notes: Notes) -> Dialogue:
     )
 
 
-def _move(axis: JoggedAxis, seat: QuietSeat, which: str, way: float, speed: float) -> Measured:
+def _move(axis: JoggedAxis, seat: JogSeat, which: str, way: float, speed: float) -> Measured:
     """Wait for a key, a closed guard, and the axis; return how far the drive says it went."""
     text = f"{axis.name}: hands off, guard closed; it moves by {axis.shown(way):.4g} {axis.unit} at most, and stops"
-    while True:
-        yield from press(f"jog {axis.name} {which}", text)
-        if seat.guarded():
-            break
-        text = f"{axis.name}: the guard or the safety chain is open: close it, and again"
+    yield from press(f"jog {axis.name} {which}", text, seat.guarded)
     jog = seat.jogging.begin(axis.name, way, speed, holds=axis.holds)
-
-    def over(_now_s: float) -> bool:
-        return jog.over
-
-    yield over
+    yield lambda now_s: jog.over
     return jog.moved
 
 
-def _rest(axis: JoggedAxis, seat: QuietSeat) -> Dialogue:
+def _rest(axis: JoggedAxis, seat: JogSeat) -> Dialogue:
     """Take the power of an axis that was held to be read."""
     jog = seat.jogging.rest() if axis.holds else None
     if jog is not None:
@@ -143,8 +135,8 @@ def _read(axis: JoggedAxis, which: str) -> Measured:
     return (yield from measure(f"jog {axis.name} {which} read", text, axis.unit))
 
 
-def _direction(axis: JoggedAxis, seat: QuietSeat, seen: str) -> None:
-    name = axis.name
+def _direction(axis: JoggedAxis, seat: JogSeat, seen: str) -> None:
+    name, node = axis.name, seat.rig.axes.driven()[axis.name].node_id
     if seen == REVERSED:
         raise StepRefused(
             f"the {name} axis is reversed: it moves the wrong way round. Set its drive's polarity (0x607E) or swap two"
@@ -152,17 +144,17 @@ def _direction(axis: JoggedAxis, seat: QuietSeat, seen: str) -> None:
         )
     if seen == OTHER:
         raise StepRefused(
-            f"the {name} axis is not the one that moves at node {seat.drive_node(name)}: node ids or motors are swapped"
+            f"the {name} axis is not the one that moves at node {node}: node ids or motors are swapped"
             f" (axes.*.node_id)"
         )
     if seen == NOTHING:
         raise StepRefused(
-            f"the {name} axis does not move although its drive at node {seat.drive_node(name)} says so: motor, encoder"
+            f"the {name} axis does not move although its drive at node {node} says so: motor, encoder"
             " or coupling"
         )
 
 
-def _wrong_scale(axis: JoggedAxis, seat: QuietSeat, share: float, why: str) -> str:
+def _wrong_scale(axis: JoggedAxis, seat: JogSeat, share: float, why: str) -> str:
     """Return what is wrong with a scale, and the lines of the rig file that would be right."""
     config = seat.believed.axes.driven()[axis.name]
     if not abs(share) > 1e-6:

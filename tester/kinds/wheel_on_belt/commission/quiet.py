@@ -9,18 +9,17 @@ inputs, a second master; and here also that the load cell does not change. Two b
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import hypot, inf
-from typing import Any, Final
+from math import copysign, hypot, inf
+from typing import Any, Final, Protocol
 
 from drivers.axis import AxisConfig
 from drivers.cia402 import Goal, State
-from drivers.ports import BusLost
 from drivers.servo import ServoDrive
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_devices
-from tester.machine.connect import Connector, Stage
+from tester.machine.connect import Connector, Lifting, Stage
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 from tester.machine.proof import ENABLE_S
 from tester.machine.rig_ports import Ports
@@ -78,14 +77,33 @@ class JogMove:
     over: bool = False
 
 
+class Moving(Lifting, Protocol):
+    """Moves axes in place of a run's lift, for as long as the seat is taken: it is never done."""
+
+    stepped_s: float
+    """Time of the last step, s."""
+
+    @property
+    def powered(self) -> bool:
+        """Whether a drive has power, or is about to."""
+        ...
+
+    @property
+    def provokes(self) -> bool:
+        """Whether drives are made to stop by themselves."""
+        ...
+
+
 class Jogging:
-    """Moves one axis at a key press, in place of a run's lift (tester.machine.connect.Lifting)."""
+    """Moves one axis at a key press (``Moving``)."""
+
+    done = False
+    provokes = False
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
         """Move nothing before a jog begins."""
         self.devices = devices
         self.rig = rig
-        self.done = False
         self.failure = ""
         self.jog: JogMove | None = None
         self.stepped_s = 0.0
@@ -100,15 +118,12 @@ class Jogging:
     @property
     def powered(self) -> bool:
         """Whether a drive has power, or is about to."""
-        if self.jog is not None and not self.jog.over:
-            return True
-        return any(drive.state > State.READY_TO_SWITCH_ON for drive in self.devices.drives if drive.connected)
+        return (self.jog is not None and not self.jog.over) or has_power(self.devices)
 
     def begin(self, axis: str, way: float, speed: float, *, holds: bool = False) -> JogMove:
         """Begin a jog."""
         self.jog = JogMove(axis, way, speed, holds)
-        self._phase = "enable"
-        self._since_s = inf
+        self._enter("enable", inf)
         self._rest = tuple(self.devices.cell.raw)
         return self.jog
 
@@ -121,7 +136,7 @@ class Jogging:
         jog = self.jog
         if jog is not None and jog.over and jog.holds:
             jog.holds = jog.over = False
-            self._phase, self._since_s = "still", -inf
+            self._enter("still", -inf)
         return jog
 
     def step(self, now: float) -> None:
@@ -169,7 +184,7 @@ class Jogging:
             most = jog.speed * PRESS_S
             drive.target = drive.actual + max(-most, min(jog.way, most))
         else:
-            drive.target = jog.speed if jog.way > 0.0 else -jog.speed
+            drive.target = copysign(jog.speed, jog.way)
 
     def _arrived(self, drive: ServoDrive, jog: JogMove) -> bool:
         if drive.config.mode == "position":
@@ -178,9 +193,10 @@ class Jogging:
         return abs(jog.moved) + ramp >= abs(jog.way)
 
     def _halt(self, drive: ServoDrive) -> None:
-        drive.target = drive.actual if drive.config.mode == "position" and not drive.reached else (
-            drive.target if drive.config.mode == "position" else 0.0
-        )
+        if drive.config.mode == "velocity":
+            drive.target = 0.0
+        elif not drive.reached:
+            drive.target = drive.actual
 
     def trouble(self, now: float) -> str:
         """Return why nothing may keep moving; "" if nothing has power."""
@@ -211,27 +227,31 @@ class Jogging:
             self.jog.over = True
 
 
+def has_power(devices: Devices) -> bool:
+    """Return whether a drive has power."""
+    return any(drive.state > State.READY_TO_SWITCH_ON for drive in devices.drives if drive.connected)
+
+
 class QuietArming(WheelArming):
     """Arming as before every run, except that the guard may be open while nothing has power: a person reads a ruler."""
 
-    def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Send nothing."""
+    def __init__(self, devices: Devices, rig: RigConfig, moving: Moving) -> None:
+        """``moving``: jogs or tries, in place of a run's lift."""
         super().__init__(devices, rig)
-        self.jogging = Jogging(devices, rig)
+        self.moving = moving
+        self.renews = True
+        """The jacket's lease is renewed, unless the lease is being tried."""
 
     def unfit(self, now: float, configured_s: float) -> str:
-        """Return why nothing may move, while anything has power."""
         reason = super().unfit(now, configured_s)
-        return reason if self.powered or reason not in ("safety chain", "guard open") else ""
+        return reason if self.moving.powered or reason not in ("safety chain", "guard open") else ""
 
-    @property
-    def powered(self) -> bool:
-        """Whether a drive has power, or is about to."""
-        return self.jogging.powered
+    def renew(self) -> None:
+        if self.renews:
+            super().renew()
 
     def lift(self) -> Any:
-        """Return the object that jogs an axis: nothing lifts by itself here."""
-        return self.jogging
+        return self.moving
 
 
 class QuietConnector(Connector):
@@ -239,8 +259,16 @@ class QuietConnector(Connector):
 
     timeout_s = inf
 
+    def __init__(self, devices: Devices, rig: RigConfig, arming: QuietArming) -> None:
+        """Send nothing."""
+        super().__init__(devices, rig, arming, rig.arming.listen_s)
+        self._moving = arming.moving
+
+    @property
+    def watches_drives(self) -> bool:
+        return super().watches_drives and not self._moving.provokes
+
     def _lift(self, lifting: Any, now: float) -> None:
-        """Keep jogging."""
         lifting.step(now)
         if lifting.failure:
             self._fail(lifting.failure)
@@ -249,39 +277,11 @@ class QuietConnector(Connector):
 class QuietSeat:
     """The rig during the first steps (tester.machine.commission.commission_step.Seat)."""
 
-    def __init__(self, rig: RigConfig, ports: Ports, hands: Any, speeds: dict[str, JogSpeeds]) -> None:
-        """Connect with the drives bounded (``jog_rig``)."""
-        bounded = jog_rig(rig, speeds)
-        devices = build_devices(bounded, ports)
-        arming = QuietArming(devices, bounded)
-        self.begin(bounded, rig, hands, devices, arming, QuietConnector(devices, bounded, arming, rig.arming.listen_s))
-
-    def begin(
-        self,
-        rig: RigConfig,
-        believed: RigConfig,
-        hands: Any,
-        devices: Devices,
-        arming: QuietArming,
-        connector: QuietConnector,
-    ) -> None:
-        """Take the parts; ``believed``: the rig file's rig, ``rig``: the rig with the drives' bounds."""
-        self.rig, self.believed, self.hands = rig, believed, hands
-        self.devices = devices
-        self._arming = arming
-        self.connector = connector
-        self._told = False
-        self._lost = ""
-
-    @property
-    def jogging(self) -> Jogging:
-        """The object that moves an axis."""
-        return self._arming.jogging
-
-    @property
-    def moving(self) -> Any:
-        """The object to stop when the ticks end."""
-        return self.jogging
+    def __init__(self, rig: RigConfig, believed: RigConfig, devices: Devices, moving: Moving) -> None:
+        """Connect. ``believed``: the rig file's rig; ``rig``: the rig with the drives' bounds (``jog_rig``)."""
+        self.rig, self.believed, self.devices, self.moving = rig, believed, devices, moving
+        self.arming = QuietArming(devices, rig, moving)
+        self.connector = QuietConnector(devices, rig, self.arming)
 
     @property
     def ready(self) -> bool:
@@ -291,16 +291,12 @@ class QuietSeat:
     @property
     def finished(self) -> bool:
         """Whether everything is released."""
-        return bool(self._lost) or self.connector.finished
+        return self.connector.finished
 
     @property
     def reason(self) -> str:
-        """Why it ended by itself."""
-        return self._lost or ("" if self._told else self.connector.failure)
-
-    def drive_node(self, axis: str) -> int:
-        """Return an axis's node id in the rig file."""
-        return self.rig.axes.driven()[axis].node_id
+        """Why it ended by itself; "" after ``stop``."""
+        return self.connector.failure
 
     def guarded(self) -> bool:
         """Return whether guard and safety chain are closed."""
@@ -309,19 +305,24 @@ class QuietSeat:
 
     def tick(self, now: float) -> float:
         """Do what is due."""
-        try:
-            return self.connector.tick(now)
-        except BusLost as lost:
-            self._lost = str(lost)
-            return now
+        return self.connector.tick(now)
 
     def stop(self, why: str, *, fast: bool = False) -> None:
         """Stop, and release the drives."""
-        if not self.connector.finished and self.connector.stage is not Stage.RELEASE:
-            self._told = True
-            self.connector.abort(why)
+        self.connector.abort("")
 
     def abandon(self) -> None:
         """Send zero and power off once."""
         self.moving.stop()
         self.devices.transmit(self.moving.stepped_s, scan=True)
+
+
+class JogSeat(QuietSeat):
+    """The rig while a person jogs its axes, one at a time, with the drives bounded (``jog_rig``)."""
+
+    def __init__(self, rig: RigConfig, ports: Ports, speeds: dict[str, JogSpeeds]) -> None:
+        """Connect."""
+        bounded = jog_rig(rig, speeds)
+        devices = build_devices(bounded, ports)
+        self.jogging = Jogging(devices, bounded)
+        super().__init__(bounded, rig, devices, self.jogging)

@@ -9,7 +9,7 @@ from typing import Any, Final
 from drivers.cia402 import State
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.jog import JoggedAxis
-from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.machine.commission.commission_step import Notes, StepReading
 from tester.machine.commission.person import Dialogue, StepRefused, choose
 
@@ -25,17 +25,17 @@ Table = tuple[tuple[str, str, str, int], ...]
 """Label, attribute of the readings, unit, decimals."""
 
 
-def of_bus(seat: QuietSeat) -> Sequence[StepReading]:
+def of_bus(seat: JogSeat) -> Sequence[StepReading]:
     """Return whether each drive and device answers."""
     drives = [(drive.config.name, drive.online) for drive in seat.devices.drives]
     devices = [*drives, *((device.title, device.driver.ready) for device in seat.devices.modbus)]
     return tuple(StepReading(name, nan, "", 0, "heard" if online else "not heard") for name, online in devices)
 
 
-def of_axis(axis: JoggedAxis) -> Callable[[QuietSeat], Sequence[StepReading]]:
+def of_axis(axis: JoggedAxis) -> Callable[[JogSeat], Sequence[StepReading]]:
     """Return the readings of one axis: its position, its motion since the key press, whether it has power."""
 
-    def readings(seat: QuietSeat) -> Sequence[StepReading]:
+    def readings(seat: JogSeat) -> Sequence[StepReading]:
         if axis.name not in seat.believed.axes.driven():
             return ()
         drive, jog = seat.jogging.drive(axis.name), seat.jogging.jog
@@ -55,7 +55,7 @@ def of_axis(axis: JoggedAxis) -> Callable[[QuietSeat], Sequence[StepReading]]:
     return readings
 
 
-def of_cell(seat: QuietSeat) -> Sequence[StepReading]:
+def of_cell(seat: JogSeat) -> Sequence[StepReading]:
     """Return the load cell's readings, without tare."""
     cell = seat.devices.cell
     words = "" if cell.valid else "not valid"
@@ -83,7 +83,7 @@ def of_positions(seat: ArmedSeat) -> Sequence[StepReading]:
     return tuple(StepReading(name, value, "deg", 2) for name, value in seat.ctx.readings.positions.items())
 
 
-def identify(seat: QuietSeat, notes: Notes) -> Dialogue:
+def identify(seat: JogSeat, notes: Notes) -> Dialogue:
     """List the connected devices; raises StepRefused if the person does not recognise them."""
     identities: dict[str, Any] = {}
     for drive in seat.devices.drives:

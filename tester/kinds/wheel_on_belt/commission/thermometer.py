@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Generator
+from math import nan
 from typing import Final
 
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
@@ -59,7 +60,7 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
     seat.ctx.demand.freeze_heat = True
     warm, sure_k, warm_hub = yield from _steady(seat)
     notes.read("soaked", {"surface_c": warm, "hub_c": warm_hub})
-    seat.cold()
+    seat.ctx.demand.surface_c = nan  # no heat
     expected = (warm_hub - hub) / (1.0 + lifted)
     gain = (warm - surface) / expected if expected > 0.0 else 0.0
     if warm_hub > MOST_C + 1.0:

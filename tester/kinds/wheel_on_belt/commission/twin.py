@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from tester.kinds.wheel_on_belt.commission.jog import AXES as JOGGED
-from tester.machine.commission.person import GO, Asks, Question
+from tester.machine.commission.person import Person
+from tester.machine.prompts import GO, Asks, Prompt, Prompts, Question
 
 THINKS_S: Final = 15.0
 """Rig time of an answer that needs a reading or a hung weight, s [A]."""
@@ -21,71 +22,45 @@ KEY_S: Final = 2.0
 """Rig time from a question to a key, s [A]."""
 
 
-class TwinHands(Protocol):
-    """The simulated rig, for the person (sim.machines.wheel_on_belt.rig.WheelRig)."""
-
-    def ruler(self, axis: str) -> float:
-        """Return an axis's position."""
-        ...
-
-    @property
-    def rim_m_s(self) -> float:
-        """Speed of the wheel's rim, m/s."""
-        ...
-
-    @property
-    def belt_m_s(self) -> float:
-        """Speed of the belt, m/s."""
-        ...
-
-    def hang(self, fx: float, fy: float, fz: float) -> None:
-        """Hang a weight on the load cell, N."""
-        ...
-
-
-class TwinPerson:
+class TwinPerson(Person):
     """Answers every question of the steps correctly, as a careful person at the machine would."""
 
-    time_stands: bool = False
+    time_stands = False
+    scripted = True
 
     def __init__(self, say: Callable[[str], None] = lambda text: None) -> None:
         """``say`` gets the messages to the person."""
         self.hands: Any = None
+        """The simulated rig (sim.machines.wheel_on_belt.rig.WheelRig)."""
         self.asked: list[Question] = []
         self._say = say
-        self._question: Question | None = None
-        self._put_s = inf
+        self._prompt: Prompt | None = None
         self._from: dict[str, float] = {}
         """Position of each axis when its instrument was set to zero."""
 
-    def at(self, hands: TwinHands) -> None:
-        """Move to a rig with newly opened wires."""
+    def at(self, hands: Any) -> None:
         self.hands = hands
         self._from.clear()
 
-    def tell(self, text: str) -> None:
+    def message(self, text: str) -> None:
         self._say(text)
 
-    def put(self, question: Question) -> None:
-        self._question = question
-        self._put_s = inf
-        self.asked.append(question)
-
-    def poll(self) -> list[str]:
-        return []
-
-    def taken(self, now_s: float) -> str | None:
-        question = self._question
-        if question is None:
-            return None
-        if self._put_s == inf:
-            self._put_s = now_s if now_s < inf else -inf
+    def attend(self, prompts: Prompts) -> None:
+        prompt = prompts.waiting
+        if prompt is None:
+            return
+        question = prompt.question
+        if prompt is not self._prompt:
+            self._prompt = prompt
+            self.put(question)
             self.prepare(question)
         takes_s = THINKS_S if question.asks is Asks.QUANTITY else KEY_S
-        if now_s - self._put_s < takes_s:
-            return None
-        self._question = None
-        return self.answer(question)
+        if prompt.at_s == inf or prompts.now_s - prompt.at_s >= takes_s:
+            prompt.reply(self.answer(question))
+
+    def put(self, question: Question) -> None:
+        """Take a new question."""
+        self.asked.append(question)
 
     def prepare(self, question: Question) -> None:
         """Do what the question asks, if anything; the answer follows."""

@@ -8,19 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from math import inf, isfinite
-from typing import Any, Final
+from typing import Final
 
 from drivers.canopen import objects as o
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import TemperatureController
-from tester.kinds.wheel_on_belt.commission.quiet import QuietArming, QuietConnector, QuietSeat
+from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, has_power
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.commission.commission_step import Notes
-from tester.machine.commission.person import Dialogue, StepRefused, Waits, choose, press, wait
+from tester.machine.commission.person import Dialogue, Measured, StepRefused, Waits, choose, press, wait
 from tester.machine.proof import WatchdogProof
 from tester.machine.rig_ports import Ports
 
@@ -72,13 +72,14 @@ def deadline_s(drive: ServoDrive) -> float:
 
 
 class Trials:
-    """Lifts, and then steps the proof that a procedure supplies (tester.machine.connect.Lifting)."""
+    """Lifts, and then steps the proof that a procedure supplies (``Moving``)."""
 
     done = False
     """The procedure decides when it is done."""
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
         """Move nothing before the first ``step``."""
+        self.devices = devices
         self.unloaded = Unloaded(devices, rig)
         self.proof: WatchdogProof | None = None
         self.stepped_s = 0.0
@@ -92,6 +93,16 @@ class Trials:
     def trying(self) -> bool:
         """Whether a proof is under way."""
         return self.proof is not None and not self.proof.done
+
+    @property
+    def powered(self) -> bool:
+        """Whether a drive has power, or is about to."""
+        return self.trying or not self.unloaded.done or has_power(self.devices)
+
+    @property
+    def provokes(self) -> bool:
+        """Whether a proof makes drives stop by themselves: that does not end the connection."""
+        return self.proof is not None and self.trying and self.proof.provokes
 
     def step(self, now: float) -> None:
         """Advance by one tick at ``now`` s."""
@@ -112,69 +123,23 @@ class Trials:
             self.proof.stop()
 
 
-class TrialArming(QuietArming):
-    """Arming as before every run, except that the jacket's lease may run out."""
-
-    def __init__(self, devices: Devices, rig: RigConfig) -> None:
-        """Send nothing."""
-        super().__init__(devices, rig)
-        self.trials = Trials(devices, rig)
-        self.renews = True
-
-    def renew(self) -> None:
-        """Renew the jacket's lease, unless the lease is being tried."""
-        if self.renews:
-            super().renew()
-
-    @property
-    def powered(self) -> bool:
-        """Whether a drive has power, or is about to."""
-        return self.trials.trying or not self.trials.unloaded.done or super().powered
-
-    def lift(self) -> Any:
-        """Return the object that lifts and tries the watchdogs."""
-        return self.trials
-
-
-class TrialConnector(QuietConnector):
-    """Connects, waits for the devices, lifts, and stays there; a drive that stops on purpose does not end the
-    connection.
-    """
-
-    def __init__(self, devices: Devices, rig: RigConfig, arming: TrialArming) -> None:
-        """Send nothing."""
-        super().__init__(devices, rig, arming, rig.arming.listen_s)
-        self._trials = arming.trials
-
-    @property
-    def watches_drives(self) -> bool:
-        """Whether every drive is configured, so that a drive that stops unprovoked ends the connection."""
-        proof = self._trials.proof
-        return super().watches_drives and not (proof is not None and not proof.done and proof.provokes)
-
-
 class TrialSeat(QuietSeat):
-    """The rig lifted and unloaded, for trying watchdogs (tester.machine.commission.commission_step.Seat)."""
+    """The rig lifted and unloaded, for trying watchdogs; drives have the torque of a run."""
 
-    def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
-        """Connect; drives have the torque of a run."""
+    def __init__(self, rig: RigConfig, ports: Ports) -> None:
+        """Connect."""
         devices = build_devices(rig, ports)
-        self.arming = TrialArming(devices, rig)
-        super().begin(rig, rig, hands, devices, self.arming, TrialConnector(devices, rig, self.arming))
+        self.trials = Trials(devices, rig)
+        super().__init__(rig, rig, devices, self.trials)
 
     @property
     def ready(self) -> bool:
         """Whether every device has answered, the press is lifted, and nothing is loaded."""
-        return super().ready and self.arming.trials.unloaded.done and not self.arming.trials.failure
-
-    @property
-    def moving(self) -> Trials:
-        """The object to stop when the ticks end."""
-        return self.arming.trials
+        return super().ready and self.trials.unloaded.done and not self.trials.failure
 
     def prove(self, proof: WatchdogProof) -> Dialogue:
         """Yield until a proof is done; raises StepRefused if it failed."""
-        self.arming.trials.proof = proof
+        self.trials.proof = proof
         yield lambda now_s: proof.done
         if proof.failure:
             raise StepRefused(f"watchdogs: {proof.failure}")
@@ -207,16 +172,10 @@ def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
 
 def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text: str) -> Dialogue:
     """Try a watchdog when the person says go, ask what they saw, and record every drive's deadline and report."""
-    while True:
-        yield from press(f"watchdog {name}", text)
-        if seat.guarded():
-            break
-        text = f"the guard or the safety chain is open: close it, and again; {text}"
+    yield from press(f"watchdog {name}", text, seat.guarded)
     yield from seat.prove(proof)
     for drive in proof.watched():
-        entry = o.RPDO_COMMUNICATION, 5
-        if name == "heartbeat":
-            entry = o.CONSUMER_HEARTBEAT, 1
+        entry = (o.CONSUMER_HEARTBEAT, 1) if name == "heartbeat" else (o.RPDO_COMMUNICATION, 5)
         raw = drive.parameters.get(entry, 0)
         report = {
             "object": f"0x{entry[0]:04X}:{entry[1]:02d}", "read_back_ms": raw & 0xFFFF,
@@ -232,36 +191,18 @@ def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text:
 def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
     """Run the jacket without heat, and send nothing until its lease, or its own setpoint, ends that."""
     jacket: TemperatureController = seat.devices.jacket
-    if jacket.ends_s is None:
+    ends_s = jacket.ends_s
+    if ends_s is None:
         how = seat.rig.devices["jacket"].heat_off or "nothing that the rig file names"
         notes.tell(f"  the jacket has no watchdog of its own: {how} ends its heat; try that out by hand")
         return f"ended by {how}, not tried out here"
     asked_c = jacket.measured_c - COOLER_K
     if not isfinite(asked_c):
         raise StepRefused("the jacket reports no temperature: sensor, or its wires")
-    yield from press("watchdog heat", f"the jacket runs for {jacket.ends_s:g} s without heat and new setpoints")
+    yield from press("watchdog heat", f"the jacket runs for {ends_s:g} s without heat and new setpoints")
     seat.arming.renews = False
-    ends_s, begun_s, heard_s, ended_s = jacket.ends_s, inf, -inf, -inf
-
-    def running(now_s: float) -> bool:
-        nonlocal begun_s, heard_s
-        begun_s = min(begun_s, now_s)
-        jacket.set_setpoint(asked_c)
-        jacket.enable(True)
-        heard_s = now_s
-        return now_s - begun_s >= RUNS_S
-
-    yield running
-    if jacket.lease_expired:
-        raise StepRefused("watchdogs: the jacket reports that our setpoint does not arrive, though it is sent")
-
-    def over(now_s: float) -> bool:
-        nonlocal ended_s
-        ended_s = now_s
-        return jacket.lease_expired or now_s - heard_s > ends_s + LEASE_MORE_S
-
-    yield over
-    failed, after_s = jacket.lease_expired, ended_s - heard_s
+    after_s = yield from _left_alone(jacket, asked_c, ends_s)
+    failed = jacket.lease_expired
     yield from wait(1.0)  # for a new reading of its output
     output = jacket.output_percent
     seat.arming.renews = True
@@ -271,10 +212,35 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
     if not failed:
         raise StepRefused(
             f"watchdogs: the jacket's {kind} did not end its heat {after_s:.1f} s after our last setpoint"
-            f" (expected {jacket.ends_s:g} s): it would heat on without the PC"
+            f" (expected {ends_s:g} s): it would heat on without the PC"
         )
     if not output <= NO_OUTPUT_PERCENT:
         raise StepRefused(f"watchdogs: the jacket gives {output:g} % of its heat after its {kind} has ended that")
-    report = {"kind": kind, "read_back_s": jacket.ends_s, "after_s": round(after_s, 1), "output_percent": output}
+    report = {"kind": kind, "read_back_s": ends_s, "after_s": round(after_s, 1), "output_percent": output}
     notes.read("heat: ended without our setpoint", report)
-    return f"{kind} over after {after_s:.1f} s (set and read back: {jacket.ends_s:g} s)"
+    return f"{kind} over after {after_s:.1f} s (set and read back: {ends_s:g} s)"
+
+
+def _left_alone(jacket: TemperatureController, asked_c: float, ends_s: float) -> Measured:
+    """Run the jacket at a setpoint, degC, then send nothing; return how long it ran on, s."""
+    begun_s, sent_s, ended_s = inf, -inf, -inf
+
+    def running(now_s: float) -> bool:
+        nonlocal begun_s, sent_s
+        begun_s = min(begun_s, now_s)
+        jacket.set_setpoint(asked_c)
+        jacket.enable(True)
+        sent_s = now_s
+        return now_s - begun_s >= RUNS_S
+
+    yield running
+    if jacket.lease_expired:
+        raise StepRefused("watchdogs: the jacket reports that our setpoint does not arrive, though it is sent")
+
+    def over(now_s: float) -> bool:
+        nonlocal ended_s
+        ended_s = now_s
+        return jacket.lease_expired or now_s - sent_s > ends_s + LEASE_MORE_S
+
+    yield over
+    return ended_s - sent_s

@@ -20,7 +20,7 @@ from math import hypot, inf, isfinite, sqrt
 from statistics import fmean, median
 from typing import Final
 
-from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, StepRefused, Waits, line, measure
 
@@ -32,7 +32,7 @@ NOISES: Final = 4.0
 
 
 def settled_cell(
-    seat: QuietSeat, least_s: float, at_most_s: float, still_n: float
+    seat: JogSeat, least_s: float, at_most_s: float, still_n: float
 ) -> Generator[Waits, str, list[float]]:
     """Yield until the cell's readings have settled; return the means of Fx, Fy, Fz, raw, N.
 
@@ -141,7 +141,7 @@ class HungChannel:
         return totals.index(max(totals))
 
 
-def calibrate(seat: QuietSeat, notes: Notes) -> Dialogue:
+def calibrate(seat: JogSeat, notes: Notes) -> Dialogue:
     """Hang weights; raises StepRefused."""
     most = {"x": seat.rig.limits.load_n, "y": seat.rig.limits.load_n, "z": seat.rig.limits.load_n}
     weights = yield from line(
@@ -168,7 +168,7 @@ def calibrate(seat: QuietSeat, notes: Notes) -> Dialogue:
     _conclude(notes, channels, zero, weights, due)
 
 
-def _point(seat: QuietSeat, notes: Notes, channel: HungChannel, about: float, zero: list[float]) -> Dialogue:
+def _point(seat: JogSeat, notes: Notes, channel: HungChannel, about: float, zero: list[float]) -> Dialogue:
     what = f"F{channel.name}: hang about {about:g} N, wait until it is still, and type its force"
     hung = yield from measure(f"hang {channel.name} {about}", what, "N")
     if not hung > 0.0:
@@ -180,7 +180,7 @@ def _point(seat: QuietSeat, notes: Notes, channel: HungChannel, about: float, ze
     notes.read(f"F{channel.name} {about:g} N", {"hung_n": hung, "shown_n": list(shown)})
 
 
-def _settled(seat: QuietSeat) -> Generator[Waits, str, list[float]]:
+def _settled(seat: JogSeat) -> Generator[Waits, str, list[float]]:
     return (yield from settled_cell(seat, AVERAGE_S, SWINGS_S, STILL_N))
 
 

@@ -11,7 +11,7 @@ from textual.driver import Driver
 from textual.events import Key
 
 from tester.base.source import InvalidSource, Problem
-from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat
+from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.machine.commission.commission_step import CommissionStep, Walk
 from tester.machine.commission.record import DONE, CommissionRecord
 from tester.machine.commission.step_engine import Ended
@@ -72,7 +72,7 @@ class HeldPerson(ScreenPerson):
     def look(self, step: CommissionStep, walk: Walk) -> None:
         super().look(step, walk)
         seat: Any = walk.seat
-        jog = seat.jogging.jog if isinstance(seat, QuietSeat) else None
+        jog = seat.jogging.jog if isinstance(seat, JogSeat) else None
         if jog is not None and not jog.over and 0.2 < abs(jog.moved / jog.way) < 0.8 and not self.pressed.is_set():
             self.moving.set()
             assert self.pressed.wait(WAIT_S)
@@ -134,7 +134,7 @@ def test_stop_is_taken_where_the_terminal_is_read_before_the_screen_hears_of_it(
     person = ScreenPerson(time_stands=True)
     driver: Driver = stopping(Silent, person)()  # type: ignore[call-arg]
     driver.process_message(Key(key, None))
-    assert person.poll() == [command] and person.poll() == []
+    assert person.commands() == [command] and person.commands() == []
 
 
 def test_what_is_no_answer_is_refused_in_words_and_reaches_nobody(tmp_path: Path) -> None:

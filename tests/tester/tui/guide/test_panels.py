@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from tester.machine.commission.commission_step import CommissionStep, StepReading
-from tester.machine.commission.person import Asks, Question
 from tester.machine.commission.record import DONE, REFUSED, RecordEntry, StepStanding
 from tester.machine.commission.step_engine import CommissionOutcome, Ended
+from tester.machine.prompts import Asks, Question
 from tester.tui.guide.guide import GuideView
 from tester.tui.guide.guide_app import GuideApp
 from tester.tui.guide.guide_person import Live, ScreenPerson

@@ -12,7 +12,7 @@ from typing import Any
 from textual.pilot import Pilot
 
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
-from tester.machine.commission.person import Question
+from tester.machine.prompts import Question
 from tester.run.commissioning import CommissionOptions
 from tester.run.kind_lookup import load_rig
 from tester.tui.guide.guide import Guide
@@ -30,13 +30,14 @@ class TwinStage:
         self.twin = TwinPerson()
         self.loaded = 0
         options = CommissionOptions(out=folder, operator="A. Name", lapse=lapse)
-        self.guide = Guide(lambda: load_rig("sim", overrides), options, self.twin)
+        self.guide = Guide(lambda: load_rig("sim", overrides), options)
         seconds = count(0.0, 1.0)
         self.app = GuideApp(self.guide, theme="dark", now=lambda: next(seconds))
         self.pilot: Pilot[str] | None = None
 
     def play(self, act: Callable[[TwinStage], Awaitable[None]], size: tuple[int, int] = (80, 24)) -> None:
         """Carry out a test; the engine has ended when this returns."""
+        self.guide.person.at = self.twin.at  # type: ignore[method-assign]
 
         async def main() -> None:
             async with self.app.run_test(size=size, notifications=True) as pilot:

@@ -23,9 +23,9 @@ import pytest
 from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
-from tester.machine.commission.person import Question
 from tester.machine.commission.record import BEGUN, DONE, CommissionRecord, record_path
 from tester.machine.commission.step_engine import CommissionOutcome, Ended
+from tester.machine.prompts import Question
 from tester.run.commissioning import CommissionOptions, commission
 from tester.run.kind_lookup import load_rig
 
@@ -76,7 +76,7 @@ class Mortal(TwinPerson):
 
 def done(out: Path, person: Mortal) -> CommissionOutcome:
     """Give the command."""
-    return commission(load_rig("sim", ()), CommissionOptions(out=out, operator="a test"), person, person)
+    return commission(load_rig("sim", ()), CommissionOptions(out=out, operator="a test"), person)
 
 
 def record_of(out: Path) -> CommissionRecord:

@@ -8,9 +8,9 @@ import pytest
 
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.machine.commission.commission_step import sections_sha256
-from tester.machine.commission.person import Question
 from tester.machine.commission.record import DONE
 from tester.machine.commission.step_engine import Ended
+from tester.machine.prompts import Question
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed, named
 
 STEPS = named("identify", "jog belt", "jog press")
@@ -80,7 +80,7 @@ def test_a_change_of_the_rig_file_undoes_the_steps_that_depend_on_it_and_no_othe
 
 def test_stop_ends_a_step_and_begins_no_other(tmp_path: Path) -> None:
     class Stops(TwinPerson):
-        def poll(self) -> list[str]:
+        def commands(self) -> list[str]:
             return ["stop"] if len(self.asked) > 5 else []
 
     bench = Bench(tmp_path / "r.jsonl", steps=STEPS, person=Stops())

@@ -10,9 +10,9 @@ import pytest
 
 from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
-from tester.machine.commission.person import Question
 from tester.machine.commission.record import READING
 from tester.machine.commission.step_engine import Ended
+from tester.machine.prompts import Question
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed, named
 
 STEPS = named("watchdogs")
