@@ -11,28 +11,31 @@ import click
 from tester.cli.options import QuantityType, json_option, print_json
 
 if TYPE_CHECKING:
+    from tester.base.source import Problem
     from tester.inputs.materials.compound import LoadedCompound
     from tester.inputs.materials.files import DataFile, Findings, Role
-    from tester.inputs.materials.library import Library, LibraryEntry
+    from tester.inputs.materials.library import Library
+    from tester.inputs.materials.material_schema import CompoundModel
     from tester.inputs.materials.surface_file import LoadedSurface
 
     Loaded = LoadedCompound | LoadedSurface
 
+ROLES: tuple[Role, ...] = ("compound", "surface")
 recipe_option = click.option(
     "--recipe",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
     default=None,
-    help="As this recipe sees them; else as one in this folder would.",
+    help="Look beside this recipe first; by default in this folder.",
 )
 out_option = click.option(
-    "-o", "out", type=click.Path(dir_okay=False, path_type=Path), required=True, help="The file to be written."
+    "-o", "out", type=click.Path(dir_okay=False, path_type=Path), required=True, help="The file to write."
 )
-force_option = click.option("--force", is_flag=True, help="Replace the file if there is one.")
+force_option = click.option("--force", is_flag=True, help="Replace an existing file.")
 
 
 @click.group()
 def materials() -> None:
-    """Compounds and surfaces as files: what there is, what is in it, and from what instruments write."""
+    """Compounds and surfaces as files: list, show and check them, or import an instrument's file."""
 
 
 def _library(recipe: Path | None) -> Library:
@@ -49,21 +52,16 @@ def list_(recipe: Path | None, as_json: bool) -> None:
     from tester.inputs.materials.library import nameless
 
     library = _library(recipe)
-    roles: tuple[Role, ...] = ("compound", "surface")
-    found = [one for role in roles for one in library.entries(role)]
+    entries = [entry for role in ROLES for entry in library.entries(role)]
     if as_json:
-        print_json([_entry(one) for one in found])
+        print_json([{"role": e.role, "name": e.name, "file": str(e.path), "hidden": e.hidden} for e in entries])
     else:
-        for one in found:
-            nearest = library.path(one.role, one.name)
-            hidden = f" (not used: {nearest} is nearer)" if one.hidden else ""
-            click.echo(f"{one.role:9} {one.name:18} {one.path}{hidden}")
+        for entry in entries:
+            nearest = library.path(entry.role, entry.name)
+            hidden = f" (not used: {nearest} is nearer)" if entry.hidden else ""
+            click.echo(f"{entry.role:9} {entry.name:18} {entry.path}{hidden}")
     for path in nameless(library):
-        click.echo(f"{path}: has no name, so no recipe can mean it", err=True)
-
-
-def _entry(one: LibraryEntry) -> dict[str, object]:
-    return {"role": one.role, "name": one.name, "file": str(one.path), "hidden": one.hidden}
+        click.echo(f"{path}: has no name, so no recipe can name it", err=True)
 
 
 @materials.command()
@@ -71,68 +69,60 @@ def _entry(one: LibraryEntry) -> dict[str, object]:
 @recipe_option
 @json_option
 def show(name: str, recipe: Path | None, as_json: bool) -> None:
-    """Show what the file of the compound or the surface NAME holds, its hash, and what is doubtful in it."""
+    """Show the content of the file of the compound or the surface NAME, its hash, and its doubts."""
+    from difflib import get_close_matches
+
     library = _library(recipe)
-    found: list[Loaded] = []
-    if library.path("compound", name) is not None:
-        found.append(library.compound(name))
-    if library.path("surface", name) is not None:
-        found.append(library.surface_file(name))
-    if not found:
-        raise click.UsageError(_unknown(name, library))
+    read = {"compound": library.compound, "surface": library.surface_file}
+    loaded: list[Loaded] = [read[role](name) for role in ROLES if library.path(role, name) is not None]
+    if not loaded:
+        near = get_close_matches(name, [entry.name for role in ROLES for entry in library.entries(role)], 1)
+        meant = f', did you mean "{near[0]}"?' if near else ""
+        raise click.UsageError(f'no compound and no surface has the name "{name}"{meant}')
     if as_json:
-        print_json([_summary(one) for one in found])
+        print_json([_summary(material) for material in loaded])
         return
-    for one in found:
-        for line in _lines(one):
+    for material in loaded:
+        for line in _lines(material):
             click.echo(line)
 
 
-def _unknown(name: str, library: Library) -> str:
-    from difflib import get_close_matches
-
-    roles: tuple[Role, ...] = ("compound", "surface")
-    known = [one.name for role in roles for one in library.entries(role)]
-    near = get_close_matches(name, known, 1)
-    return f'no compound and no surface is called "{name}"' + (f', did you mean "{near[0]}"?' if near else "")
-
-
-def _summary(one: Loaded) -> dict[str, object]:
+def _summary(material: Loaded) -> dict[str, object]:
+    file, model = material.file, material.model
     return {
-        "role": one.file.role,
-        "name": one.file.name,
-        "file": str(one.file.path),
-        "sha256": one.file.sha256,
-        "data": {data.name: data.sha256 for data in one.file.data},
-        "holds": one.holds(),
-        "notes": list(one.notes),
-        "doubts": [str(doubt) for doubt in one.file.doubts],
-        "content": one.model.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"moduli", "radial"}),
+        "role": file.role,
+        "name": file.name,
+        "file": str(file.path),
+        "sha256": file.sha256,
+        "data": {data.name: data.sha256 for data in file.data},
+        "holds": material.holds(),
+        "notes": list(material.notes),
+        "doubts": [str(doubt) for doubt in file.doubts],
+        "content": model.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"moduli", "radial"}),
     }
 
 
-def _lines(one: Loaded) -> Iterable[str]:
-    from tester.inputs.materials.compound import LoadedCompound
+def _lines(material: Loaded) -> Iterable[str]:
+    from tester.inputs.materials.material_schema import CompoundModel
 
-    yield f"{one.file.name}: {one.file.role}, {one.file.path}"
-    yield f"sha256   {one.file.sha256}"
-    for data in one.file.data:
+    file, model = material.file, material.model
+    yield f"{file.name}: {file.role}, {file.path}"
+    yield f"sha256   {file.sha256}"
+    for data in file.data:
         yield f"data     {data.name}, sha256 {data.sha256}"
-    yield f"holds    {one.holds()}"
-    model = one.model
-    for what, text in (("note", model.note), ("source", model.source)):
+    yield f"holds    {material.holds()}"
+    for label, text in (("note", model.note), ("source", model.source)):
         if text:
-            yield f"{what:8} {text}"
-    if isinstance(one, LoadedCompound):
-        yield from _of_compound(one)
-    for note in one.notes:
+            yield f"{label:8} {text}"
+    if isinstance(model, CompoundModel):
+        yield from _of_compound(model)
+    for note in material.notes:
         yield f"noted    {note}"
-    for doubt in one.file.doubts:
+    for doubt in file.doubts:
         yield f"doubt    {doubt}"
 
 
-def _of_compound(one: LoadedCompound) -> Iterable[str]:
-    model = one.model
+def _of_compound(model: CompoundModel) -> Iterable[str]:
     if model.formulation:
         yield "made of  " + ", ".join(f"{name} {phr:g} phr" for name, phr in model.formulation.items())
     if model.Tg is not None:
@@ -152,25 +142,24 @@ def _of_compound(one: LoadedCompound) -> Iterable[str]:
 def check(file: Path, as_json: bool) -> int | None:
     """Validate FILE, a compound's or a surface's: every problem at once, and every doubt.
 
-    Which of the two it is, its folder (compounds, surfaces) says, else its keys.
+    Its folder (compounds, surfaces), else its keys, decide which of the two it is.
     """
     from tester.base.processes import EXIT_INVALID
     from tester.base.source import InvalidSource
 
     try:
-        found = _load(file)
+        loaded = _load(file)
     except InvalidSource as error:
         if not as_json:
             raise
-        print_json({"valid": False, "problems": [str(one) for one in error.problems], "doubts": []})
+        print_json({"valid": False, "problems": [str(problem) for problem in error.problems], "doubts": []})
         return EXIT_INVALID
     if as_json:
-        doubts = [str(one) for one in found.file.doubts]
-        print_json({"valid": True, "problems": [], "doubts": doubts, "sha256": found.file.sha256})
+        doubts = [str(doubt) for doubt in loaded.file.doubts]
+        print_json({"valid": True, "problems": [], "doubts": doubts, "sha256": loaded.file.sha256})
         return None
-    for doubt in found.file.doubts:
-        click.echo(f"doubt: {doubt}", err=True)
-    click.echo(f"{file}: valid, {found.file.role} {found.file.name}: {found.holds()}")
+    _echo(doubts=loaded.file.doubts)
+    click.echo(f"{file}: valid, {loaded.file.role} {loaded.file.name}: {loaded.holds()}")
     return None
 
 
@@ -180,16 +169,17 @@ def _load(file: Path) -> Loaded:
     from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
     from tester.inputs.materials.surface_file import load_surface
 
-    if file.parent.name in ("compounds", "surfaces"):
-        return load_surface(file) if file.parent.name == "surfaces" else load_compound(file)
-    data = read_tree(file)[0].data
-    own = set(SurfaceModel.model_fields) - set(CompoundModel.model_fields)
-    return load_surface(file) if isinstance(data, dict) and own & set(data) else load_compound(file)
+    of_surface = file.parent.name == "surfaces"
+    if not of_surface and file.parent.name != "compounds":
+        data = read_tree(file)[0].data
+        surface_keys = {*SurfaceModel.model_fields} - {*CompoundModel.model_fields}
+        of_surface = isinstance(data, dict) and not surface_keys.isdisjoint(data)
+    return load_surface(file) if of_surface else load_compound(file)
 
 
 @materials.group("import")
 def import_() -> None:
-    """Make a file of ours from what an instrument wrote."""
+    """Make a compound's or a surface's file from an instrument's."""
 
 
 @import_.command()
@@ -200,49 +190,46 @@ def import_() -> None:
     "--columns",
     multiple=True,
     metavar="QUANTITY=HEADING",
-    help="Which column is which, e.g. \"E'=Modulus 1\". Quantities: temperature, frequency, omega, E', E'', G', G'', "
-    "tan. May be given again.",
+    help="A column's heading, e.g. \"E'=Modulus 1\". Quantities: temperature, frequency, omega, E', E'', G', G'', tan. "
+    "Repeatable.",
 )
 @click.option(
     "--unit", "units", multiple=True, metavar="HEADING=UNIT", help="A column's unit, e.g. \"Storage Modulus=MPa\"."
 )
-@click.option("--frequency", type=QuantityType("Hz"), default=None, help="Of every point, where no column says it.")
-@click.option("--temperature", type=QuantityType("degC"), default=None, help="Of every point, where no column says it.")
-@click.option("--poisson", type=click.FloatRange(0.3, 0.5), default=0.5, show_default=True, help="Makes E of G.")
+@click.option("--frequency", type=QuantityType("Hz"), default=None, help="Of every point, if no column has it.")
+@click.option("--temperature", type=QuantityType("degC"), default=None, help="Of every point, if no column has it.")
+@click.option("--poisson", type=click.FloatRange(0.3, 0.5), default=0.5, show_default=True, help="Converts G to E.")
 @force_option
 def dma(
-    file: Path,
-    name: str,
-    out: Path,
-    columns: Sequence[str],
-    units: Sequence[str],
-    frequency: float | None,
-    temperature: float | None,
-    poisson: float,
-    force: bool,
-) -> None:
+    file: Path, name: str, out: Path, columns: Sequence[str], units: Sequence[str], frequency: float | None,
+    temperature: float | None, poisson: float, force: bool,
+) -> None:  # fmt: skip
     """Make a compound of FILE, a table of moduli (dynamic mechanical analysis) with headings and units.
 
-    What is converted and what is doubtful is said, and stands in the new file.
+    Conversions and doubts are printed, and stored in the new file.
     """
     from tester.inputs.materials.dma import MAX_BYTES, read_dma
     from tester.inputs.materials.files import Findings, decoded
-    from tester.inputs.materials.headings import QUANTITIES, DmaOptions, quantity_named
+    from tester.inputs.materials.headings import DmaOptions
     from tester.inputs.materials.written import compound_text
 
-    named: dict[str, str] = {}
+    options = DmaOptions(_named(columns), dict(_pairs(units, "--unit")), frequency, temperature, poisson)
+    findings = Findings(str(file))
+    data = _read(file, MAX_BYTES)
+    table = read_dma(decoded(data.content), options, findings)
+    _write(out, compound_text(name, table, data, findings), findings, force, table.describe())
+
+
+def _named(columns: Sequence[str]) -> dict[str, str]:
+    """Return the headings of --columns by quantity."""
+    from tester.inputs.materials.headings import QUANTITIES, quantity_named
+
+    headings: dict[str, str] = {}
     for quantity, heading in _pairs(columns, "--columns"):
         if not quantity_named(quantity):
             raise click.BadParameter(f'"{quantity}" is none of {", ".join(QUANTITIES)}', param_hint="--columns")
-        named[quantity_named(quantity)] = heading
-    options = DmaOptions(named, dict(_pairs(units, "--unit")), frequency, temperature, poisson)
-    found = Findings(str(file))
-    data = _read(file, MAX_BYTES)
-    table = read_dma(decoded(data.content), options, found)
-    _tell(found)
-    _write(out, compound_text(name, table, data, found), force)
-    click.echo(f"{table.describe()}", err=True)
-    _check_written(out)
+        headings[quantity_named(quantity)] = heading
+    return headings
 
 
 @import_.command()
@@ -252,7 +239,7 @@ def dma(
 @click.option("--pixel", type=QuantityType("m"), default=None, help="Distance from point to point, e.g. 1um.")
 @click.option("--unit", type=click.Choice(["nm", "um", "mm", "m"]), default=None, help="Of the heights.")
 @click.option("--detrend", type=click.Choice(["plane", "mean"]), default="plane", show_default=True,
-              help="What is taken off first.")  # fmt: skip
+              help="Subtracted first.")  # fmt: skip
 @force_option
 def scan(
     file: Path, name: str, out: Path, pixel: float | None, unit: str | None, detrend: str, force: bool
@@ -265,16 +252,14 @@ def scan(
     from tester.inputs.materials.written import surface_text
 
     way = cast("Detrend", detrend)
-    found = Findings(str(file))
+    findings = Findings(str(file))
     data = _read(file, MAX_BYTES)
     try:
-        heights = read_scan(file, data.content, ScanOptions(pixel, unit, way), found)
+        heights = read_scan(file, data.content, ScanOptions(pixel, unit, way), findings)
     except MissingExtraError as error:
         raise click.ClickException(str(error)) from error
-    spectrum = spectrum_of(heights, way, found)
-    _tell(found)
-    _write(out, surface_text(name or file.stem, spectrum, data, found), force)
-    _check_written(out)
+    spectrum = spectrum_of(heights, way, findings)
+    _write(out, surface_text(name or file.stem, spectrum, data, findings), findings, force)
 
 
 def _read(file: Path, at_most: int) -> DataFile:
@@ -294,20 +279,21 @@ def _pairs(texts: Sequence[str], option: str) -> Iterable[tuple[str, str]]:
         yield left.strip(), right.strip()
 
 
-def _tell(found: Findings) -> None:
-    for note in found.notes:
-        click.echo(f"noted: {note}", err=True)
-    for doubt in found.doubts:
-        click.echo(f"doubt: {doubt}", err=True)
+def _echo(notes: Iterable[str] = (), doubts: Iterable[Problem] = ()) -> None:
+    for label, texts in (("noted", notes), ("doubt", doubts)):
+        for text in texts:
+            click.echo(f"{label}: {text}", err=True)
 
 
-def _write(out: Path, text: str, force: bool) -> None:
+def _write(out: Path, text: str, findings: Findings, force: bool, summary: str = "") -> None:
+    """Write the new file with its conversions and doubts on the screen, and read it back for further doubts."""
     from tester.base.source import MAX_BYTES
     from tester.base.trouble import in_words
 
+    _echo(findings.notes, findings.doubts)
     if len(text.encode()) > MAX_BYTES:
-        told = f"{out} would be larger than {MAX_BYTES // 1024} kB: keep the table in its file beside the compound's"
-        raise click.UsageError(f"{told} (moduli: {{file: {{name: ...}}}})")
+        refusal = f"{out} would be larger than {MAX_BYTES // 1024} kB: keep the table in its file beside the compound's"
+        raise click.UsageError(f"{refusal} (moduli: {{file: {{name: ...}}}})")
     try:
         with out.open("w" if force else "x", encoding="utf-8", newline="\n") as stream:
             stream.write(text)
@@ -315,10 +301,7 @@ def _write(out: Path, text: str, force: bool) -> None:
         raise click.UsageError(f"{out} exists already; --force replaces it") from error
     except OSError as error:
         raise click.UsageError(f"{out} cannot be written: {in_words(error)}") from error
-
-
-def _check_written(out: Path) -> None:
-    """Read the new file as everybody will, and say what is doubtful in it."""
-    for doubt in _load(out).file.doubts:
-        click.echo(f"doubt: {doubt}", err=True)
+    if summary:
+        click.echo(summary, err=True)
+    _echo(doubts=_load(out).file.doubts)
     click.echo(str(out))

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import starmap
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
+from tester.base.source import InvalidSource, Tree
 from tester.base.units import shown
 from tester.inputs.materials.dma import MAX_BYTES, read_dma
-from tester.inputs.materials.files import DataFile, DataFileError, Findings, MaterialFile, decoded, read_beside
+from tester.inputs.materials.files import DataFile, Findings, MaterialFile, OpenedMaterial, decoded
 from tester.inputs.materials.headings import (
     QUANTITIES,
     DmaOptions,
@@ -24,6 +21,7 @@ from tester.inputs.materials.headings import (
 from tester.inputs.materials.material_schema import CompoundModel, TableFileModel, TableModel
 from tester.inputs.materials.measured_moduli import ModuliRow, ModuliTable, judge, shift_doubts
 
+EXPECTED = "a compound is a list of keys: name, formulation, Tg, moduli and others"
 FORMULATED_PHR = (90.0, 500.0)
 """Limits of the sum of a formulation [A]: the rubber alone is 100."""
 
@@ -55,44 +53,28 @@ class LoadedCompound:
 
 def load_compound(path: Path, name: str | None = None) -> LoadedCompound:
     """Read a compound's file; ``name`` names it in messages. Raises InvalidSource with every problem."""
-    tree, problems = read_tree(path, name)
-    model, findings = _validated(tree, problems)
-    data: tuple[DataFile, ...] = ()
+    opened = OpenedMaterial(path, name, CompoundModel, EXPECTED)
+    model, tree, findings = opened.model, opened.tree, opened.findings
+    data: DataFile | None = None
     table: ModuliTable | None = None
     if model is not None and model.moduli is not None and model.moduli.table is not None:
         table = _inline(model.moduli.table, tree, findings)
     elif model is not None and model.moduli is not None and model.moduli.file is not None:
-        table, data = _beside(model, model.moduli.file, path, tree, findings)
-    findings.end()
-    assert model is not None
+        _unknown_quantities(model.moduli.file, tree, findings)
+        data = opened.data_file(path, ("moduli", "file", "name"), model.moduli.file.name, MAX_BYTES)
+        if data is not None and not findings.problems:
+            table = _beside(model, model.moduli.file, data, path, findings)
+    model = opened.content()
     for doubt in _doubts(model, table):
         findings.doubt(tree.key_position(("moduli",)), doubt)
     _formulation(model, tree, findings)
-    for number, doubt in enumerate(model.doubts):
-        findings.doubt(tree.position(("doubts", number)), doubt)
-    file = MaterialFile("compound", model.name, path, tree.text, data, tuple(sorted(findings.doubts)))
+    file = opened.kept("compound", path, (data,) if data is not None else ())
     return LoadedCompound(model, file, table, tuple(findings.notes))
 
 
 def compound_model(text: str, name: str) -> CompoundModel:
     """Return the content of a compound's file, without the files that it refers to. Raises InvalidSource."""
-    tree, problems = read_tree(text, name)
-    model, findings = _validated(tree, problems)
-    findings.end()
-    assert model is not None
-    return model
-
-
-def _validated(tree: Tree, problems: Sequence[Problem]) -> tuple[CompoundModel | None, Findings]:
-    findings = Findings(tree.name, list(problems))
-    if not isinstance(tree.data, dict):
-        findings.refuse((1, 1), "a compound is a list of keys: name, formulation, Tg, moduli and others")
-        return None, findings
-    try:
-        return CompoundModel.model_validate(tree.data), findings
-    except ValidationError as error:
-        findings.problems += problems_from_validation(error, tree, CompoundModel)
-        return None, findings
+    return OpenedMaterial(text, name, CompoundModel, EXPECTED).content()
 
 
 def _inline(model: TableModel, tree: Tree, findings: Findings) -> ModuliTable | None:
@@ -125,25 +107,20 @@ def _inline(model: TableModel, tree: Tree, findings: Findings) -> ModuliTable | 
     return ModuliTable(tuple(rows))
 
 
-def _beside(
-    model: CompoundModel, link: TableFileModel, path: Path, tree: Tree, findings: Findings
-) -> tuple[ModuliTable | None, tuple[DataFile, ...]]:
-    """Return the moduli of a file beside this one, and that file; its problems are reported at its own lines."""
-    at = ("moduli", "file")
+def _unknown_quantities(link: TableFileModel, tree: Tree, findings: Findings) -> None:
     for name in link.columns:
         if not quantity_named(name):
-            place = tree.key_position((*at, "columns", name))
+            place = tree.key_position(("moduli", "file", "columns", name))
             known = ", ".join(QUANTITIES)
             findings.refuse(
                 place, f"columns: {shown(name)} is no quantity of a table of moduli (expected one of {known})"
             )
-    try:
-        data = read_beside(path, link.name, MAX_BYTES)
-    except DataFileError as error:
-        findings.refuse(tree.position((*at, "name")), f"name: {error}")
-        return None, ()
-    if findings.problems:
-        return None, ()
+
+
+def _beside(
+    model: CompoundModel, link: TableFileModel, data: DataFile, path: Path, findings: Findings
+) -> ModuliTable | None:
+    """Return the moduli of a file beside the compound's; its problems are reported at its own lines."""
     options = DmaOptions(
         {quantity_named(name): text for name, text in link.columns.items()},
         link.units,
@@ -154,15 +131,14 @@ def _beside(
         ask_unit='units: {{"{heading}": {unit}}}',
         ask_value="{quantity}: {example}",
     )
-    inner = Findings(str(Path(tree.name).parent / link.name) if path.parent != Path() else link.name)
+    inner = Findings(str(Path(findings.file).parent / link.name) if path.parent != Path() else link.name)
     try:
         table = read_dma(decoded(data.content), options, inner)
     except InvalidSource as error:
         findings.problems += error.problems
-        return None, ()
-    findings.doubts += inner.doubts
-    findings.notes += inner.notes
-    return table, (data,)
+        return None
+    findings.take(inner)
+    return table
 
 
 def _doubts(model: CompoundModel, table: ModuliTable | None) -> list[str]:

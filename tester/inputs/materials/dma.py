@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
 from difflib import get_close_matches
 from math import isfinite, nan
 from typing import Final
@@ -80,24 +79,14 @@ _WITH_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 
 
-@dataclass(frozen=True, slots=True)
-class DmaColumn:
-    """A used column."""
-
-    index: int
-    heading: str
-    quantity: str
-    unit: str
-
-
 def read_dma(text: str, options: DmaOptions, findings: Findings) -> ModuliTable:
     """Return the moduli of a file's text; adds to ``findings``. Raises InvalidSource with every problem."""
     layout = layout_of(text.splitlines(), options.columns.values())
     if layout is None:
         asked = options.ask_column.format(quantity="E'")
-        findings.refuse((1, 1), f"no row of headings is recognised (expected temperature, frequency, E', E''; {asked})")
-        findings.end()
-        raise AssertionError
+        findings.refuse_now(
+            (1, 1), f"no row of headings is recognised (expected temperature, frequency, E', E''; {asked})"
+        )
     return _Reading(layout, options, findings).table()
 
 
@@ -109,7 +98,7 @@ class _Reading:
         self.options = options
         self.findings = findings
         self.place = (layout.at + 1, 1)
-        self.columns: dict[str, DmaColumn] = {}
+        self.columns: dict[str, Heading] = {}
 
     def table(self) -> ModuliTable:
         self._choose()
@@ -117,7 +106,7 @@ class _Reading:
         self.findings.end()
         values, lines = self._numbers()
         self.findings.end()
-        self._said_frequency(values, lines)
+        self._check_frequency(values, lines)
         self.findings.end()
         rows = [self._row(value) for value in values]
         judge(rows, lambda number: (lines[number] + 1 if lines else self.place[0], 1), self.findings)
@@ -146,7 +135,7 @@ class _Reading:
             if column is None or (index not in named_columns and column.quantity in named_columns.values()):
                 continue
             several.setdefault(column.quantity, []).append(text)
-            self.columns[column.quantity] = DmaColumn(index, text, column.quantity, column.unit)
+            self.columns[column.quantity] = column
         for quantity, texts in several.items():
             if len(texts) > 1:
                 asked = self.options.ask_column.format(quantity=quantity)
@@ -182,7 +171,7 @@ class _Reading:
             asked = self.options.ask_unit.format(heading=text, unit=first_unit(known.quantity))
             missing = f'"{text}" has no unit (expected {accepted(known.quantity)}; {asked})'
             self.findings.refuse(self.place, refused or missing)
-        return Heading(text, known.quantity, unit or "1")
+        return Heading(text, known.quantity, unit or "1", index)
 
     def _bracketed(self, text: str, quantity: str) -> str:
         """Return the unit in the heading of a column whose quantity a person has set; "" where there is none."""
@@ -216,14 +205,14 @@ class _Reading:
         if "frequency" not in has and "omega" not in has and options.frequency_hz is None:
             self._missing("frequency", "frequency", "1 Hz")
         storage = has.get(f"{letter}'")
-        by_name = storage is not None and quantity_of(storage.heading[:2]) == "" and "'" not in storage.heading
+        by_name = storage is not None and quantity_of(storage.text[:2]) == "" and "'" not in storage.text
         if storage is not None and letter == "E" and "E'" not in options.columns:
-            if storage.heading.upper().startswith("M"):
-                assumption = f'"{storage.heading}" is taken for the modulus of tension, E\''
+            if storage.text.upper().startswith("M"):
+                assumption = f'"{storage.text}" is taken for the modulus of tension, E\''
                 self.findings.doubt(self.place, assumption, lasting=True)
-            elif by_name and "tensile" not in storage.heading.casefold():
+            elif by_name and "tensile" not in storage.text.casefold():
                 asked = options.ask_column.format(quantity="G'")
-                assumption = f'"{storage.heading}" does not say of which deformation: taken for tension, E\''
+                assumption = f'"{storage.text}" does not say of which deformation: taken for tension, E\''
                 self.findings.doubt(self.place, f"{assumption} ({asked} for shear)", lasting=True)
 
     def _missing(self, quantity: str, words: str, example: str = "") -> None:
@@ -235,7 +224,7 @@ class _Reading:
     # -- numbers ----------------------------------------------------------------------------------------------
 
     def _numbers(self) -> tuple[list[dict[str, float]], list[int]]:
-        """Return the columns' numbers as in the file, a mapping by quantity for each row, and its line."""
+        """Return each row's numbers in degC, Hz and Pa, by quantity, and its line."""
         comma = self._comma()
         values: list[dict[str, float]] = []
         lines: list[int] = []
@@ -243,7 +232,8 @@ class _Reading:
             row: dict[str, float] = {}
             for column in self.columns.values():
                 cell = cells[column.index] if column.index < len(cells) else ""
-                row[column.quantity] = self._number(cell, column, line, comma)
+                number = self._number(cell, column, line, comma)
+                row[column.quantity] = conversion(column.quantity, column.unit)(number)
             values.append(row)
             lines.append(line)
         return values, lines
@@ -273,7 +263,7 @@ class _Reading:
             self.findings.notes.append("numbers have a decimal comma")
         return bool(with_comma)
 
-    def _number(self, cell: str, column: DmaColumn, line: int, comma: bool) -> float:
+    def _number(self, cell: str, column: Heading, line: int, comma: bool) -> float:
         text = cell.replace(",", ".") if comma and _WITH_COMMA.fullmatch(cell) else cell
         try:
             value = nan if "_" in text else float(text)  # Python's digit groups are not valid in such a file
@@ -281,34 +271,32 @@ class _Reading:
             value = nan
         if not isfinite(value):
             fault = f'"{cell}" is not a number' if cell else "nothing is there"
-            self.findings.refuse((line + 1, 1), f"{column.heading}: {fault}")
+            self.findings.refuse((line + 1, 1), f"{column.text}: {fault}")
         return value
 
     def _row(self, values: Mapping[str, float]) -> ModuliRow:
         """Return one point in degC, Hz and Pa of tension."""
-        converted = {name: conversion(name, self.columns[name].unit)(value) for name, value in values.items()}
-        temperature = converted.get("temperature", self.options.temperature_c)
-        frequency = converted.get("frequency", converted.get("omega", self.options.frequency_hz))
+        temperature = values.get("temperature", self.options.temperature_c)
+        frequency = values.get("frequency", values.get("omega", self.options.frequency_hz))
         if self.options.frequency_hz is not None:
             frequency = self.options.frequency_hz
         assert temperature is not None and frequency is not None
-        letter, factor = ("G", 2.0 * (1.0 + self.options.poisson)) if "G'" in converted else ("E", 1.0)
-        storage = converted[f"{letter}'"]
-        loss = converted[f'{letter}"'] if f'{letter}"' in converted else storage * converted["tan"]
+        letter, factor = ("G", 2.0 * (1.0 + self.options.poisson)) if "G'" in values else ("E", 1.0)
+        storage = values[f"{letter}'"]
+        loss = values[f'{letter}"'] if f'{letter}"' in values else storage * values["tan"]
         return ModuliRow(temperature, frequency, factor * storage, factor * loss)
 
-    def _said_frequency(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
+    def _check_frequency(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
         """Compare the frequency that a person has set for every point with the file's own, if it has any."""
         stated = self.options.frequency_hz
         name = "frequency" if "frequency" in self.columns else "omega"
         if stated is None or name not in self.columns:
             return
-        to_hz = conversion(name, self.columns[name].unit)
         for value, line in zip(values, lines, strict=True):
-            here = to_hz(value[name])
-            if not stated / ALIKE < here < stated * ALIKE:
+            frequency = value[name]
+            if not stated / ALIKE < frequency < stated * ALIKE:
                 self.findings.refuse(
-                    (line + 1, 1), f"frequency: {here:g} Hz is not the {stated:g} Hz that is set for all"
+                    (line + 1, 1), f"frequency: {frequency:g} Hz is not the {stated:g} Hz that is set for all"
                 )
         self.findings.notes.append(
             f"frequency: {stated:g} Hz, as set, for rows of the file within {ALIKE:g} times of it"
@@ -317,7 +305,7 @@ class _Reading:
     def _cross_check(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
         """Compare a column of tan delta with E'' over E', and note the conversions."""
         note = self.findings.notes.append
-        used = ", ".join(f'{name} from "{column.heading}"' for name, column in self.columns.items())
+        used = ", ".join(f'{name} from "{column.text}"' for name, column in self.columns.items())
         note(f"columns: {used}")
         if "G'" in self.columns:
             factor = 2.0 * (1.0 + self.options.poisson)
@@ -330,11 +318,9 @@ class _Reading:
         if f'{letter}"' not in self.columns:
             note(f"{letter}'' is {letter}' times tan delta: the file has no column of it")
             return
-        storage, loss = (self.columns[name] for name in (f"{letter}'", f'{letter}"'))
         off: list[tuple[float, int, float, float]] = []
         for value, line in zip(values, lines, strict=True):
-            here = conversion(loss.quantity, loss.unit)(value[loss.quantity])
-            ratio = here / conversion(storage.quantity, storage.unit)(value[storage.quantity])
+            ratio = value[f'{letter}"'] / value[f"{letter}'"]
             apart = abs(ratio - value["tan"])
             if apart > max(TAN_PERCENT / 100.0 * abs(ratio), TAN_LEAST):
                 off.append((apart, line, value["tan"], ratio))

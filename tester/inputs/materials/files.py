@@ -6,11 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
-from typing import Literal
+from typing import Generic, Literal, NoReturn, TypeVar
 
-from tester.base.source import InvalidSource, Problem
+from pydantic import ValidationError
+
+from tester.base.source import InvalidSource, Problem, problems_from_validation, read_tree
 from tester.base.trouble import in_words
+from tester.inputs.materials.material_schema import MaterialModel
 
+ModelT = TypeVar("ModelT", bound=MaterialModel)
 Role = Literal["compound", "surface"]
 FOLDERS: dict[Role, str] = {"compound": "compounds", "surface": "surfaces"}
 """Folders of each role, beside a recipe and in the package."""
@@ -107,3 +111,51 @@ class Findings:
         """Raise InvalidSource if there are problems."""
         if self.problems:
             raise InvalidSource(self.problems)
+
+    def refuse_now(self, place: tuple[int, int], message: str) -> NoReturn:
+        """Add a problem that ends the reading; raises InvalidSource."""
+        self.refuse(place, message)
+        raise InvalidSource(self.problems)
+
+    def take(self, other: Findings) -> None:
+        """Take the doubts and notes of a file that this one refers to."""
+        self.doubts += other.doubts
+        self.notes += other.notes
+
+
+class OpenedMaterial(Generic[ModelT]):
+    """A material's file while it is read: its tree, its problems, and its content if it is valid."""
+
+    def __init__(self, source: Path | str, name: str | None, model: type[ModelT], expected: str) -> None:
+        """Read and validate. ``expected``: the keys of such a file, in words. Raises InvalidSource if unreadable."""
+        self.tree, problems = read_tree(source, name)
+        self.findings = Findings(self.tree.name, list(problems))
+        self.model: ModelT | None = None
+        if not isinstance(self.tree.data, dict):
+            self.findings.refuse((1, 1), expected)
+            return
+        try:
+            self.model = model.model_validate(self.tree.data)
+        except ValidationError as error:
+            self.findings.problems += problems_from_validation(error, self.tree, model)
+
+    def content(self) -> ModelT:
+        """Return the content; raises InvalidSource with every problem."""
+        self.findings.end()
+        assert self.model is not None
+        return self.model
+
+    def data_file(self, path: Path, key: tuple[str, ...], name: str, at_most: int) -> DataFile | None:
+        """Return a file beside this one, which ``key`` names; None with a problem if it cannot be used."""
+        try:
+            return read_beside(path, name, at_most)
+        except DataFileError as error:
+            self.findings.refuse(self.tree.position(key), f"{key[-1]}: {error}")
+            return None
+
+    def kept(self, role: Role, path: Path, data: tuple[DataFile, ...]) -> MaterialFile:
+        """Return the file as read, with its author's doubts and those of the reading. Raises InvalidSource."""
+        model = self.content()
+        for number, doubt in enumerate(model.doubts):
+            self.findings.doubt(self.tree.position(("doubts", number)), doubt)
+        return MaterialFile(role, model.name, path, self.tree.text, data, tuple(sorted(self.findings.doubts)))

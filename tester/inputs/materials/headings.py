@@ -67,6 +67,8 @@ class Heading:
     quantity: str
     unit: str = ""
     """From the table of units; "" where the heading has none."""
+    index: int = 0
+    """Its column in the file, from 0."""
 
 
 def heading(text: str) -> Heading:

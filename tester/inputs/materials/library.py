@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -20,7 +20,7 @@ from tester.base.source import InvalidSource, Problem, load_tree
 from tester.base.units import shown
 from tester.inputs.materials.compound import LoadedCompound, load_compound
 from tester.inputs.materials.files import FOLDERS, Role
-from tester.inputs.materials.material_schema import CompoundModel, ModuliModel, WaveModel
+from tester.inputs.materials.material_schema import CompoundModel, ModuliModel
 from tester.inputs.materials.measured_moduli import ModuliTable
 
 if TYPE_CHECKING:
@@ -44,8 +44,6 @@ class LibraryEntry:
     role: Role
     name: str
     path: Path
-    place: Path
-    """The folder of ``compounds`` and ``surfaces``."""
     hidden: bool = False
 
 
@@ -77,19 +75,19 @@ class Library:
         """Return every file of a role, nearest first and sorted in a folder. Raises InvalidSource for doubled names."""
         listed: list[LibraryEntry] = []
         for folder in self.folders:
-            here = [LibraryEntry(role, name, path, folder) for path, name in _named(folder / FOLDERS[role])]
-            _refuse_doubled(here)
+            files = [*_named(folder / FOLDERS[role])]
+            _refuse_doubled(files)
             nearer = {entry.name for entry in listed}
-            listed += [LibraryEntry(role, e.name, e.path, folder, hidden=e.name in nearer) for e in here]
+            listed += [LibraryEntry(role, name, path, hidden=name in nearer) for path, name in files]
         return listed
 
     def path(self, role: Role, name: str) -> Path | None:
         """Return the file of a name, None where none has it. Raises InvalidSource where two of a folder have it."""
         for folder in self.folders:
-            here = [LibraryEntry(role, name, path, folder) for path, n in _named(folder / FOLDERS[role]) if n == name]
-            _refuse_doubled(here)
-            if here:
-                return here[0].path
+            files = [(path, named) for path, named in _named(folder / FOLDERS[role]) if named == name]
+            _refuse_doubled(files)
+            if files:
+                return files[0][0]
         return None
 
     def compound(self, name: str) -> LoadedCompound:
@@ -98,9 +96,7 @@ class Library:
 
     def surface_file(self, name: str) -> LoadedSurface:
         """Return a surface's file. Raises UnknownMaterialError, InvalidSource."""
-        from tester.inputs.materials.surface_file import (
-            load_surface,  # needs numpy, and a plan asks for compounds alone
-        )
+        from tester.inputs.materials.surface_file import load_surface  # needs numpy; a plan reads compounds alone
 
         return load_surface(self._found("surface", name))
 
@@ -175,17 +171,9 @@ def surface_of(loaded: LoadedSurface) -> Surface:
         spectrum = SelfAffine(s.C0, s.q0, s.q1, s.H)
     elif loaded.radial is not None:
         spectrum = TabulatedSpectrum(loaded.radial.q_1_m, loaded.radial.power_m4)
-    waves = model.waves
-    return Surface(
-        name=model.name,
-        spectrum=spectrum,
-        coarse=_sinusoid(waves.coarse) if waves is not None else None,
-        fine=_sinusoid(waves.fine) if waves is not None else None,
-    )
-
-
-def _sinusoid(wave: WaveModel) -> Sinusoid:
-    return Sinusoid(wave.wavelength, wave.Ra)
+    waves = (model.waves.coarse, model.waves.fine) if model.waves is not None else ()
+    coarse, fine = [Sinusoid(wave.wavelength, wave.Ra) for wave in waves] or (None, None)
+    return Surface(name=model.name, spectrum=spectrum, coarse=coarse, fine=fine)
 
 
 def _named(folder: Path) -> Iterator[tuple[Path, str]]:
@@ -213,14 +201,13 @@ def nameless(library: Library) -> Iterator[Path]:
             yield from (path for path in _files(folder / below) if path not in named)
 
 
-def _refuse_doubled(entries: Sequence[LibraryEntry]) -> None:
+def _refuse_doubled(files: Iterable[tuple[Path, str]]) -> None:
     """Raise InvalidSource where two files of a folder have one name."""
     first: dict[str, Path] = {}
     problems: list[Problem] = []
-    for entry in entries:
-        if entry.name in first:
-            duplicate = f"name: {shown(entry.name)} is the name of {first[entry.name].name} in this folder already"
-            problems.append(Problem(str(entry.path), 1, 1, duplicate))
-        first.setdefault(entry.name, entry.path)
+    for path, name in files:
+        if first.setdefault(name, path) is not path:
+            duplicate = f"name: {shown(name)} is already the name of {first[name].name} in this folder"
+            problems.append(Problem(str(path), 1, 1, duplicate))
     if problems:
         raise InvalidSource(problems)

@@ -1,4 +1,4 @@
-"""Schema of a compound's and a surface's file: the validated models of the YAML files.
+"""Schema of the compounds' and surfaces' files: the validated models of the YAML files.
 
 Every quantity is a text with a unit in the file and a float here, in the unit of the annotation. The JSON Schemas for
 editors are generated from these classes.
@@ -29,15 +29,27 @@ LEAST_WAVES = 1.01
 """q1 over q0, at least: a narrower band is a line, not a spectrum."""
 
 
+class MaterialModel(Section, frozen=True):
+    """The keys of every material's file."""
+
+    name: Text
+    """as recipes name it; the file may have another name"""
+    note: Note | None = None
+    source: Note | None = None
+    """source of the figures; [A] for an assumption"""
+    doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
+    """doubts that an import or a person has noted; listed wherever the material is used"""
+
+
 class CureModel(Section, frozen=True):
-    """How it was vulcanised."""
+    """Its vulcanisation."""
 
     temperature: Celsius | None = None
     time: Annotated[float, Quantity("s", gt=0)] | None = None
 
 
 class TableModel(Section, frozen=True):
-    """Moduli as measured, in the file itself."""
+    """Measured moduli, in the file itself."""
 
     columns: Headings
     """names with units, such as [temperature degC, frequency Hz, E' MPa, E'' MPa]"""
@@ -46,18 +58,18 @@ class TableModel(Section, frozen=True):
 
 
 class TableFileModel(Section, frozen=True):
-    """Moduli as measured, in a file of columns beside this one."""
+    """Measured moduli, in a file of columns beside this one."""
 
     name: Text
     """the file, relative to this one"""
     columns: dict[Text, Text] = Field(default_factory=dict[str, str])
-    """which heading is which, where it is not recognised, such as {"E'": "Modulus 1"}"""
+    """headings that are not recognised, by quantity, such as {"E'": "Modulus 1"}"""
     units: dict[Text, Text] = Field(default_factory=dict[str, str])
-    """units of headings that say none, such as {"Storage Modulus": MPa}"""
+    """units of headings without one, such as {"Storage Modulus": MPa}"""
     frequency: Annotated[float, Quantity("Hz", gt=0)] | None = None
-    """of every point, where the file has no such column"""
+    """of every point, if the file has no such column"""
     temperature: Celsius | None = None
-    """of every point, where the file has no such column"""
+    """of every point, if the file has no such column"""
 
 
 class ZenerModel(Section, frozen=True):
@@ -99,7 +111,7 @@ class ModuliModel(Section, frozen=True):
     fractional_zener: ZenerModel | None = None
     constant: ConstantModel | None = None
     beyond: Literal["refuse", "hold"] = "refuse"
-    """at frequencies beyond a table's: no value, or that of its end"""
+    """at frequencies beyond a table: no value, or that of its end"""
 
     @model_validator(mode="after")
     def _one(self) -> ModuliModel:
@@ -113,10 +125,10 @@ class ModuliModel(Section, frozen=True):
 
 
 class ShearModel(Section, frozen=True):
-    """How a contact of clean rubber is sheared off: tau_s0 [1 + ratio / (1 + v_c / v)^n]."""
+    """Shear strength of a contact of clean rubber: tau_s0 [1 + ratio / (1 + v_c / v)^n]."""
 
     tau_s0: Annotated[float, Quantity("Pa", gt=0)]
-    """shear strength of slowest sliding"""
+    """shear strength at the slowest sliding"""
     v_c: Annotated[float, Quantity("m/s", gt=0)]
     n: Annotated[float, Quantity("1", gt=0, le=10)]
     ratio: Annotated[float, Quantity("1", ge=0, le=1e6)]
@@ -124,19 +136,19 @@ class ShearModel(Section, frozen=True):
 
 
 class OverTemperatureModel(Section, frozen=True):
-    """How its coefficient follows temperature: in proportion to alpha exp(-beta (T - Tm)^2) + gamma."""
+    """Its coefficient over temperature: in proportion to alpha exp(-beta (T - Tm)^2) + gamma."""
 
     alpha: Annotated[float, Quantity("1", ge=-100, le=100)]
     beta: Annotated[float, Quantity("1/K2", gt=0, le=1)]
     gamma: Annotated[float, Quantity("1", gt=0, le=100)]
     Tm: Celsius
-    """temperature of the maximum, of the minimum where alpha is below 0"""
+    """temperature of the maximum; of the minimum if alpha is below 0"""
     least: Celsius
     """lowest temperature at which it was measured"""
     most: Celsius
     """highest temperature at which it was measured"""
     source: Note | None = None
-    """where the figures are from"""
+    """source of the figures"""
 
     @model_validator(mode="after")
     def _sense(self) -> OverTemperatureModel:
@@ -153,16 +165,9 @@ class OverTemperatureModel(Section, frozen=True):
         return -2.0 * self.beta * off_k * bell / (bell + self.gamma)
 
 
-class CompoundModel(Section, frozen=True):
-    """A rubber compound: what it is made of, and what is known of it."""
+class CompoundModel(MaterialModel, frozen=True):
+    """A rubber compound: its formulation and its properties."""
 
-    name: Text
-    """as recipes name it; the file may be called otherwise"""
-    note: Note | None = None
-    source: Note | None = None
-    """where the figures are from; [A] for an assumption"""
-    doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
-    """what is doubtful in it, as an import or a person says; named wherever it is used"""
     formulation: dict[Text, Phr] = Field(default_factory=dict[str, float])
     """parts per hundred of rubber (phr), by ingredient"""
     batch: Text | None = None
@@ -174,11 +179,11 @@ class CompoundModel(Section, frozen=True):
     """glass transition"""
     poisson: Annotated[float, Quantity("1", ge=0.3, le=0.5)] = 0.5
     decade_k: Annotated[float, Quantity("K", gt=0, le=50, bare=True)] | None = None
-    """kelvin that stand for a decade of frequency, as of a sweep at one frequency (default 8)"""
+    """kelvin equivalent to a decade of frequency, for a sweep at one frequency (default 8)"""
     moduli: ModuliModel | None = None
     shear: ShearModel | None = None
     over_temperature: OverTemperatureModel | None = None
-    """how its coefficient on an abrasive follows temperature, as a fit or a publication has it"""
+    """its coefficient on an abrasive over temperature, from a fit or a publication"""
 
 
 class PowerLawModel(Section, frozen=True):
@@ -197,7 +202,7 @@ class PowerLawModel(Section, frozen=True):
 
 
 def _band(q0: float, q1: float) -> None:
-    """Raise ValueError for a band that is none."""
+    """Raise ValueError for an empty band."""
     if q1 < LEAST_WAVES * q0:
         raise ValueError(f"q1, {q1:g} 1/m, is not above q0, {q0:g} 1/m: waves go from long (q0) to short (q1)")
 
@@ -216,7 +221,7 @@ class WaveModel(Section, frozen=True):
 
 
 class WavesModel(Section, frozen=True):
-    """Two waves, as of a road: its stones, and what is on them."""
+    """Two waves, as of a road: its stones, and the texture on them."""
 
     coarse: WaveModel
     fine: WaveModel
@@ -229,35 +234,28 @@ class WavesModel(Section, frozen=True):
 
 
 class ScanModel(Section, frozen=True):
-    """Heights as an instrument wrote them, in a file beside this one."""
+    """Heights written by an instrument, in a file beside this one."""
 
     file: Text
     """the file, relative to this one: a matrix of heights as text, or a format of instruments (extra `topography`)"""
     pixel: Length | None = None
-    """distance from point to point, where the file does not say it"""
+    """distance from point to point, if the file does not state it"""
     unit: Literal["nm", "um", "mm", "m"] | None = None
-    """of the heights, where the file does not say it"""
+    """of the heights, if the file does not state it"""
     detrend: Literal["mean", "plane"] = "plane"
-    """what is taken off before anything else"""
+    """subtracted before anything else"""
 
 
 class RadialModel(Section, frozen=True):
-    """A spectrum as a table: C at wave numbers that rise."""
+    """A spectrum as a table: C at rising wave numbers."""
 
     columns: Literal["q 1/m, C m4"] = "q 1/m, C m4"
     rows: Annotated[list[Annotated[list[float | int], Field(min_length=2, max_length=2)]], Field(max_length=5000)]
 
 
-class SurfaceModel(Section, frozen=True):
-    """What rubber slides on: a spectrum of heights, two waves, or both."""
+class SurfaceModel(MaterialModel, frozen=True):
+    """The surface that rubber slides on: a spectrum of heights, two waves, or both. Recipes name it as `abrasive`."""
 
-    name: Text
-    """as recipes name it under `abrasive`; the file may be called otherwise"""
-    note: Note | None = None
-    source: Note | None = None
-    """where the figures are from; [A] for an assumption"""
-    doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
-    """what is doubtful in it, as an import or a person says; named wherever it is used"""
     spectrum: PowerLawModel | None = None
     radial: RadialModel | None = None
     scan: ScanModel | None = None

@@ -126,16 +126,15 @@ def _doubts(rows: Sequence[ModuliRow], above: Sequence[int], place: Place, findi
         findings.doubt(place(0), f"{len(rows)} points only (expected {FEW_ROWS} or more): much lies between them")
     _swapped_doubt(rows, place, findings)
     _order_doubt(rows, place, findings)
-    for number, row in enumerate(rows):
-        if not SLOWEST_HZ <= row.frequency_hz <= FASTEST_HZ:
-            doubt = f"frequency: {row.frequency_hz:g} Hz is beyond {SLOWEST_HZ:g} to {FASTEST_HZ:g} Hz of instruments"
-            findings.doubt(place(number), f"{doubt}: was it shifted, or is its unit another?")
-            break
-    for number, row in enumerate(rows):
-        if not SOFTEST_PA <= row.storage_pa <= STIFFEST_PA:
-            doubt = f"E': {row.storage_pa:g} Pa is not that of a rubber ({SOFTEST_PA:g} to {STIFFEST_PA:g} Pa)"
-            findings.doubt(place(number), f"{doubt}: is the unit right?")
-            break
+    beyond = [number for number, row in enumerate(rows) if not SLOWEST_HZ <= row.frequency_hz <= FASTEST_HZ]
+    if beyond:
+        frequency = f"frequency: {rows[beyond[0]].frequency_hz:g} Hz"
+        doubt = f"{frequency} is beyond {SLOWEST_HZ:g} to {FASTEST_HZ:g} Hz of instruments"
+        findings.doubt(place(beyond[0]), f"{doubt}: was it shifted, or is its unit another?")
+    unlike = [number for number, row in enumerate(rows) if not SOFTEST_PA <= row.storage_pa <= STIFFEST_PA]
+    if unlike:
+        doubt = f"E': {rows[unlike[0]].storage_pa:g} Pa is not that of a rubber"
+        findings.doubt(place(unlike[0]), f"{doubt} ({SOFTEST_PA:g} to {STIFFEST_PA:g} Pa): is the unit right?")
 
 
 def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from pydantic import ValidationError
 
 from tester.base.plugins import MissingExtraError
-from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
-from tester.inputs.materials.files import DataFile, DataFileError, Findings, MaterialFile, read_beside
+from tester.base.source import InvalidSource, Tree
+from tester.inputs.materials.files import DataFile, Findings, MaterialFile, OpenedMaterial
 from tester.inputs.materials.material_schema import RadialModel, ScanModel, SurfaceModel
 from tester.inputs.materials.radial import RadialSpectrum
 from tester.inputs.materials.surface_scan import MAX_BYTES, ScanOptions, read_scan, spectrum_of
+
+EXPECTED = "a surface is a list of keys: name, and one of spectrum, radial, scan, waves"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,41 +49,22 @@ def _length(q_1_m: float) -> str:
 
 def load_surface(path: Path, name: str | None = None) -> LoadedSurface:
     """Read a surface's file; ``name`` names it in messages. Raises InvalidSource, MissingExtraError."""
-    tree, problems = read_tree(path, name)
-    model, findings = _validated(tree, problems)
-    data: tuple[DataFile, ...] = ()
+    opened = OpenedMaterial(path, name, SurfaceModel, EXPECTED)
+    model, findings = opened.model, opened.findings
+    data: DataFile | None = None
     radial: RadialSpectrum | None = None
     if model is not None and model.radial is not None:
-        radial = _table(model.radial, tree, findings)
+        radial = _table(model.radial, opened.tree, findings)
     elif model is not None and model.scan is not None:
-        radial, data = _scanned(model.scan, path, tree, findings)
-    findings.end()
-    assert model is not None
-    for number, doubt in enumerate(model.doubts):
-        findings.doubt(tree.position(("doubts", number)), doubt)
-    file = MaterialFile("surface", model.name, path, tree.text, data, tuple(sorted(findings.doubts)))
-    return LoadedSurface(model, file, radial, tuple(findings.notes))
+        data = opened.data_file(path, ("scan", "file"), model.scan.file, MAX_BYTES)
+        radial = _scanned(model.scan, data, path, opened.tree, findings) if data is not None else None
+    file = opened.kept("surface", path, (data,) if data is not None else ())
+    return LoadedSurface(opened.content(), file, radial, tuple(findings.notes))
 
 
 def surface_model(text: str, name: str) -> SurfaceModel:
     """Return the content of a surface's file, without the files that it refers to. Raises InvalidSource."""
-    tree, problems = read_tree(text, name)
-    model, findings = _validated(tree, problems)
-    findings.end()
-    assert model is not None
-    return model
-
-
-def _validated(tree: Tree, problems: Sequence[Problem]) -> tuple[SurfaceModel | None, Findings]:
-    findings = Findings(tree.name, list(problems))
-    if not isinstance(tree.data, dict):
-        findings.refuse((1, 1), "a surface is a list of keys: name, and one of spectrum, radial, scan, waves")
-        return None, findings
-    try:
-        return SurfaceModel.model_validate(tree.data), findings
-    except ValidationError as error:
-        findings.problems += problems_from_validation(error, tree, SurfaceModel)
-        return None, findings
+    return OpenedMaterial(text, name, SurfaceModel, EXPECTED).content()
 
 
 def _table(model: RadialModel, tree: Tree, findings: Findings) -> RadialSpectrum | None:
@@ -104,13 +85,8 @@ def _table(model: RadialModel, tree: Tree, findings: Findings) -> RadialSpectrum
 
 
 def _scanned(
-    model: ScanModel, path: Path, tree: Tree, findings: Findings
-) -> tuple[RadialSpectrum | None, tuple[DataFile, ...]]:
-    try:
-        data = read_beside(path, model.file, MAX_BYTES)
-    except DataFileError as error:
-        findings.refuse(tree.position(("scan", "file")), f"file: {error}")
-        return None, ()
+    model: ScanModel, data: DataFile, path: Path, tree: Tree, findings: Findings
+) -> RadialSpectrum | None:
     options = ScanOptions(model.pixel, model.unit, model.detrend, "pixel: 1 um", "unit: um")
     inner = Findings(str(path.parent / data.name))
     try:
@@ -118,10 +94,9 @@ def _scanned(
         radial = spectrum_of(scan, model.detrend, inner)
     except InvalidSource as error:
         findings.problems += error.problems
-        return None, ()
+        return None
     except MissingExtraError as error:
         findings.refuse(tree.position(("scan", "file")), str(error))
-        return None, ()
-    findings.doubts += inner.doubts
-    findings.notes += inner.notes
-    return radial, (data,)
+        return None
+    findings.take(inner)
+    return radial

@@ -50,12 +50,6 @@ class HeightMap:
     heights_m: Array
     pixel_m: tuple[float, float]
 
-    @property
-    def size_m(self) -> tuple[float, float]:
-        """Return the lengths of its sides, m."""
-        rows, columns = self.heights_m.shape
-        return rows * self.pixel_m[0], columns * self.pixel_m[1]
-
 
 def read_scan(path: Path, content: bytes, options: ScanOptions, findings: Findings) -> HeightMap:
     """Return the heights of a file. Raises InvalidSource with every problem, MissingExtraError."""
@@ -118,8 +112,7 @@ def _matrix(text: str, findings: Findings) -> Array:
         if line.strip() and not line.lstrip().startswith("#")
     ]
     if not lines:
-        findings.refuse((1, 1), "no heights (expected a matrix, a row of numbers in each line)")
-        findings.end()
+        findings.refuse_now((1, 1), "no heights (expected a matrix, a row of numbers in each line)")
     delimiter = next((mark for mark in ("\t", ";") if mark in lines[0][1]), "," if "," in lines[0][1] else None)
     rows: list[Array] = []
     width = len(_cells(lines[0][1], delimiter))
@@ -168,11 +161,9 @@ def _instrument(path: Path, findings: Findings) -> tuple[Array, tuple[float, flo
         sizes, unit = topography.physical_sizes, topography.unit
     except Exception as error:  # each of its readers raises its own error
         findings.refuse((1, 1), f"SurfaceTopography cannot read it: {type(error).__name__}: {error}")
-        findings.end()
-        raise AssertionError from error
+        raise InvalidSource(findings.problems) from error
     if heights.ndim != 2:
-        findings.refuse((1, 1), f"a line of {heights.size} heights (expected a map)")
-        findings.end()
+        findings.refuse_now((1, 1), f"a line of {heights.size} heights (expected a map)")
     values = np.asarray(heights.filled(np.nan), dtype=np.float64)
     known = unit if unit in UNITS_M else None
     if unit and known is None:

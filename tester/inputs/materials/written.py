@@ -17,16 +17,8 @@ def compound_text(name: str, table: ModuliTable, data: DataFile, findings: Findi
         f"      - [{r.temperature_c!r}, {r.frequency_hz!r}, {r.storage_pa / 1e6!r}, {r.loss_pa / 1e6!r}]\n"
         for r in table.rows
     )
-    head = [
-        f"# Moduli imported from {_line(data.name)}, SHA-256",
-        f"# {data.sha256}.",
-        *(f"# {_line(note)}" for note in findings.notes),
-        "# What else is known belongs here: formulation (phr), batch, cure, density, hardness, Tg, decade_k, shear.",
-    ]
-    return "\n".join(head) + (
-        f"\nname: {_quoted(name)}\n"
-        f"source: {_quoted(f'imported from {_line(data.name)}')}\n"
-        f"{_doubts(findings)}"
+    closing = "What else is known belongs here: formulation (phr), batch, cure, density, hardness, Tg, decade_k, shear."
+    return _head("Moduli imported from", "imported from", name, data, findings, closing) + (
         "moduli:\n"
         "  table:\n"
         "    columns: [temperature degC, frequency Hz, E' MPa, E'' MPa]\n"
@@ -38,19 +30,22 @@ def surface_text(name: str, spectrum: RadialSpectrum, data: DataFile, findings: 
     """Return a surface's file with a spectrum as a table. ``findings``: detrending and doubts."""
     points = zip(spectrum.q_1_m.tolist(), spectrum.power_m4.tolist(), strict=True)
     rows = "".join(f"    - [{q!r}, {power!r}]\n" for q, power in points)
-    head = [
-        f"# Spectrum of the scan {_line(data.name)}, SHA-256",
-        f"# {data.sha256}.",
-        *(f"# {_line(note)}" for note in findings.notes),
-        f"# rms height {spectrum.rms_height_m * 1e6:.4g} um, rms slope {spectrum.rms_slope:.4g}.",
-    ]
-    return "\n".join(head) + (
-        f"\nname: {_quoted(name)}\n"
-        f"source: {_quoted(f'scan {_line(data.name)}')}\n"
-        f"{_doubts(findings)}"
+    closing = f"rms height {spectrum.rms_height_m * 1e6:.4g} um, rms slope {spectrum.rms_slope:.4g}."
+    return _head("Spectrum of the scan", "scan", name, data, findings, closing) + (
         "radial:\n"
         "  columns: q 1/m, C m4\n"
         f"  rows:\n{rows}"
+    )
+
+
+def _head(title: str, source: str, name: str, data: DataFile, findings: Findings, closing: str) -> str:
+    """Return a file's comments and its keys down to the doubts."""
+    origin = _line(data.name)
+    comments = [f"{title} {origin}, SHA-256", f"{data.sha256}.", *map(_line, findings.notes), closing]
+    return "".join(f"# {comment}\n" for comment in comments) + (
+        f"name: {_quoted(name)}\n"
+        f"source: {_quoted(f'{source} {origin}')}\n"
+        f"{_doubts(findings)}"
     )
 
 

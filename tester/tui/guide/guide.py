@@ -124,6 +124,7 @@ class Guide:
     def view(self) -> GuideView:
         """Return the data of the screen."""
         person, running = self.person, self.running
+        question = person.asked  # first: the engine records a step before it asks about the next
         if person.entries:
             person.entries.clear()
             self._read()
@@ -135,7 +136,7 @@ class Guide:
             next((s.step.name for s in self._standing if s.stands is None and s.step.name != self._now), ""),
             {s.step.name: float(s.stands.values.get("rig_s", 0.0)) for s in self._standing if s.stands},
             person.live,
-            person.asked,
+            question,
             tuple(person.said),
             running,
             None if running else self.outcome,

@@ -46,7 +46,7 @@ def test_list_tells_a_file_without_a_name(folder: Path, capsys: pytest.CaptureFi
     (folder / "surfaces").mkdir()
     (folder / "surfaces" / "x.yaml").write_text("note: y\n", encoding="utf-8")
     assert invoke(["materials", "list"]) == 0
-    assert "x.yaml: has no name, so no recipe can mean it" in capsys.readouterr().err
+    assert "x.yaml: has no name, so no recipe can name it" in capsys.readouterr().err
 
 
 def test_show_says_what_a_file_holds_and_its_hash(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
