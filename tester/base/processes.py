@@ -11,7 +11,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from types import FrameType
 from typing import Final, TypeAlias
 
@@ -48,6 +48,23 @@ def handled(handler: Handler) -> Generator[None]:
     finally:
         for number, previous in before.items():
             signal.signal(number, previous)
+
+
+@contextmanager
+def stopped_by_signals(stop: Callable[..., object]) -> Generator[None]:
+    """Call ``stop(fast=...)`` for signals that ask this process to end, within the block: fast from the second one on.
+
+    Does nothing outside the main thread, which alone receives signals.
+    """
+    signals = 0
+
+    def on_signal(_number: int, _frame: FrameType | None) -> None:
+        nonlocal signals
+        signals += 1
+        stop(fast=signals > 1)
+
+    with handled(on_signal) if threading.current_thread() is threading.main_thread() else nullcontext():
+        yield
 
 
 @contextmanager

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING
 
 import click
@@ -84,16 +83,11 @@ def commission(
             outcome = _line_by_line(loaded, options, twin)
     except (CannotStartError, RecordError) as error:
         raise click.ClickException(str(error)) from error
-    click.echo(str(path))
-    return _told(outcome)
-
-
-def _told(outcome: CommissionOutcome) -> int:
-    """Print the rig time of each step and how it ended; return the exit code."""
     for name, seconds in outcome.took_s:
         click.echo(f"  {name:16} {seconds:6.1f} s of rig time", err=True)
     at = f" at: {outcome.step}" if outcome.step else ""
     click.echo(f"{outcome.ended.value}{at}; {outcome.rig_s / 60:.1f} min of rig time", err=True)
+    click.echo(str(path))
     return EXIT_CODES[outcome.ended.name]
 
 
@@ -145,23 +139,20 @@ class TerminalPerson(Console, Person):
 def _on_screen(load: Callable[[], Rig], options: CommissionOptions, theme: str, *, plain: bool) -> CommissionOutcome:
     """Commission with the person at this screen; the rig is at rest when this returns, however it ends."""
     need_terminal("tester commission --tui", "`tester commission RIG` asks line by line")
-    from tester.base.processes import handled
+    from tester.base.processes import stopped_by_signals
     from tester.tui.guide.guide import Guide
     from tester.tui.guide.guide_app import GuideApp
 
     guide = Guide(load, options)
     app = GuideApp(guide, theme=theme, plain=plain)
-    signals = 0
 
-    def on_signal(_number: int, _frame: FrameType | None) -> None:
-        nonlocal signals
-        signals += 1
-        guide.person.press(fast=signals > 1)
+    def stop(*, fast: bool) -> None:
+        guide.person.press(fast=fast)
         app.exit("")
 
     sys.setswitchinterval(SWITCH_S)
     try:
-        with handled(on_signal):
+        with stopped_by_signals(stop):
             app.run()
     finally:
         guide.close()

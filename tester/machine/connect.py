@@ -15,6 +15,7 @@ from drivers.ports import BusLost
 from tester.inputs.rig import Rig
 from tester.machine import line_speed
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, DeviceList
+from tester.machine.proof import WatchdogProof
 from tester.machine.wires import CAN_SILENT, STALE_INPUTS_S
 
 CONNECT_S = 0.01
@@ -51,8 +52,8 @@ _POWERED = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTI
 """States in which a drive applies torque; a drive that ignores commands never leaves its quick stop by itself."""
 
 
-class Showing(Protocol):
-    """A proof before a run may begin, one call of ``step`` a scan."""
+class Lifting(Protocol):
+    """Proves that nothing is loaded, one call of ``step`` a scan, and keeps watching that."""
 
     @property
     def done(self) -> bool:
@@ -72,25 +73,8 @@ class Showing(Protocol):
         """Bring everything it has moved to standstill, power off."""
         ...
 
-
-class Lifting(Showing, Protocol):
-    """Proves that nothing is loaded, and keeps watching that."""
-
     def trouble(self, now: float) -> str:
         """Return "", or why a rig once unloaded is no longer known to be."""
-        ...
-
-
-class Proving(Showing, Protocol):
-    """Proves that drives follow, and that they stop without our heartbeat."""
-
-    @property
-    def provokes(self) -> bool:
-        """Whether drives are made to stop by themselves, or have not been reset since."""
-        ...
-
-    def proven(self) -> str:
-        """Return a line for the journal: what was proven, and what the rig file excludes."""
         ...
 
 
@@ -133,7 +117,7 @@ class Arming(Generic[DevicesT, RigT]):
         """Begin to prove that nothing is loaded."""
         raise NotImplementedError
 
-    def prove(self) -> Proving:
+    def prove(self) -> WatchdogProof:
         """Begin to prove that drives follow and stop."""
         raise NotImplementedError
 
@@ -155,7 +139,7 @@ class Connector:
         self.shown = ""
         """Result of the proof; a line for the journal."""
         self._lifting: Lifting | None = None
-        self._proof: Proving | None = None
+        self._proof: WatchdogProof | None = None
         self._configured_s = -inf
         self._started_s: float | None = None
         self._released_s: float | None = None
@@ -268,7 +252,7 @@ class Connector:
                     devices.master.start(drive, drive.home())
             self.stage = Stage.HOME
 
-    def _prove(self, proof: Proving, now: float) -> None:
+    def _prove(self, proof: WatchdogProof, now: float) -> None:
         if not proof.done:
             proof.step(now)
         if proof.failure:

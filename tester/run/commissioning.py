@@ -5,14 +5,12 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from threading import current_thread, main_thread
-from types import FrameType
 from typing import Any
 
 from tester import kinds
 from tester.base import clock
 from tester.base.lock import ExclusiveUse, RigInUseError, user
-from tester.base.processes import handled
+from tester.base.processes import stopped_by_signals
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.rig import Rig
 from tester.machine.commission.commission_step import CommissionPart
@@ -78,7 +76,7 @@ def commission(rig: Rig, options: CommissionOptions, person: Person) -> Commissi
             options.lapse,
             {"compound": options.compound} if options.compound else {},
         )
-        with stopped_by_signals(walk):
+        with stopped_by_signals(walk.stop):
             return walk.run()
 
 
@@ -91,29 +89,3 @@ def _connect(rig: Rig, seed: int, person: Person) -> tuple[Ports, TickedWorld | 
         opened.callback(ports.close)
         person.at(hands)
         return Ports(ports.can, ports.lines, ports.pace, opened.pop_all()), world, hands
-
-
-class stopped_by_signals:  # noqa: N801 - reads as a statement
-    """While the block lasts, stops on INT, TERM and HUP, fast on a second one; only the main thread receives signals.
-    """
-
-    def __init__(self, walk: Commissioning) -> None:
-        """``walk``: the commissioning to stop."""
-        self._walk = walk
-        self._count = 0
-        self._handled: Any = None
-
-    def __enter__(self) -> None:
-        """Install the handlers."""
-        if current_thread() is main_thread():
-            self._handled = handled(self._on_signal)
-            self._handled.__enter__()
-
-    def __exit__(self, *error: Any) -> None:
-        """Restore the earlier handlers."""
-        if self._handled is not None:
-            self._handled.__exit__(*error)
-
-    def _on_signal(self, _number: int, _frame: FrameType | None) -> None:
-        self._count += 1
-        self._walk.stop(fast=self._count > 1)

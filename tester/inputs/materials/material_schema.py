@@ -197,14 +197,11 @@ class PowerLawModel(Section, frozen=True):
 
     @model_validator(mode="after")
     def _in_order(self) -> PowerLawModel:
-        _band(self.q0, self.q1)
+        if self.q1 < LEAST_WAVES * self.q0:
+            raise ValueError(
+                f"q1, {self.q1:g} 1/m, is not above q0, {self.q0:g} 1/m: waves go from long (q0) to short (q1)"
+            )
         return self
-
-
-def _band(q0: float, q1: float) -> None:
-    """Raise ValueError for an empty band."""
-    if q1 < LEAST_WAVES * q0:
-        raise ValueError(f"q1, {q1:g} 1/m, is not above q0, {q0:g} 1/m: waves go from long (q0) to short (q1)")
 
 
 class WaveModel(Section, frozen=True):

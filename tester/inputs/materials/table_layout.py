@@ -39,13 +39,7 @@ class DmaLayout:
 
 
 def _split(line: str, delimiter: str) -> list[str]:
-    return [cell.strip() for cell in _cells(line, delimiter)]
-
-
-def _cells(line: str, delimiter: str) -> list[str]:
-    for cells in csv.reader([line], delimiter=delimiter):
-        return cells
-    return []
+    return [cell.strip() for cells in csv.reader([line], delimiter=delimiter) for cell in cells]
 
 
 def layout_of(lines: Sequence[str], headings: Iterable[str]) -> DmaLayout | None:

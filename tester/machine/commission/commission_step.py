@@ -74,17 +74,11 @@ class StepReading:
     words: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Alone:
-    """The tools of a step without a seat."""
+RunRecipe = Callable[[str, str], Mapping[str, Any]]
+"""Run a recipe (its name and text) on the rig as an ordinary run; return its results as plain data.
 
-    rig: Rig
-    person: Person
-    run_recipe: Callable[[str, str], Mapping[str, Any]]
-    """Run a recipe (its name and text) on the rig as an ordinary run; return its results as plain data.
-
-    Raises StepRefused if it did not complete.
-    """
+Raises StepRefused if it did not complete.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +96,7 @@ class CommissionStep:
     seat: Callable[[Any, Ports, Any], Any] | None = None
     """Makes a seat from rig, wires and the hands at the rig."""
     procedure: Callable[[Any, Notes], Dialogue] | None = None
-    alone: Callable[[Alone, Notes], None] | None = None
+    alone: Callable[[Rig, RunRecipe, Notes], None] | None = None
     readings: Callable[[Any], Sequence[StepReading]] | None = None
 
 

@@ -13,7 +13,7 @@ from drivers.ports import BusLost
 from tester.base import clock
 from tester.base.keys import FAST_STOP, STOP
 from tester.inputs.rig import Rig
-from tester.machine.commission.commission_step import Alone, CommissionStep, Notes, Walk, sections_sha256
+from tester.machine.commission.commission_step import CommissionStep, Notes, RunRecipe, Walk, sections_sha256
 from tester.machine.commission.person import Person, StepRefused
 from tester.machine.commission.record import BEGUN, DONE, READING, REFUSED, CommissionRecord, RecordEntry
 from tester.machine.prompts import Asks, Prompts, Question
@@ -59,7 +59,7 @@ class Commissioning:
         person: Person,
         record: CommissionRecord,
         connect: Callable[[], tuple[Ports, TickedWorld | None, Any]],
-        run_recipe: Callable[[str, str], Mapping[str, Any]],
+        run_recipe: RunRecipe,
         lapse: float | None = None,
         given: Mapping[str, str] | None = None,
     ) -> None:
@@ -136,7 +136,7 @@ class Commissioning:
 
     def _alone(self, step: CommissionStep, notes: Notes) -> str:
         assert step.alone is not None
-        step.alone(Alone(self.rig, self.person, self._run_recipe), notes)
+        step.alone(self.rig, self._run_recipe, notes)
         self._took_s[-1] = (step.name, float(notes.values.get("rig_s", 0.0)))
         return ""
 

@@ -10,10 +10,11 @@ from typing import Any, Final
 
 from sim.physics.friction import KNOWN
 from sim.physics.slip import predict
+from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
 from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.commission.commission_step import Alone, Notes
+from tester.machine.commission.commission_step import Notes, RunRecipe
 from tester.machine.commission.person import StepRefused
 
 RECIPE: Final = """\
@@ -97,11 +98,11 @@ def as_soaked_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
     return float(soaked.get("cold_c", rig.ambient_c)) + hub_k / (1.0 + rolling)
 
 
-def directions(alone: Alone, notes: Notes) -> None:
+def directions(rig: Rig, run_recipe: RunRecipe, notes: Notes) -> None:
     """Slide both ways: half the sum of the signed coefficients is crosstalk and misalignment (tester.analysis)."""
-    warm_c = as_it_is_c(RigConfig.of(alone.rig), notes.done)
+    warm_c = as_it_is_c(RigConfig.of(rig), notes.done)
     recipe = _recipe("both directions of slip", mounted(notes), warm_c, both=True)
-    results = alone.run_recipe("commissioning-directions", recipe)
+    results = run_recipe("commissioning-directions", recipe)
     angle, expanded = results["angle_deg"], results["angle_expanded_deg"]
     if angle is None or expanded is None:
         raise StepRefused("both directions of slip gave no angle: too few pairs were valid")
@@ -114,11 +115,11 @@ def directions(alone: Alone, notes: Notes) -> None:
     notes.text = f"apparent angle of the cell {angle:+.2f} +- {expanded:.2f} degrees (95 %), run {results['run']}"
 
 
-def coefficient(alone: Alone, notes: Notes) -> None:
+def coefficient(rig: Rig, run_recipe: RunRecipe, notes: Notes) -> None:
     """Measure one condition three times."""
-    warm_c, compound = as_soaked_c(RigConfig.of(alone.rig), notes.done), mounted(notes)
+    warm_c, compound = as_soaked_c(RigConfig.of(rig), notes.done), mounted(notes)
     recipe = _recipe("a first condition three times", compound, warm_c, both=False)
-    results = alone.run_recipe("commissioning-first", recipe)
+    results = run_recipe("commissioning-first", recipe)
     row: dict[str, Any] = results["conditions"][0]
     plausible = _plausible(notes, compound, float(row["mu"]), round(warm_c, 1))
     notes.values = {**results, "compound": compound, "temperature_c": round(warm_c, 1), **plausible}

@@ -137,21 +137,16 @@ def _read(axis: JoggedAxis, which: str) -> Measured:
 
 def _direction(axis: JoggedAxis, seat: JogSeat, seen: str) -> None:
     name, node = axis.name, seat.rig.axes.driven()[axis.name].node_id
-    if seen == REVERSED:
-        raise StepRefused(
-            f"the {name} axis is reversed: it moves the wrong way round. Set its drive's polarity (0x607E) or swap two"
-            " of its motor's phases and its encoder's direction, as its manual says; the rig file has no sign for it"
-        )
-    if seen == OTHER:
-        raise StepRefused(
-            f"the {name} axis is not the one that moves at node {node}: node ids or motors are swapped"
-            f" (axes.*.node_id)"
-        )
-    if seen == NOTHING:
-        raise StepRefused(
-            f"the {name} axis does not move although its drive at node {node} says so: motor, encoder"
-            " or coupling"
-        )
+    refusals = {
+        REVERSED: f"the {name} axis is reversed: it moves the wrong way round. Set its drive's polarity (0x607E) or"
+        " swap two of its motor's phases and its encoder's direction, by its manual; the rig file has no sign for it",
+        OTHER: f"the {name} axis is not the one that moves at node {node}: node ids or motors are swapped"
+        " (axes.*.node_id)",
+        NOTHING: f"the {name} axis does not move although its drive at node {node} reports motion: motor, encoder or"
+        " coupling",
+    }
+    if seen in refusals:
+        raise StepRefused(refusals[seen])
 
 
 def _wrong_scale(axis: JoggedAxis, seat: JogSeat, share: float, why: str) -> str:

@@ -31,14 +31,12 @@ NOISES: Final = 4.0
 """Means of pure noise differ by more than this many of its standard deviations in 2 % of cases [A]."""
 
 
-def settled_cell(
-    seat: JogSeat, least_s: float, at_most_s: float, still_n: float
-) -> Generator[Waits, str, list[float]]:
+def settled_cell(seat: JogSeat) -> Generator[Waits, str, list[float]]:
     """Yield until the cell's readings have settled; return the means of Fx, Fy, Fz, raw, N.
 
-    Settled: the means of the quarters of the last ``least_s`` of readings agree within ``still_n`` and their noise,
+    Settled: the means of the quarters of the last ``AVERAGE_S`` of readings agree within ``STILL_N`` and their noise,
     which is estimated from successive readings, because a swing is slower. Raises StepRefused if it still swings after
-    ``at_most_s``.
+    ``SWINGS_S``.
     """
     rows: deque[tuple[float, float, float, float]] = deque()
     began_s = inf
@@ -47,9 +45,9 @@ def settled_cell(
         quarter = len(rows) // QUARTERS
         for i in range(1, 4):
             values = [row[i] for row in rows]
-            noise = sqrt(0.5 * fmean((two - one) ** 2 for one, two in pairwise(values)))
+            noise = sqrt(0.5 * fmean((after - before) ** 2 for before, after in pairwise(values)))
             means = [fmean(values[place * quarter : (place + 1) * quarter]) for place in range(QUARTERS)]
-            if max(means) - min(means) > still_n + NOISES * noise / sqrt(quarter):
+            if max(means) - min(means) > STILL_N + NOISES * noise / sqrt(quarter):
                 return False
         return True
 
@@ -57,16 +55,16 @@ def settled_cell(
         nonlocal began_s
         began_s = min(began_s, now_s)
         cell = seat.devices.cell
-        if cell.valid and (not rows or cell.stamp_s > rows[-1][0]) and all(isfinite(one) for one in cell.raw[:3]):
+        if cell.valid and (not rows or cell.stamp_s > rows[-1][0]) and all(map(isfinite, cell.raw[:3])):
             rows.append((cell.stamp_s, cell.raw[0], cell.raw[1], cell.raw[2]))
-            while rows[-1][0] - rows[0][0] > least_s:
+            while rows[-1][0] - rows[0][0] > AVERAGE_S:
                 rows.popleft()
-        if now_s - began_s > at_most_s:
+        if now_s - began_s > SWINGS_S:
             raise StepRefused(
-                f"the load cell's readings have not settled within {still_n:g} N in {at_most_s:g} s: the weight swings,"
+                f"the load cell's readings have not settled within {STILL_N:g} N in {SWINGS_S:g} s: the weight swings,"
                 " or the cell drifts"
             )
-        return now_s - began_s >= least_s and len(rows) >= LEAST_READINGS and settled()
+        return now_s - began_s >= AVERAGE_S and len(rows) >= LEAST_READINGS and settled()
 
     yield enough
     return [fmean(row[i] for row in rows) for i in range(1, 4)]
@@ -80,11 +78,11 @@ AVERAGE_S: Final = 1.0
 STILL_N: Final = 0.1
 """Settled: the quarters of that time are the same within this and their noise [A]: 0.2 % of the least weight."""
 SWINGS_S: Final = 30.0
-"""A weight swings for so long at most, s [A]."""
+"""Longest swing of a weight, s [A]."""
 TYPED_SHARE: Final = 0.05
 """A point this far off its channel's others is a typed one, not the cell's [A]: its linearity is 0.1 %."""
 CROSSED_SHARE: Final = 0.5
-"""Another channel that shows more than this share of a weight has its wires [A]."""
+"""A channel that shows more than this share of a weight on another has that channel's wires [A]."""
 GAIN_SHARE: Final = 0.02
 """A gain is refused beyond this [A]: a cell with a certificate has 0.5 % without adjustment."""
 COUPLING_SHARE: Final = 0.04
@@ -143,7 +141,6 @@ class HungChannel:
 
 def calibrate(seat: JogSeat, notes: Notes) -> Dialogue:
     """Hang weights; raises StepRefused."""
-    most = {"x": seat.rig.limits.load_n, "y": seat.rig.limits.load_n, "z": seat.rig.limits.load_n}
     weights = yield from line(
         "weights certificate", "which weights, with which certificate? Force = mass times local gravity (9.78 to 9.83)"
     )
@@ -152,10 +149,10 @@ def calibrate(seat: JogSeat, notes: Notes) -> Dialogue:
     off = ""
     for name, plan in PLAN.items():
         yield from measure(f"hang {name} 0.0", f"{off}F{name}: hang up hook and wire, no weight yet; type 0", "N")
-        zero = yield from _settled(seat)
+        zero = yield from settled_cell(seat)
         channel = HungChannel(name)
         for about in plan:
-            if about <= most[name]:
+            if about <= seat.rig.limits.load_n:
                 yield from _point(seat, notes, channel, about, zero)
         channels.append(channel)
         off = f"F{name}: take the weights off. "
@@ -163,7 +160,7 @@ def calibrate(seat: JogSeat, notes: Notes) -> Dialogue:
         if wrong >= 0:
             yield from _again(notes, channel, wrong)
         _judge(channel)
-    yield from measure(f"hang {channels[-1].name} 0.0", f"{off}Hook and wire, too; type 0", "N")
+    yield from measure(f"hang {channels[-1].name} 0.0", f"{off}Take off hook and wire as well; type 0", "N")
     due = yield from _due()
     _conclude(notes, channels, zero, weights, due)
 
@@ -173,15 +170,11 @@ def _point(seat: JogSeat, notes: Notes, channel: HungChannel, about: float, zero
     hung = yield from measure(f"hang {channel.name} {about}", what, "N")
     if not hung > 0.0:
         raise StepRefused(f"a weight of {hung:g} N cannot be hung")
-    mean = yield from _settled(seat)
+    mean = yield from settled_cell(seat)
     shown = (mean[0] - zero[0], mean[1] - zero[1], mean[2] - zero[2])
     channel.hung_n.append(hung)
     channel.shown_n.append(shown)
     notes.read(f"F{channel.name} {about:g} N", {"hung_n": hung, "shown_n": list(shown)})
-
-
-def _settled(seat: JogSeat) -> Generator[Waits, str, list[float]]:
-    return (yield from settled_cell(seat, AVERAGE_S, SWINGS_S, STILL_N))
 
 
 def _again(notes: Notes, channel: HungChannel, wrong: int) -> Dialogue:
@@ -233,11 +226,11 @@ def _due() -> Generator[Waits, str, str]:
     """Ask until when the calibration counts."""
     text = "until which day does this calibration count (2027-01-31)? A year is usual for a cell in daily use [A]"
     while True:
-        found = yield from line("due", text)
+        answer = yield from line("due", text)
         try:
-            return date.fromisoformat(found).isoformat()
+            return date.fromisoformat(answer).isoformat()
         except ValueError:
-            text = f'"{found}" is no date such as 2027-01-31; until which day does it count?'
+            text = f'"{answer}" is no date such as 2027-01-31; until which day does it count?'
 
 
 def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weights: str, due: str) -> None:
@@ -246,7 +239,7 @@ def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weig
     gains = {name: channel.slopes()[channel.own] for name, channel in by_name.items()}
     standards = {name: channel.standard() for name, channel in by_name.items()}
     ratio = gains["x"] / gains["z"] - 1.0
-    found = hypot(ratio, standards["x"], standards["z"])
+    sensitivity = hypot(ratio, standards["x"], standards["z"])
     residual = max(abs(r) for channel in channels for r in channel.residuals())
     notes.values = {
         "weights": weights,
@@ -257,7 +250,7 @@ def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weig
         "standard_uncertainties": standards,
         "matrix": {name: list(channel.slopes()) for name, channel in by_name.items()},
         "residuals_n": {name: channel.residuals() for name, channel in by_name.items()},
-        "cell_sensitivity": found,
+        "cell_sensitivity": sensitivity,
     }
     notes.text = (
         ", ".join(f"F{name} {gains[name]:.5f} +- {standards[name]:.5f}" for name in CHANNELS)
@@ -267,4 +260,4 @@ def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weig
     notes.tell(f'    load_cell: "{due}"')
     notes.tell("    overdue: refuse               # or warn")
     notes.tell("    record: ...                   # the hash after \"on record\", below")
-    notes.tell(f"    cell_sensitivity: {100 * found:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, and how sure")
+    notes.tell(f"    cell_sensitivity: {100 * sensitivity:.3f} %     # Fx/Fz {100 * ratio:+.3f} %, with uncertainty")

@@ -10,7 +10,7 @@ import yaml
 
 from sim.physics.slip import predict
 from tester.kinds.wheel_on_belt.commission import first
-from tester.machine.commission.commission_step import Alone, Notes
+from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import StepRefused
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed, named
 
@@ -28,7 +28,7 @@ def measured(mu: float, compound: str) -> tuple[Notes, list[str], list[str]]:
 
     done = {"touch": {"compound": compound}, "thermometer": SOAKED}
     notes = Notes(told.append, lambda text, values: None, done)
-    first.coefficient(Alone(believed(), None, run_recipe), notes)  # type: ignore[arg-type]
+    first.coefficient(believed(), run_recipe, notes)
     return notes, told, ran
 
 

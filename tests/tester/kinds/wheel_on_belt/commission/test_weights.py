@@ -19,7 +19,7 @@ def read(decay_s: float, seed: int = 0) -> tuple[list[float], float]:
     noise = NormalStream(seed, "swinging")
     cell = SimpleNamespace(valid=True, stamp_s=0.0, raw=[0.0, 0.0, 0.0])
     seat = SimpleNamespace(devices=SimpleNamespace(cell=cell))
-    settled = settled_cell(seat, 1.0, 30.0, 0.1)  # type: ignore[arg-type]
+    settled = settled_cell(seat)  # type: ignore[arg-type]
     until = next(settled)
     for number in range(4000):
         now_s = 0.01 * number
