@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, Generic, Protocol, TypeVar
+from typing import Final, Generic, TypeVar
 
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.inputs.recipe.plan import ConditionStep
 from tester.machine.context import AnyContext
-from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
-from tester.machine.result_keeping import MeasuredRepeat, StoredResults
+from tester.machine.measured import ConditionEnd, Ending, MeasuredRepeat, RepeatOutcome
+from tester.machine.result_keeping import StoredResults
 
 LAST: Final = (Ending.ZERO_DRIFT, Ending.CANNOT_HOLD, Ending.NOT_REACHED)
 """A repeat with one of these endings ends its condition."""
 
 
-class Repeat(MeasuredRepeat, Protocol):
-    """The activity that measures one repeat."""
-
-    def step(self, ctx: Any) -> bool:
-        """Advance by one scan; return True when done, with ``ending`` set."""
-        ...
-
-
 ContextT = TypeVar("ContextT", bound=AnyContext)
 StepT = TypeVar("StepT", bound=ConditionStep)
-RepeatT = TypeVar("RepeatT", bound=Repeat)
+RepeatT = TypeVar("RepeatT", bound=MeasuredRepeat)
 
 
 class MeasureCondition(Generic[ContextT, StepT, RepeatT]):

@@ -68,21 +68,6 @@ class Power(Move):
         return ctx.readings.drives_enabled if self.on else ctx.readings.drives_disabled
 
 
-class Wait:
-    """Let time pass (s)."""
-
-    def __init__(self, seconds: float) -> None:
-        """``seconds``: how long, s."""
-        self.seconds = seconds
-        self.began_s = float("nan")
-
-    def step(self, ctx: AnyContext) -> bool:
-        """Done when the time is over."""
-        if self.began_s != self.began_s:
-            self.began_s = ctx.now
-        return ctx.now - self.began_s >= self.seconds - 1e-9
-
-
 class Ask:
     """Ask a question and wait for its answer.
 

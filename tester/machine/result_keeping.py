@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import isfinite
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 from tester.analysis.blocks import Block
 from tester.analysis.flags import IMPRECISE, NOT_SHOWN, flags_in, joined
@@ -15,80 +15,17 @@ from tester.analysis.reduce import bursts_of, counted, reduce_repeat, without_va
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, RepeatResult, RepeatStatus
 from tester.analysis.swing import swing_of
-from tester.analysis.trace import Trace
 from tester.analysis.uncertainty import Pool
 from tester.base.axes import condition_words
 from tester.base.words import coefficient, decimal
 from tester.inputs.recipe.grid_settings import LEAST_REPEATS
 from tester.inputs.recipe.plan import ConditionStep, Plan
 from tester.machine.context import AnyContext
-from tester.machine.measured import ConditionEnd, Ending, RepeatOutcome
+from tester.machine.measured import CONDITION_STATUS, REPEAT_STATUS, ConditionEnd, MeasuredRepeat, RepeatOutcome
 from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo
 from tester.store.resumable import ConditionSoFar
 from tester.store.sql import Judged
-
-REPEAT_STATUS: dict[Ending, RepeatStatus] = {
-    Ending.CANNOT_HOLD: RepeatStatus.CANNOT_HOLD,
-    Ending.NOT_REACHED: RepeatStatus.NOT_REACHED,
-    Ending.ZERO_DRIFT: RepeatStatus.VOID,
-}
-"""Endings without a value, whatever was collected; the reduction judges the others."""
-
-CONDITION_STATUS: dict[Ending, ConditionStatus] = {
-    Ending.CANNOT_HOLD: ConditionStatus.CANNOT_HOLD,
-    Ending.NOT_REACHED: ConditionStatus.NOT_REACHED,
-    Ending.ZERO_DRIFT: ConditionStatus.SKIPPED,
-}
-
-
-class CountedBlocks(Protocol):
-    """The blocks that a repeat has counted live."""
-
-    @property
-    def blocks(self) -> Sequence[Block]:
-        """The blocks, in order."""
-        ...
-
-    @property
-    def trace(self) -> Trace:
-        """Their samples."""
-        ...
-
-
-class MeasuredRepeat(Protocol):
-    """A repeat that has ended, as its activity reports it."""
-
-    @property
-    def ending(self) -> Ending | None:
-        """How it ended."""
-        ...
-
-    @property
-    def detail(self) -> str:
-        """The reason, in words."""
-        ...
-
-    @property
-    def counter(self) -> CountedBlocks:
-        """The blocks it counted."""
-        ...
-
-    @property
-    def rolling_only(self) -> bool:
-        """Whether it was a repeat without slip."""
-        ...
-
-    @property
-    def warming_k_s(self) -> float:
-        """How fast the surface warmed in contact, K/s; NaN if not measured."""
-        ...
-
-    @property
-    def holdable_band_k(self) -> float:
-        """The narrowest temperature band that could be held, K; NaN if not measured."""
-        ...
-
 
 ContextT = TypeVar("ContextT", bound=AnyContext)
 

@@ -70,10 +70,6 @@ class Run:
             return
         self.engine.control.request_stop(self.engine.ctx.now, why, fast=fast, cool=cool)
 
-    def request_abort(self, why: str = "aborted by the operator") -> None:
-        """Give the recipe up in a controlled stop."""
-        self.request_stop(why)
-
     def request_hold(self, why: str = "held by the operator") -> str:
         """Hold: open the contact, keep the heat; the repeat under way will be done again."""
         engine = self.engine

@@ -3,52 +3,14 @@
 from __future__ import annotations
 
 from math import nan
-from typing import Any, Final, Protocol, TypeAlias
+from typing import Any, Final, TypeAlias
 
-from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter, Values
-from tester.machine.image import BaseDemand, BaseReadings
+from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter
 from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Interlock
 from tester.machine.watches import at_least, at_most, condition
 
-
-class Limits(Protocol):
-    """Numbers of the rig file's other sections."""
-
-    @property
-    def heartbeat_s(self) -> float:
-        """``can.drive_heartbeat``."""
-        ...
-
-
-class WireInputs(Protocol):
-    """What these rows look at, of any kind's inputs."""
-
-    @property
-    def readings(self) -> BaseReadings: ...
-
-    @property
-    def demand(self) -> BaseDemand: ...
-
-    @property
-    def parameters(self) -> Values: ...
-
-    @property
-    def limits(self) -> Limits: ...
-
-    @property
-    def scan_s(self) -> float: ...
-
-    @property
-    def last_s(self) -> float: ...
-
-    @property
-    def late_s(self) -> float: ...
-
-    @property
-    def late_before_s(self) -> float: ...
-
-
-Row: TypeAlias = Interlock[WireInputs]
+Row: TypeAlias = Interlock[Any]
+"""A row over any kind's inputs: ``ScanInputs`` with readings, demand, and limits that have ``heartbeat_s``."""
 
 SAFETY_CHAIN: Final[Row] = Interlock(
     name="safety chain",
@@ -69,7 +31,7 @@ SILENT_CAN_HEARTBEATS: Final = Parameter(
 )  # fmt: skip
 
 
-def _nobody_heard(v: WireInputs) -> bool:
+def _nobody_heard(v: Any) -> bool:
     r, p = v.readings, v.parameters
     allowed_s = p[SILENT_CAN_HEARTBEATS] * v.limits.heartbeat_s
     # Enabled drives answer every scan's SYNC; without power they only send their heartbeats.
@@ -183,7 +145,7 @@ STALE_CAN_S: Final = Parameter(
 )  # fmt: skip
 
 
-def drive_data_allowed_s(v: WireInputs) -> float:
+def drive_data_allowed_s(v: Any) -> float:
     """Return how old the drives' data may be, s."""
     # Drives answer a scan's SYNC. What is looked at answers the scan before, or where that answer is lost the one
     # before that: their data is older by what these two scans came late ("scan late" judges that).
@@ -229,10 +191,10 @@ SCAN_DELAYED: Final[Row] = Interlock(
     reset="by itself",
 )
 
-ROWS: Final[tuple[Interlock[Any], ...]] = (
+ROWS: Final[tuple[Row, ...]] = (
     SAFETY_CHAIN, BUS_LOST, CAN_SILENT, DRIVE_FAULT, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
 )  # fmt: skip
-WARNINGS: Final[tuple[Interlock[Any], ...]] = (SCAN_DELAYED,)
+WARNINGS: Final[tuple[Row, ...]] = (SCAN_DELAYED,)
 """Only said: they stand last in the table."""
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
 from tester.base.axes import Axes, Axis
-from tester.base.section import Section, editor_schema, editor_text
+from tester.base.section import Section, editor_text
 from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
 
 if TYPE_CHECKING:
@@ -330,11 +330,7 @@ def recipe_model(part: RecipePart) -> type[Recipe]:
     return recipe
 
 
-def recipe_schema(part: RecipePart) -> dict[str, object]:
-    """Return the JSON Schema (2020-12) of a kind's recipes, for editors."""
-    return editor_schema(recipe_model(part))
-
-
 def schema_text(part: RecipePart) -> str:
-    """Return the JSON Schema as the text of a file, such as ``recipes/recipe.schema.json``."""
+    """Return the JSON Schema (2020-12) of a kind's recipes as the text of a file, such as
+    ``recipes/recipe.schema.json``."""
     return editor_text(recipe_model(part))

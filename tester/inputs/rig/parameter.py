@@ -70,18 +70,6 @@ class Parameter:
         """Return the packaged rig file's value, in the parameter's unit; raises UnitError for a text in another."""
         return parse(self.default, self.unit)
 
-    @property
-    def hardest_value(self) -> float | None:
-        """Return the loosest accepted value, in the parameter's unit; None without a limit."""
-        return parse(self.hardest, self.unit) if self.hardest else None
-
-    def looser(self, value: float) -> bool:
-        """Return whether a value is looser than the hardest; NaN is."""
-        limit = self.hardest_value
-        if limit is None:
-            return False
-        return not (value <= limit) if self.direction is Direction.LOWER else not (value >= limit)
-
 
 Values: TypeAlias = dict[Parameter, float]
 """Values of the parameters on a rig, each in its unit."""

@@ -111,7 +111,7 @@ class PutOn:
 
 
 class SteadyRepeat:
-    """One repeat: at speed, settled, counted (``tester.machine.result_keeping.MeasuredRepeat``)."""
+    """One repeat: at speed, settled, counted (``tester.machine.measured.MeasuredRepeat``)."""
 
     rolling_only = False
     warming_k_s = nan

@@ -9,7 +9,6 @@ from math import isfinite
 from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import FaultKind
 from sim.machines.specimen_on_track.faults import CATALOGUE, Onset
-from sim.machines.specimen_on_track.harm import TrackHarmObserver, TrackTruth
 from sim.machines.specimen_on_track.rig import TrackRig
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
@@ -25,6 +24,7 @@ from tester.run.simulated import simulated_ports
 from tests.campaigns.faults.first_up import First
 from tests.campaigns.faults.recipes import TRACKS
 from tests.campaigns.faults.stage import Ledger, Stage
+from tests.campaigns.faults.track_harm import TrackHarmObserver, TrackTruth
 
 WORKING = frozenset({"run", "hold"})
 AT_REST = frozenset({"idle", "latched"})

@@ -131,7 +131,7 @@ def test_hold_and_fault_end_latched_in_either_order(running: Simulation, first: 
 def test_an_abort_out_of_a_hold_ends_at_standstill(running: Simulation) -> None:
     running.run.request_hold()
     tick_for(running, 2.0)
-    running.run.request_abort()
+    running.run.request_stop("aborted by the operator")
     running.to_the_end()
     assert running.run.outcome is Outcome.STOPPED and running.world.axes["wheel"].axis.value == 0.0
 

@@ -8,9 +8,9 @@ from sim.faults import FaultScript, Scene
 from sim.faults.can import FaultyCanWire
 from sim.machines.specimen_on_track.faults import CATALOGUE, LANGUAGE
 from sim.machines.specimen_on_track.rig import TrackRig
-from sim.machines.specimen_on_track.variants import parameters, wiring
 from sim.nodes.sensor_slave import CellSlave
 from tests.sim.machines.specimen_on_track.test_track_rig import drive, lower, run
+from tests.sim.machines.specimen_on_track.variants import parameters, wiring
 
 
 class Nobody:

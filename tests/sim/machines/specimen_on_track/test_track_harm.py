@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from sim.machines.specimen_on_track.harm import TrackHarmObserver, TrackTruth
 from sim.machines.specimen_on_track.rig import TrackRig
+from tests.campaigns.faults.track_harm import TrackHarmObserver, TrackTruth
 from tests.sim.machines.specimen_on_track.test_track_rig import drive, lower, made, run
 
 

@@ -10,9 +10,9 @@ import pytest
 from drivers.crc16 import crc16, with_crc
 from sim import machines
 from sim.machines.specimen_on_track.rig import TrackRig
-from sim.machines.specimen_on_track.variants import parameters, wiring
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.sensor_slave import UnknownQuantityError
+from tests.sim.machines.specimen_on_track.variants import parameters, wiring
 
 
 def made(variant: str = "grosch", **changes: object) -> TrackRig:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from sim.machines.specimen_on_track.variants import parameters, wiring
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.run.simulated import spec_of
+from tests.sim.machines.specimen_on_track.variants import parameters, wiring
 
 RIGS = ("grosch", "pin-on-disc")
 

@@ -10,7 +10,8 @@ from types import FunctionType
 import pytest
 
 from tester.base.config_reader import Range
-from tester.inputs.rig.parameter import Direction, Parameter
+from tester.inputs.rig.ceilings import ceilings_of
+from tester.inputs.rig.parameter import SECTION, Direction, Parameter
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS, TABLE
@@ -68,12 +69,13 @@ def test_a_parameter_says_what_it_is(one: Parameter) -> None:
 
 @pytest.mark.parametrize("one", [p for p in PARAMETERS if p.hardest], ids=lambda one: one.key)
 def test_the_packaged_value_is_not_looser_than_the_hardest(one: Parameter) -> None:
-    hardest = one.hardest_value
-    assert one.because and hardest is not None and inside(one.bounds, hardest)
-    assert not one.looser(one.value) and not one.looser(hardest)
-    assert one.looser(math.nan)
+    (ceiling,) = ceilings_of(SECTION, (one,))
+    hardest = ceiling.limit
+    assert one.because and inside(one.bounds, hardest)
+    assert not ceiling.looser(one.value, hardest) and not ceiling.looser(hardest, hardest)
+    assert ceiling.looser(math.nan, hardest)
     step = 1.0 if one.direction is Direction.LOWER else -1.0
-    assert one.looser(hardest + step * max(abs(hardest), 1e-3))
+    assert ceiling.looser(hardest + step * max(abs(hardest), 1e-3), hardest)
 
 
 def inside(bounds: Range, value: float) -> bool:

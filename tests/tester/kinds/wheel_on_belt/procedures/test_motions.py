@@ -10,7 +10,7 @@ from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
 from tester.machine.activity import MoveFailedError
-from tester.machine.motions import Ask, Power, Sequence, Wait
+from tester.machine.motions import Ask, Power, Sequence
 from tests.tester.kinds.wheel_on_belt.bench import Bench, make_bench
 
 
@@ -37,6 +37,19 @@ class After:
     def step(self, ctx: Context) -> bool:
         self.stepped.append(ctx.now)
         return len(self.stepped) >= self.scans
+
+
+class Wait:
+    """Done when its seconds are over."""
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+        self.began_s = nan
+
+    def step(self, ctx: Context) -> bool:
+        if self.began_s != self.began_s:
+            self.began_s = ctx.now
+        return ctx.now - self.began_s >= self.seconds - 1e-9
 
 
 def test_a_sequence_steps_its_parts_one_after_the_other(bench: Bench) -> None:

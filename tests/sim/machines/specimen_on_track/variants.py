@@ -16,7 +16,6 @@ from sim.rig import DeviceSpec, LineSpec, RigSpec
 BITRATE: Final = 500_000
 """bit/s."""
 SLOWEST_M_S: Final = {"grosch": 1e-6, "pin-on-disc": 0.05}
-FASTEST_M_S: Final = {"grosch": 1e-2, "pin-on-disc": 2.0}
 
 
 def _linear_track() -> AxisConfig:
