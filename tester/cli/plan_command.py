@@ -86,8 +86,7 @@ def _texts(
     """Yield the plan of a recipe as text: lines, or chunks of JSON."""
     from tester.inputs.recipe.conditions import merged_of
     from tester.inputs.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines, known_slopes
-    from tester.inputs.recipe.plan_json import json_chunks
-    from tester.inputs.recipe.plan_text import lines
+    from tester.inputs.recipe.plan_text import json_chunks, lines
     from tester.inputs.recipe.precision import precision_lines, s_percents
     from tester.inputs.recipe.time_estimate import estimate
 

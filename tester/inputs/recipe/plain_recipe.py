@@ -8,24 +8,23 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from itertools import count, product
+from typing import Any, ClassVar
 
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import Setpoint, condition_words
 from tester.base.source import Problem, Tree
 from tester.base.units import Quantity, UnitError, show
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
+from tester.inputs.recipe.grid_settings import Settings
 from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
 from tester.inputs.recipe.plan_text import repeats_words, window_words
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
-from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, expected
-from tester.inputs.recipe.time_estimate import NEW, Outlook, StepEstimate
+from tester.inputs.recipe.repeats_section import expected
+from tester.inputs.recipe.time_estimate import Estimator, StepEstimate
 from tester.inputs.rig import Rig
 from tester.inputs.rig.ceilings import value_at
-
-SPREAD = 0.2
-"""Half the range of the rig time, as its share [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +39,14 @@ class Mount(Step):
     note: str = ""
 
 
-class PlainEstimator:
-    """Durations of the steps of a plain machine (``tester.inputs.recipe.time_estimate.Estimator``)."""
+class PlainEstimator(Estimator):
+    """Durations of the steps of a plain machine."""
 
     def __init__(self, part: PlainPart, rig: Rig, repeatability: Mapping[str, float] | None = None) -> None:
-        """``repeatability``: s between repeats, per cent of the coefficient, by compound."""
+        """``part``: of the rig's kind; ``repeatability``: as of every estimator."""
+        super().__init__(repeatability)
         self.part = part
         self.person_s = 0.0 if rig.simulated else part.person_s
-        self._s_percent = dict(repeatability or {})
 
     def walk(self, plan: Plan) -> list[StepEstimate]:
         return [
@@ -66,27 +65,60 @@ class PlainEstimator:
     def shut_down_s(self, plan: Plan) -> float:
         return self.part.between_s
 
-    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        seconds = sum(step.seconds for step in steps) + down_s
-        return (1.0 - SPREAD) * seconds, (1.0 + SPREAD) * seconds
 
-    def s_percent(self, compound: str) -> float:
-        return self._s_percent.get(compound, HISTORIC_PERCENT)
+class SpecimenPart(RecipePart):
+    """The part of a kind that mounts one specimen after the other, each for all of its conditions.
 
-    def mu(self, setpoint: Setpoint) -> None:
-        """Return None: no coefficient is expected."""
+    Conditions come in blocks of one value of the axis ``blocks`` (``Axes``). A kind adds its steps between them.
+    """
 
-    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
-        return (NEW for _ in plan.conditions())
+    condition: ClassVar[type[ConditionStep]] = ConditionStep
+    """The class of its condition steps."""
+    mount: ClassVar[type[Mount]] = Mount
+    """The class of the steps that put a specimen on."""
 
-    def reversible(self, step: ConditionStep) -> bool:
-        return False
+    def before_block(self, index: int, value: float, settings: Settings) -> Sequence[Step]:
+        """Return the steps before a block of conditions with this value of the axis ``blocks``, from ``index`` on."""
+        return ()
 
-    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> None:
-        """Return None: the instruments' budget is unknown."""
+    def before_condition(self, index: int, setpoint: Setpoint, before: Setpoint | None) -> Sequence[Step]:
+        """Return the steps before a condition, from ``index`` on; ``before``: the one before it on this specimen."""
+        return ()
+
+    def condition_data(self, setpoint: Setpoint, settings: Settings) -> Mapping[str, Any]:
+        """Return the values of a condition step's further fields, by name."""
+        return {}
+
+    def expand(self, recipe: Recipe, rig: Rig, estimator: object = None) -> Plan:
+        """Return the plan: each replicate of a specimen is mounted and goes through its conditions."""
+        conditions = conditions_of(recipe, self.settings)
+        block_value = self.axes.number_of(self.axes.blocks)
+        specimens = tuple(
+            Specimen(i, specimen_model.compound, specimen_model.note)
+            for i, specimen_model in enumerate(recipe.specimens, start=1)
+        )
+        steps: list[Step] = []
+        numbers = count(1)
+        pieces = product(specimens, range(1, recipe.replicates + 1))
+        for piece, (specimen, replicate) in enumerate(pieces, start=1):
+            steps.append(self.mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.note))
+            before: Setpoint | None = None
+            for block in ordered(conditions, block_value, recipe.order, specimen.index, replicate):
+                steps += self.before_block(len(steps), block_value(block[0].values), block[0].settings)
+                for values, row, grid, how in block:
+                    setpoint = Setpoint(specimen.compound, values, self.axes)
+                    steps += self.before_condition(len(steps), setpoint, before)
+                    before = setpoint
+                    steps.append(self.condition(
+                        len(steps), next(numbers), (specimen.index - 1) * len(conditions) + row, specimen.index,
+                        replicate, grid, setpoint, how.repeats, how.min_valid, how.window, how.temperature_band_k,
+                        how.soak, how.at_most, how.until_percent, **self.condition_data(setpoint, how),
+                    ))  # fmt: skip
+        least = min((condition.settings.min_valid for condition in conditions), default=1)
+        return Plan(recipe.recipe, tuple(steps), specimens, least, metadata_of(recipe), recipe.kind, self.axes)
 
 
-class PlainPart(RecipePart):
+class PlainPart(SpecimenPart):
     """A plain machine's part of the recipe reader. A kind sets ``kind`` and ``axes`` and defines its ``pace``.
 
     An axis with a ``limit`` is checked against the key of that name in the rig file, in the axis's ``recipe_unit``.
@@ -105,32 +137,6 @@ class PlainPart(RecipePart):
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> PlainEstimator:
         return PlainEstimator(self, rig, repeatability)
-
-    def expand(self, recipe: Recipe, rig: Rig, estimator: object = None) -> Plan:
-        """Return the plan: each replicate of a specimen is mounted and goes through its conditions."""
-        conditions = conditions_of(recipe, self.settings)
-        block_value = self.axes.number_of(self.axes.blocks)
-        steps: list[Step] = []
-        condition = piece = 0
-        specimens = tuple(
-            Specimen(i, specimen_model.compound, specimen_model.note)
-            for i, specimen_model in enumerate(recipe.specimens, start=1)
-        )
-        for specimen in specimens:
-            for replicate in range(1, recipe.replicates + 1):
-                piece += 1
-                steps.append(Mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.note))
-                for block in ordered(conditions, block_value, recipe.order, specimen.index, replicate):
-                    for values, row, grid, how in block:
-                        condition += 1
-                        steps.append(ConditionStep(
-                            len(steps), condition, (specimen.index - 1) * len(conditions) + row, specimen.index,
-                            replicate, grid, Setpoint(specimen.compound, values, self.axes), how.repeats,
-                            how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most,
-                            how.until_percent,
-                        ))  # fmt: skip
-        least = min((specimen_model.settings.min_valid for specimen_model in conditions), default=1)
-        return Plan(recipe.recipe, tuple(steps), specimens, least, metadata_of(recipe), recipe.kind, self.axes)
 
     def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
         top = tree.data if isinstance(tree.data, dict) else {}

@@ -1,10 +1,13 @@
-"""A plan in words: its steps in order, its duration and its wear."""
+"""A plan in words, and as JSON for programs: its steps in order, its duration and its wear."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
 from tester.base.words import rough_duration
+from tester.inputs.recipe.conditions import MergedConditions
 from tester.inputs.recipe.plan import ConditionStep, Plan, Step, Window
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.time_estimate import Estimate
@@ -54,3 +57,49 @@ def window_words(window: Window) -> str:
 
 def _indent(step: Step) -> str:
     return "    " if isinstance(step, ConditionStep) else "  "
+
+
+_encode: Final = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
+"""Returns plain data as JSON on one line; refuses numbers that are not finite."""
+
+
+def json_chunks(
+    plan: Plan,
+    estimate: Estimate,
+    part: RecipePart,
+    merged: Sequence[MergedConditions] = (),
+    uncertainty: Mapping[str, object] | None = None,
+) -> Iterator[str]:
+    """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands.
+
+    ``merged``: conditions that are steps of the plan once, and occur in several grids of its recipe. ``uncertainty``:
+    the prediction for it (``tester.inputs.recipe.foreseen``).
+    """
+    head: dict[str, object] = {
+        "recipe": plan.name,
+        "conditions": sum(1 for _ in plan.conditions()),
+        "rig_seconds": round(estimate.rig_seconds, 1),
+        "rig_seconds_low": round(estimate.rig_seconds_low, 1),
+        "rig_seconds_high": round(estimate.rig_seconds_high, 1),
+        "sliding_m": round(estimate.sliding_m, 2),
+        **part.plan_fields(plan, estimate),
+        **({"uncertainty": dict(uncertainty)} if uncertainty else {}),
+        "not_held": list(estimate.not_held),
+        "merged": [conditions.as_data() for conditions in merged],
+        "specimens": [
+            {"index": specimen.index, "compound": specimen.compound, "note": specimen.note}
+            for specimen in plan.specimens
+        ],
+        "metadata": dict(plan.metadata),
+        "kind": plan.kind,
+        "axes": plan.axes.as_data() if plan.axes is not None else [],
+    }
+    yield _encode(head)[:-1] + ', "steps": ['
+    separator = "\n"
+    for step, step_estimate in zip(plan.steps, estimate.steps, strict=True):
+        common = {"kind": step.kind, "index": step.index, "seconds": round(step_estimate.seconds, 1)}
+        condition = isinstance(step, ConditionStep)
+        own = part.condition_fields(step, step_estimate) if condition else part.step_fields(step, step_estimate)
+        yield separator + _encode(common | own)
+        separator = ",\n"
+    yield "\n]}\n"

@@ -16,8 +16,8 @@ from tester.base.trouble import MisuseError
 from tester.inputs.recipe.foreseen import Foreseen
 from tester.inputs.recipe.plan import ConditionStep, Plan
 from tester.inputs.recipe.recipe_schema import MAX_REPEATS, Recipe, RepeatsModel
-from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, needed, reached_percent, s_of_values
-from tester.inputs.recipe.time_estimate import Estimate, Estimator
+from tester.inputs.recipe.repeats_section import needed, reached_percent, s_of_values
+from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, Estimate, Estimator
 
 AnyRecipe = TypeVar("AnyRecipe", bound=Recipe)
 

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from tester.analysis.terms import Term
     from tester.base.axes import Axes
     from tester.base.source import Location, Problem, Tree
-    from tester.inputs.recipe.plan import Plan, Stand, Step
-    from tester.inputs.recipe.plan_json import ConditionJson
+    from tester.inputs.recipe.plan import ConditionStep, Plan, Stand, Step
     from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate
     from tester.inputs.rig import Rig
 
@@ -152,8 +151,25 @@ class RecipePart(ABC):
         seconds."""
         return {}
 
-    def condition_json(self) -> ConditionJson:
-        """Return the writer of conditions as JSON."""
-        from tester.inputs.recipe.plan_json import ConditionJson
+    def condition_fields(self, step: ConditionStep, one: StepEstimate) -> dict[str, object]:
+        """Return a condition's fields in a plan's JSON, beside kind, index and seconds; units in the keys."""
+        from tester.inputs.recipe.plan_text import window_words
 
-        return ConditionJson(self.axes)
+        return {
+            "condition": step.condition,
+            "row": step.row,
+            "specimen": step.specimen,
+            "replicate": step.replicate,
+            "grid": step.grid,
+            "compound": step.setpoint.compound,
+            **{axis.field: step.setpoint.value(axis.name) for axis in self.axes},
+            "repeats": step.repeats,
+            "at_most": step.at_most,
+            "until_percent": step.until_percent,
+            "repeats_expected": round(one.repeats, 2),
+            "min_valid": step.min_valid,
+            "window": window_words(step.window),
+            "temperature_band_k": step.temperature_band_k,
+            "held": one.held,
+            "sliding_m": round(one.sliding_m, 3),
+        }

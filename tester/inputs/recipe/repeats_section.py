@@ -17,8 +17,6 @@ from tester.inputs.recipe.recipe_schema import MAX_REPEATS
 MADE_UP: Final = 0.01
 """Share of good repeats that is refused and replaced, for a steady coefficient [A]; show it with `python -m
 tests.campaigns.repeats`."""
-HISTORIC_PERCENT: Final = 100.0 * REPEATABILITY
-"""Standard deviation between repeats without stored runs, per cent of the coefficient [A]."""
 POOLED_DF: Final = 30
 """Degrees of freedom above which a run's pooled standard deviation counts as known: t is within 5 % of its limit."""
 SURE: Final = (0.75, 1.3)

@@ -26,9 +26,9 @@ class InstallSpecimen:
         """The step of the plan."""
         self.install = step
         note = f" ({step.note})" if step.note else ""
-        text = f"put specimen {step.number} on the arm and raise it: {step.compound}{note}"
+        text = f"put specimen {step.piece} on the arm and raise it: {step.compound}{note}"
         if step.again:
-            text = f"the run goes on with specimen {step.number} on the raised arm: {step.compound}{note}"
+            text = f"the run goes on with specimen {step.piece} on the raised arm: {step.compound}{note}"
         self.ask = AskBesideTrack(text)
 
     def resume(self, ctx: TrackContext) -> None:
@@ -41,14 +41,14 @@ class InstallSpecimen:
         if not self.ask.step(ctx):
             return False
         one = self.install
-        ctx.attendant.install(one.specimen, one.number, one.compound, new_specimen=not one.again)
+        ctx.attendant.install(one.specimen, one.piece, one.compound, new_specimen=not one.again)
         ctx.attendant.raise_arm()
         if ctx.rig.axes.lift is None:
             ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm
-        ctx.on = MountedSpecimen(one.number, one.specimen, one.compound, one.sliding_m)
+        ctx.on = MountedSpecimen(one.piece, one.specimen, one.compound, one.sliding_m)
         if not one.again:
             nan = float("nan")
-            record = PieceInfo(one.number, one.specimen, one.replicate, one.compound, ctx.now, nan, nan,
+            record = PieceInfo(one.piece, one.specimen, one.replicate, one.compound, ctx.now, nan, nan,
                                updated_s=ctx.now)  # fmt: skip
             ctx.journal.piece_mounted(record)
         return True
@@ -148,7 +148,7 @@ def title(step: Step) -> str:
     """Return a line that says what a step does."""
     match step:
         case MountSpecimen():
-            return f"install specimen {step.number} ({step.compound})"
+            return f"install specimen {step.piece} ({step.compound})"
         case Prepare():
             return f"prepare {step.load_n:g} N, {step.interface}"
         case Temper():

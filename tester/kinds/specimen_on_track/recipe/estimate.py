@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import ClassVar, Final
 
 from sim.physics.laws import NO_SETTING, FrictionLaw
-from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.uncertainty import Budget
 from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
 from tester.inputs.recipe.repeats_section import expected
-from tester.inputs.recipe.time_estimate import NEW, Outlook, StepEstimate
+from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.kinds.specimen_on_track.axes import TrackHeld, held_by
 from tester.kinds.specimen_on_track.budget import instruments_budget
 from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
@@ -30,12 +29,12 @@ CHAMBER_K_S: Final = 0.045
 """The chamber goes from one temperature to another this fast [A]."""
 LIKELY_MU: Final = 1.0
 """Where no law is known [A]."""
-SPREAD: Final = 0.3
-"""The rig time of 95 % of runs is within this share of the estimate [A]."""
 
 
-class TrackEstimator:
-    """What is known of the time that steps take on one rig."""
+class TrackEstimator(Estimator):
+    """Estimates of the time that steps take on one rig."""
+
+    spread: ClassVar[float] = 0.3
 
     def __init__(
         self,
@@ -48,8 +47,8 @@ class TrackEstimator:
 
         ``surface`` and ``recipe``: the track's name, and beside which file materials are looked for first.
         """
+        super().__init__(repeatability)
         self.rig = rig
-        self.repeatability = repeatability or {}
         self.surface = surface
         self.recipe = recipe
         self._laws: dict[tuple[str, str, str], FrictionLaw] = {}
@@ -117,23 +116,6 @@ class TrackEstimator:
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill."""
         return 1.0
-
-    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        """Return the range of the rig time, s, that is to hold 95 % of runs."""
-        seconds = sum(one.seconds for one in steps) + down_s
-        return (1.0 - SPREAD) * seconds, (1.0 + SPREAD) * seconds
-
-    def s_percent(self, compound: str) -> float:
-        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
-        return self.repeatability.get(compound, 100.0 * REPEATABILITY)
-
-    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
-        """Yield that nothing is worn off."""
-        return (NEW for _ in plan.conditions())
-
-    def reversible(self, step: ConditionStep) -> bool:
-        """Return False: it slides one way."""
-        return False
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return the coefficient expected of a condition, and what the instruments add to its uncertainty."""

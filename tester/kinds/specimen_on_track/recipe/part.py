@@ -6,21 +6,21 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import ClassVar, Final
+from typing import Any, ClassVar, Final
 
 from tester.analysis.terms import Term
 from tester.base.axes import Axes, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.base.words import rough_duration
-from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
+from tester.inputs.recipe.conditions import conditions_of
 from tester.inputs.recipe.grid_settings import Settings
-from tester.inputs.recipe.plan import Plan, PromptStep, Specimen, Stand, Step
+from tester.inputs.recipe.plain_recipe import Mount, SpecimenPart
+from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Stand, Step
 from tester.inputs.recipe.plan_text import repeats_words
-from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
-from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate
+from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
 from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
@@ -28,14 +28,20 @@ from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.feasible import low_friction, out_of_reach
 from tester.kinds.specimen_on_track.recipe.law_problems import law_problems
 from tester.kinds.specimen_on_track.recipe.plan_steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
-from tester.kinds.specimen_on_track.recipe.schema import TrackGrid, TrackMeasure, TrackRecipe, track_settings
+from tester.kinds.specimen_on_track.recipe.schema import (
+    TrackGrid,
+    TrackMeasure,
+    TrackRecipe,
+    TrackSettings,
+    track_settings,
+)
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 UNUSED: Final = ("window", "extend_to")
 """Keys of the common sections that say nothing here: a condition slides for a ``distance``."""
 
 
-class TrackPart(RecipePart):
+class TrackPart(SpecimenPart):
     """Recipes for a specimen on a track."""
 
     kind: ClassVar[str] = NAME
@@ -43,6 +49,8 @@ class TrackPart(RecipePart):
     recipe: ClassVar[type[Recipe]] = TrackRecipe
     measure: ClassVar[type[MeasureModel]] = TrackMeasure
     grid: ClassVar[type[GridModel]] = TrackGrid
+    mount: ClassVar[type[Mount]] = MountSpecimen
+    condition: ClassVar[type[ConditionStep]] = TrackCondition
     begins: ClassVar[str] = "measure: {repeats: REPEATS, distance: 0.5 mm, at_least: 5 s}"
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> Settings:
@@ -115,48 +123,24 @@ class TrackPart(RecipePart):
         """Return what tells how long steps take on a rig."""
         return TrackEstimator(TrackConfig.of(rig), repeatability)
 
-    def expand(self, recipe: Recipe, rig: Rig, estimator: Estimator | None = None) -> Plan:
-        """Return the plan of a valid recipe."""
-        steps: list[Step] = []
-        conditions = conditions_of(recipe, track_settings)
-        held = self.axes.number_of(self.axes.blocks)
-        specimens = tuple(Specimen(i, one.compound, one.note) for i, one in enumerate(recipe.specimens, start=1))
-        count = number = 0
-        for specimen in specimens:
-            for replicate in range(1, recipe.replicates + 1):
-                number += 1
-                steps.append(
-                    MountSpecimen(len(steps), specimen.index, number, specimen.compound, specimen.note, replicate)
-                )
-                before: tuple[float, str] | None = None
-                for block in ordered(conditions, held, recipe.order, specimen.index, replicate):
-                    soak = block[0].settings.soak
-                    steps.append(
-                        Temper(len(steps), held(block[0].values), soak.within_k, soak.for_s, soak.at_most_s)
-                    )
-                    for one in block:
-                        setpoint, how = Setpoint(specimen.compound, one.values, self.axes), one.settings
-                        at = held_by(setpoint)
-                        if before != (at.load_n, at.interface):
-                            steps.append(_prepare(len(steps), before, (at.load_n, at.interface)))
-                            before = at.load_n, at.interface
-                        count += 1
-                        row = (specimen.index - 1) * len(conditions) + one.row
-                        steps.append(
-                            TrackCondition(
-                                len(steps), count, row, specimen.index, replicate, one.grid, setpoint, how.repeats,
-                                how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most,
-                                how.until_percent, how.way_m(at.track_m_s),
-                            )
-                        )  # fmt: skip
-        return Plan(
-            recipe.recipe, tuple(steps), specimens, min((one.settings.min_valid for one in conditions), default=1),
-            metadata_of(recipe), self.kind, self.axes,
-        )  # fmt: skip
+    def before_block(self, index: int, value: float, settings: Settings) -> tuple[Temper]:
+        """Return the step that brings the air to the temperature of a block."""
+        soak = settings.soak
+        return (Temper(index, value, soak.within_k, soak.for_s, soak.at_most_s),)
+
+    def before_condition(self, index: int, setpoint: Setpoint, before: Setpoint | None) -> tuple[Prepare, ...]:
+        """Return the step that asks for other weights or another interface; none where both stay."""
+        last = None if before is None else _prepared(before)
+        return () if last == _prepared(setpoint) else (_prepare(index, last, _prepared(setpoint)),)
+
+    def condition_data(self, setpoint: Setpoint, settings: Settings) -> Mapping[str, Any]:
+        """Return the way that a condition slides."""
+        assert isinstance(settings, TrackSettings)
+        return {"distance_m": settings.way_m(held_by(setpoint).track_m_s)}
 
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
         """Return the plan of what is left: conditions that are not over, and what has to be done again before them."""
-        on = {one.number: one for one in stand.mounted}
+        mounted_before = {mounted.number: mounted for mounted in stand.mounted}
         steps: list[Step] = []
         due: dict[str, Step] = {}
         for step in plan.steps:
@@ -167,7 +151,7 @@ class TrackPart(RecipePart):
                 continue
             if isinstance(step, MountSpecimen):
                 due.clear()
-                mounted = on.get(step.number)
+                mounted = mounted_before.get(step.piece)
                 if mounted is not None:
                     step = replace(step, index=INSERTED, again=True, sliding_m=mounted.sliding_m)
             elif isinstance(step, Prepare):
@@ -180,7 +164,7 @@ class TrackPart(RecipePart):
         """Return what a step does, in a line."""
         match step:
             case MountSpecimen():
-                return f"put specimen {step.number} on the arm"
+                return f"put specimen {step.piece} on the arm"
             case Prepare():
                 return f"ask: {step.text}"
             case Temper():
@@ -200,7 +184,7 @@ class TrackPart(RecipePart):
         if not isinstance(step, MountSpecimen):
             return ""
         note = f" ({step.note})" if step.note else ""
-        return f"specimen {step.number}: {step.compound}{note}"
+        return f"specimen {step.piece}: {step.compound}{note}"
 
     def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
         """Yield where friction heat matters."""
@@ -214,7 +198,7 @@ class TrackPart(RecipePart):
         """Return what a plan's JSON says of a step that is no condition."""
         match step:
             case MountSpecimen():
-                return {"specimen": step.specimen, "replicate": step.replicate, "number": step.number,
+                return {"specimen": step.specimen, "replicate": step.replicate, "number": step.piece,
                         "compound": step.compound, "note": step.note}  # fmt: skip
             case Prepare():
                 return {"load_n": step.load_n, "interface": step.interface, "text": step.text}
@@ -224,6 +208,12 @@ class TrackPart(RecipePart):
                 return {"text": step.text}
             case _:
                 return {}
+
+
+def _prepared(setpoint: Setpoint) -> tuple[float, str]:
+    """Return what a person prepares for a setpoint: the weights, N, and the interface."""
+    held = held_by(setpoint)
+    return held.load_n, held.interface
 
 
 def _prepare(index: int, before: tuple[float, str] | None, now: tuple[float, str]) -> Prepare:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Final
 
+from tester.inputs.recipe.plain_recipe import Mount
 from tester.inputs.recipe.plan import ConditionStep, Step
 
 STRETCHES: Final = 10
@@ -17,18 +18,13 @@ INSERTED: Final = -1
 
 
 @dataclass(frozen=True, slots=True)
-class MountSpecimen(Step):
-    """A person puts a specimen on the arm. ``number`` counts from 1 in the plan.
+class MountSpecimen(Mount):
+    """A person puts a specimen on the arm.
 
     ``again``: it is on, as an interruption left it, and has slid ``sliding_m``.
     """
 
     kind: ClassVar[str] = "install"
-    specimen: int
-    number: int
-    compound: str
-    note: str = ""
-    replicate: int = 1
     again: bool = False
     sliding_m: float = 0.0
 

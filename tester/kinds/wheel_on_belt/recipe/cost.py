@@ -16,8 +16,8 @@ from sim.physics.slip import cornering_factor, slip_velocity
 from tester.analysis.judge import ALONE
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import Setpoint
-from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT, expected, repeats_each
-from tester.inputs.recipe.time_estimate import StepEstimate
+from tester.inputs.recipe.repeats_section import expected, repeats_each
+from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, StepEstimate
 from tester.kinds.wheel_on_belt.image.axes import Held, held_by
 
 if TYPE_CHECKING:

@@ -7,13 +7,11 @@ from collections.abc import Iterator
 
 from tester.analysis.difference import pieces_needed
 from tester.analysis.reference import EVERY, RESERVED
-from tester.base.axes import Axes, condition_words
+from tester.base.axes import condition_words
 from tester.base.words import listed_some, rough_duration
 from tester.inputs.recipe.plan import ConditionStep, PromptStep, Step
-from tester.inputs.recipe.plan_json import ConditionJson, quoted
 from tester.inputs.recipe.plan_text import repeats_words, window_words
-from tester.inputs.recipe.repeats_section import HISTORIC_PERCENT
-from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
+from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, Estimate, StepEstimate
 from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
 from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
@@ -176,71 +174,13 @@ def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
             return {}
 
 
-class WheelConditionJson(ConditionJson):
-    """Conditions on wheels as JSON: with wheel, belt speed, slip pulses and wear."""
-
-    def __init__(self, axes: Axes) -> None:
-        """Format each belt speed only once."""
-        super().__init__(axes)
-        self._held = axes.numbers_of(*(axis.name for axis in axes))
-        self._speeds = axes.numbers_of("wheel_speed", "slip_velocity")
-        """Axes that determine the belt's speed."""
-        self._belts: dict[tuple[float, ...], str] = {}
-
-    def keys(self) -> tuple[str, ...]:
-        """Return the keys after kind, index and seconds; units in them."""
-        return (
-            "condition",
-            "row",
-            "specimen",
-            "replicate",
-            "wheel",
-            "grid",
-            "compound",
-            *(axis.field for axis in self.axes),
-            "belt_speed_m_s",
-            "repeats",
-            "at_most",
-            "until_percent",
-            "repeats_expected",
-            "min_valid",
-            "window",
-            "temperature_band_k",
-            "both_directions",
-            "bursts",
-            "held",
-            "sliding_m",
-            "loss_mm",
-        )
-
-    def texts(self, step: ConditionStep, one: StepEstimate) -> tuple[object, ...]:
-        """Return the value of each key."""
-        assert isinstance(step, WheelCondition)
-        setpoint, number = step.setpoint, self.number
-        speeds = self._speeds(setpoint.values)
-        belt = self._belts.get(speeds)
-        if belt is None:
-            belt = self._belts[speeds] = repr(held_by(setpoint).belt_speed_m_s)
-        return (
-            step.condition,
-            step.row,
-            step.specimen,
-            step.replicate,
-            step.wheel,
-            quoted(step.grid),
-            quoted(setpoint.compound),
-            *map(number.__getitem__, self._held(setpoint.values)),
-            belt,
-            step.repeats,
-            step.at_most,
-            "null" if step.until_percent is None else number[step.until_percent],
-            round(one.repeats, 2),
-            step.min_valid,
-            self.window(step.window),
-            number[step.temperature_band_k],
-            "true" if step.both_directions else "false",
-            one.bursts,
-            "true" if one.held else "false",
-            round(one.sliding_m, 3),
-            round(one.loss_mm, 5),
-        )
+def condition_fields(step: ConditionStep, one: StepEstimate) -> dict[str, object]:
+    """Return a condition's fields in a plan's JSON beside those of every kind."""
+    assert isinstance(step, WheelCondition)
+    return {
+        "wheel": step.wheel,
+        "belt_speed_m_s": held_by(step.setpoint).belt_speed_m_s,
+        "both_directions": step.both_directions,
+        "bursts": one.bursts,
+        "loss_mm": round(one.loss_mm, 5),
+    }

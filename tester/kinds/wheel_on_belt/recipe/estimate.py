@@ -15,7 +15,7 @@ from tester.analysis.uncertainty import Budget
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
 from tester.inputs.recipe.repeats_section import MADE_UP, POOLED_DF, SURE, expected, repeats_each
-from tester.inputs.recipe.time_estimate import NEW, Outlook, StepEstimate
+from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_TURNS, instruments_budget, roll_check_u_mm
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, held_by
 from tester.kinds.wheel_on_belt.recipe.body import Body
@@ -55,7 +55,7 @@ def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float
     return sooner_s, later_s
 
 
-class WheelEstimator:
+class WheelEstimator(Estimator):
     """Estimates for one rig; the costs of conditions are remembered."""
 
     def __init__(

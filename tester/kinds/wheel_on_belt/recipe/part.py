@@ -13,7 +13,7 @@ from tester.base.axes import Axes, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.inputs.recipe.grid_settings import values_of
-from tester.inputs.recipe.plan import Plan, Stand, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, Stand, Step
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import listed
@@ -182,9 +182,8 @@ class WheelPart(RecipePart):
         """Return what a plan's JSON says of a step that is no condition."""
         return describe.step_fields(step, one)
 
-    def condition_json(self) -> describe.WheelConditionJson:
-        """Return what writes conditions as JSON."""
-        return describe.WheelConditionJson(self.axes)
+    def condition_fields(self, step: ConditionStep, one: StepEstimate) -> dict[str, object]:
+        return super().condition_fields(step, one) | describe.condition_fields(step, one)
 
 
 PART: Final = WheelPart()

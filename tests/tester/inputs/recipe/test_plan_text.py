@@ -6,8 +6,7 @@ import json
 
 import pytest
 
-from tester.inputs.recipe.plan_json import json_chunks
-from tester.inputs.recipe.plan_text import lines
+from tester.inputs.recipe.plan_text import json_chunks, lines
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig

@@ -10,8 +10,7 @@ import pytest
 from tester.base.source import InvalidSource
 from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan, Stand
-from tester.inputs.recipe.plan_json import json_chunks
-from tester.inputs.recipe.plan_text import lines
+from tester.inputs.recipe.plan_text import json_chunks, lines
 from tester.inputs.recipe.recipe_schema import schema_text
 from tester.inputs.recipe.time_estimate import estimate
 from tests.tester.inputs.recipe.track import TrackPart, TrackRecipe

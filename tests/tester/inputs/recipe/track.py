@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar
 
-from tester.analysis.uncertainty import Budget
 from tester.base.axes import Axes, Axis, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import Quantity, show
@@ -15,7 +14,7 @@ from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe, Section
 from tester.inputs.recipe.semantics import listed
-from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
+from tester.inputs.recipe.time_estimate import Estimator, StepEstimate
 from tester.inputs.rig import Rig
 
 TRACK = Axes(
@@ -51,8 +50,10 @@ class RunIn(Step):
     distance_mm: float
 
 
-class TrackEstimator:
+class TrackEstimator(Estimator):
     """Ten seconds a repeat."""
+
+    spread = 0.1
 
     def walk(self, plan: Plan) -> Sequence[StepEstimate]:
         """Return an estimate for every step."""
@@ -66,30 +67,6 @@ class TrackEstimator:
     def shut_down_s(self, plan: Plan) -> float:
         """Return nothing: a track stands at once."""
         return 0.0
-
-    def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        """Return a tenth either way."""
-        whole = sum(one.seconds for one in steps) + down_s
-        return 0.9 * whole, 1.1 * whole
-
-    def s_percent(self, compound: str) -> float:
-        """Return a round figure."""
-        return 2.0
-
-    def mu(self, setpoint: Setpoint) -> None:
-        """Return None: no coefficient is expected."""
-
-    def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
-        """Yield that nothing is worn off."""
-        return (NEW for _ in plan.conditions())
-
-    def reversible(self, step: ConditionStep) -> bool:
-        """Return False: it slides one way."""
-        return False
-
-    def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
-        """Return nothing known."""
-        return None
 
 
 class TrackPart(RecipePart):

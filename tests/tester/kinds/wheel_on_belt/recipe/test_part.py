@@ -8,8 +8,7 @@ import pytest
 
 from tester.analysis.kelvin import Slope
 from tester.inputs.recipe.loader import check
-from tester.inputs.recipe.plan_json import json_chunks
-from tester.inputs.recipe.plan_text import lines
+from tester.inputs.recipe.plan_text import json_chunks, lines
 from tester.inputs.recipe.time_estimate import Outlook, estimate
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
