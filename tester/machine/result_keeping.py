@@ -24,7 +24,7 @@ from tester.machine.context import AnyContext
 from tester.machine.measured import CONDITION_STATUS, REPEAT_STATUS, ConditionEnd, MeasuredRepeat, RepeatOutcome
 from tester.store.recorder import Recorder
 from tester.store.records import ConditionInfo
-from tester.store.resumable import ConditionSoFar
+from tester.store.resumable import ConditionSoFar, ResumePoint
 from tester.store.sql import Judged
 
 ContextT = TypeVar("ContextT", bound=AnyContext)
@@ -33,8 +33,11 @@ ContextT = TypeVar("ContextT", bound=AnyContext)
 class StoredResults(Generic[ContextT]):
     """Reduces repeats from the blocks counted live (the stored samples give the same ones), judges and commits them."""
 
-    def __init__(self, recorder: Recorder, combining: Combining = "mean") -> None:
-        """``recorder``: the run's store; ``combining``: how the recipe combines repeats."""
+    def __init__(
+        self, recorder: Recorder, combining: Combining = "mean", point: ResumePoint | None = None
+    ) -> None:
+        """``recorder``: the run's store; ``combining``: how the recipe combines repeats; ``point``: where an
+        interrupted run resumes."""
         self.recorder = recorder
         self.combining: Combining = combining
         self.condition = 0
@@ -46,9 +49,9 @@ class StoredResults(Generic[ContextT]):
         self.judgement = NOT_JUDGED
         self.judged = 0
         """Number of repeats that the judgement covers."""
-        self.pool = Pool()
+        self.pool = point.pool if point is not None else Pool()
         """Repeatability of the finished conditions."""
-        self.earlier: dict[int, ConditionSoFar] = {}
+        self.earlier: dict[int, ConditionSoFar] = dict(point.conditions) if point is not None else {}
         """Data that earlier stretches of an interrupted run committed for unfinished conditions."""
 
     def repeats_done(self, step: ConditionStep) -> int:

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Final
+from typing import Any, Final
 
 from drivers.ports import BusLost
+from tester.base.quantities import Quantities
+from tester.inputs.recipe.plan import Plan
 from tester.machine import line_speed
-from tester.machine.connect import Connector, Stage
+from tester.machine.connect import Arming, Connector, Stage
 from tester.machine.context import AnyContext
+from tester.machine.control import AnyControl
 from tester.machine.devices import DeviceList
 from tester.machine.engine import Engine
+from tester.machine.executor import Executor, Procedures
+from tester.machine.sampler import Sampler
 from tester.machine.state import Mode, Trip
 
 POWER_OFF_S: Final = 2.0
@@ -190,3 +195,15 @@ class Run:
         else:
             self.outcome = Outcome.STOPPED
         self.finished = True
+
+
+def run_of(
+    plan: Plan, devices: DeviceList, control: AnyControl, ctx: AnyContext, arming: Arming[Any, Any],
+    procedures: Procedures[Any], quantities: Quantities, listen_s: float,
+) -> Run:  # fmt: skip
+    """Return a run of a kind's parts that is ready to be ticked; ``listen_s``: silence on the bus before it begins."""
+    sampler = Sampler(ctx.journal, quantities)
+    return Run(
+        Connector(devices, ctx.rig, arming, listen_s),
+        Engine(devices, control, Executor(plan, procedures), ctx, sampler),
+    )

@@ -1,14 +1,14 @@
 """A kind's part of a run: how to build it, what to store beside its scan, what to learn from earlier runs.
 
-Types only. ``tester.run`` runs recipes through ``KindRun``; ``tester.run.kind_lookup`` finds a rig's kind.
+``tester.run`` runs recipes through ``KindRun``; ``tester.run.kind_lookup`` finds a rig's kind.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from tester.base.screen import Check
@@ -48,23 +48,35 @@ class NoHistory:
         return self.lines
 
 
-class KindRun(Protocol):
-    """A kind, for running recipes.
+class NoAttendant:
+    """The attendant of a real rig: does nothing, because people do the work before they answer the prompt."""
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        """Return a call that does nothing, for any public name."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return _nothing
+
+
+def _nothing(*_: object, **__: object) -> None:
+    """Do nothing."""
+
+
+class KindRun:
+    """A kind, for running recipes. A kind implements ``build``, ``mount`` and ``store_state``.
 
     An ``attendant`` is the hands at the rig: the kind's requests to a person, which a simulated rig carries out itself.
     Its methods are the kind's own.
     """
 
-    @property
-    def plant(self) -> str:
-        """Name of the kind's twin for ``sim.machines.find``; the twin's rig is its own attendant; "" without a twin."""
-        ...
+    plant: str = ""
+    """Name of the kind's twin for ``sim.machines.find``; the twin's rig is its own attendant; "" without a twin."""
 
     def split(self, plan: Plan) -> tuple[Part, ...]:
         """Return the parts of a plan, in its order, that may run side by side, each on its own simulated rig; at least
-        one.
+        one: by default the whole plan.
         """
-        ...
+        return (Part(1, plan),)
 
     def build(
         self,
@@ -82,24 +94,24 @@ class KindRun(Protocol):
         ``plan``: the work to do; ``point``: where an interrupted run resumes; ``history``: facts from earlier runs,
         None for none.
         """
-        ...
+        raise NotImplementedError
 
     def mount(self, attendant: Any, compound: str) -> None:
         """Mount a new specimen on a rig without a run: the twin in a process of its own.
 
         ``compound``: "" is the kind's own choice.
         """
-        ...
+        raise NotImplementedError
 
     def history(self, runs: Path, rig: Rig) -> History:
         """Return the facts about a rig from the runs in a folder; reads files, so not between two ticks."""
-        ...
+        return NoHistory()
 
     def calibration(self, rig: Rig) -> Iterable[Calibration]:
         """Return the kind's own figures that convert device readings into quantities, besides those of devices, nodes
         and drives.
         """
-        ...
+        return ()
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store the specimen's state that an interruption would lose; called about once a second of wall time while
@@ -107,4 +119,4 @@ class KindRun(Protocol):
 
         ``now_s``: rig time.
         """
-        ...
+        raise NotImplementedError

@@ -13,11 +13,10 @@ from tester.base.clock import Pace
 from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
-from tester.machine.attendant import NoAttendant
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Outcome, Run
-from tester.machine.run_parts import Part
+from tester.machine.run_parts import NoAttendant, Part
 from tester.machine.tickers import Ticked, TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
 from tester.machine.time_left import TimeLeft
 from tester.run.bus_log import BusLog

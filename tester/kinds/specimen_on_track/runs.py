@@ -20,28 +20,20 @@ from tester.kinds.specimen_on_track.procedures.condition import TrackResults
 from tester.kinds.specimen_on_track.procedures.steps import TrackProcedures
 from tester.kinds.specimen_on_track.process import TrackDemand
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.connect import Connector
-from tester.machine.engine import Engine
-from tester.machine.executor import Executor
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
-from tester.machine.run import Run
-from tester.machine.run_parts import KindRun, NoHistory, Part
-from tester.machine.sampler import Sampler
+from tester.machine.run import Run, run_of
+from tester.machine.run_parts import KindRun, NoHistory
 from tester.machine.served import History
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
 from tester.store.resumable import ResumePoint
 
 
-class TrackRuns:
-    """Says how a run of this machine is built, and what goes with it."""
+class TrackRuns(KindRun):
+    """Builds runs of this machine. A plan is one part: there is one chamber."""
 
     plant: str = NAME
-
-    def split(self, plan: Plan) -> tuple[Part, ...]:
-        """Return the whole plan: there is one chamber."""
-        return (Part(1, plan),)
 
     def build(
         self,
@@ -65,12 +57,9 @@ class TrackRuns:
         control = TrackControl(own, most_m_s)
         quantities = quantities_on(own)
         ctx = TrackContext(own, TrackDemand(), prompts, recorder, attendant, devices, quantities)
-        results = TrackResults(recorder)
-        if point is not None:
-            results.earlier = dict(point.conditions)
-            results.pool = point.pool
-        engine = Engine(devices, control, Executor(plan, TrackProcedures(results)), ctx, Sampler(recorder, quantities))
-        return Run(Connector(devices, own, TrackArming(devices, own), own.arming.listen_s), engine)
+        procedures = TrackProcedures(TrackResults(recorder, point=point))
+        arming = TrackArming(devices, own)
+        return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: TrackAttendant, compound: str) -> None:
         """Put a new specimen on; "" is SBR."""
@@ -92,4 +81,4 @@ class TrackRuns:
             recorder.piece_state(on.number, float("nan"), on.sliding_m, now_s)
 
 
-RUNS: Final[KindRun] = TrackRuns()
+RUNS: Final = TrackRuns()

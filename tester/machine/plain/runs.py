@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from math import nan
-from pathlib import Path
 
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.plain_recipe import Mount, PlainPart
@@ -13,9 +12,6 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.inputs.rig.plain_rig import PlainRig
-from tester.machine.connect import Connector
-from tester.machine.engine import Engine
-from tester.machine.executor import Executor
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.arming import PlainArming
 from tester.machine.plain.context import PlainAttendant, PlainContext
@@ -25,20 +21,16 @@ from tester.machine.plain.image import PlainReadings
 from tester.machine.plain.procedures import PlainProcedures, PlainResults
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
-from tester.machine.run import Run
-from tester.machine.run_parts import NoHistory, Part
-from tester.machine.sampler import Sampler
+from tester.machine.run import Run, run_of
+from tester.machine.run_parts import KindRun, Part
 from tester.machine.served import History
 from tester.store.recorder import Recorder
-from tester.store.records import Calibration
 from tester.store.resumable import ResumePoint
 
 
-class PlainRuns:
+class PlainRuns(KindRun):
     """Builds runs of a plain machine. A kind inherits from it."""
 
-    plant: str
-    """Where the twin is: ``package.module:OBJECT`` (sim.machines.find)."""
     part: PlainPart
     table: InterlockTable
 
@@ -76,24 +68,13 @@ class PlainRuns:
         readings.channels = [nan] * len(quantities.further)
         control = PlainControl(own, self.table, readings)
         ctx = PlainContext(own, readings, prompts, recorder, attendant, quantities, devices.own)
-        results = PlainResults(recorder)
-        if point is not None:
-            results.earlier, results.pool = dict(point.conditions), point.pool
-        executor = Executor(plan, PlainProcedures(self.part, results, self.speeds))
-        engine = Engine(devices, control, executor, ctx, Sampler(recorder, quantities))
-        return Run(Connector(devices, own, PlainArming(devices, own), own.arming.listen_s), engine)
+        procedures = PlainProcedures(self.part, PlainResults(recorder, point=point), self.speeds)
+        arming = PlainArming(devices, own)
+        return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: PlainAttendant, compound: str) -> None:
         """Put a new specimen on."""
         attendant.install(0, compound)
-
-    def history(self, runs: Path, rig: Rig) -> NoHistory:
-        """Return that nothing is known of earlier runs."""
-        return NoHistory()
-
-    def calibration(self, rig: Rig) -> Iterator[Calibration]:
-        """Yield nothing beside the figures of devices and drives."""
-        yield from ()
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
         """Store how far the specimen has slid."""

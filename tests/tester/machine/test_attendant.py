@@ -6,7 +6,7 @@ from copy import deepcopy
 
 import pytest
 
-from tester.machine.attendant import NoAttendant
+from tester.machine.run_parts import NoAttendant
 
 
 def test_whatever_a_kind_asks_nothing_happens() -> None:

@@ -24,8 +24,8 @@ from tester.kinds import hardware_text, load_rig
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.served.served import SERVED
-from tester.machine.attendant import NoAttendant
 from tester.machine.prompts import Prompts
+from tester.machine.run_parts import NoAttendant
 from tester.run.bus_log import BusLog
 from tester.run.folder import part_time
 from tester.run.hardware import hardware_ports

@@ -23,14 +23,10 @@ from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, PreGrind, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-from tester.machine.connect import Connector
-from tester.machine.engine import Engine
-from tester.machine.executor import Executor
 from tester.machine.prompts import Prompts
 from tester.machine.rig_drivers import RigDrivers, load_cell_of
 from tester.machine.rig_ports import Ports
-from tester.machine.run import Run
-from tester.machine.sampler import Sampler
+from tester.machine.run import Run, run_of
 from tester.store.recorder import Recorder
 from tester.store.resumable import ResumePoint
 
@@ -140,5 +136,5 @@ def build_run(
     if point is not None:
         take_up(serving, results, point)
         take_up_wheels(ctx, WheelPlan.of(plan), point.stand)
-    engine = Engine(devices, control, Executor(plan, serving), ctx, Sampler(recorder, quantities))
-    return Run(Connector(devices, rig, WheelArming(devices, rig), rig.arming.listen_s), engine)
+    arming = WheelArming(devices, rig)
+    return run_of(plan, devices, control, ctx, arming, serving, quantities, rig.arming.listen_s)

@@ -66,7 +66,7 @@ def _starts(steps: Sequence[Step]) -> list[int]:
     return starts
 
 
-class WheelRuns:
+class WheelRuns(KindRun):
     """Builds a run of this machine, and supplies its further parts."""
 
     plant: str = "wheel_on_belt"
@@ -116,4 +116,4 @@ class WheelRuns:
             record_state(recorder, ctx, now_s)
 
 
-RUNS: Final[KindRun] = WheelRuns()
+RUNS: Final = WheelRuns()

@@ -22,9 +22,9 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.activity import Activity
-from tester.machine.attendant import NoAttendant
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
+from tester.machine.run_parts import NoAttendant
 from tester.machine.sampler import Sampler
 from tester.machine.tickers import next_tick
 from tester.run.simulated import simulated_ports
