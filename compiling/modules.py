@@ -83,12 +83,12 @@ HOT = (
     "tester/machine/devices.py",
     "tester/machine/engine.py",
     "tester/machine/executor.py",
-    "tester/machine/field_device.py",
     "tester/machine/image.py",
     "tester/machine/inputs.py",
     "tester/machine/interlock_table.py",
     "tester/machine/manual.py",
     "tester/machine/modbus_health.py",
+    "tester/machine/mode_commands.py",
     "tester/machine/motions.py",
     "tester/inputs/rig/parameter.py",
     "tester/machine/run.py",
@@ -99,6 +99,5 @@ HOT = (
     "tester/machine/tickers.py",
     "tester/machine/watches.py",
     "tester/machine/wires.py",
-    "tester/machine/zero.py",
 )
 """Patterns of files; what runs in every scan, and nothing that reads its own annotations."""

@@ -7,14 +7,16 @@ docs/safety.md, with one scan at the slow rate on top.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from enum import Enum
 from functools import partial
 from typing import Final
 
 from drivers.canopen import objects as o
-from sim.faults import can, drives, operation
+from sim.faults import can, drives, modbus, operation
 from sim.faults.kinds import Expected, FaultKind
+from sim.faults.language import FaultLanguage
+from sim.wires.modbus_wire import Kind
 
 OVERCURRENT: Final = 0x2310
 SCAN_S: Final = 0.05
@@ -49,6 +51,18 @@ def connecting_rows(axis: str, connecting: Enum) -> Iterator[FaultKind]:
     yield FaultKind(f"{axis} drive SDO abort", partial(drives.sdo_spoiled, axis, "abort"), connecting, _TRIP, 3.0)
 
 
+_SPOILED: Final[tuple[tuple[str, Kind], ...]] = (
+    ("silent", "silence"), ("CRC errors", "corrupt"), ("replies cut short", "truncate"),
+)  # fmt: skip
+
+
+def device_rows(device: str, needed: Enum, budget_s: float) -> Iterator[FaultKind]:
+    """Yield how a Modbus device stops answering; ``needed``: from when on its readings are."""
+    for what, kind in _SPOILED:
+        yield FaultKind(f"{device} {what}", partial(modbus.Impaired, device, kind), needed, _TRIP, budget_s)
+    yield FaultKind(f"{device} without supply", partial(modbus.device_off, device), needed, _TRIP, budget_s)
+
+
 def bus_rows(drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
     """Yield how the bus and the safety inputs fail."""
     yield FaultKind("CAN adapter gone", can.adapter_gone, drives_on, _TRIP, SCAN_S)
@@ -67,3 +81,30 @@ def computer_rows(always: Enum, drives_on: Enum, enabled: Enum) -> Iterator[Faul
     for action in ("abort", "stop", "fast stop"):
         yield FaultKind(f"operator {action}", partial(operation.operator, action), drives_on, Expected.STOP,
                         SCAN_S)
+
+
+PLAIN_STEPS: Final = ("connect", "mount", "settle", "slide")
+"""Names of steps that a fault can wait for."""
+
+
+class PlainExposure(Enum):
+    """When a fault can be noticed at all."""
+
+    ALWAYS = "at once, once the run has begun"
+    DRIVES = "at once, once every drive is configured"
+    ENABLED = "while the drives are on"
+    MOVING = "while something moves"
+
+
+_ALWAYS, _DRIVES = PlainExposure.ALWAYS, PlainExposure.DRIVES
+_ENABLED, _MOVING = PlainExposure.ENABLED, PlainExposure.MOVING
+
+
+def plain_language(axes: Iterable[str], sensors: Iterable[str], *own: FaultKind) -> FaultLanguage:
+    """Return what the scripts of a plain machine can say; ``sensors`` by the names that people use of them."""
+    rows = [*own, *bus_rows(_DRIVES, _ENABLED), *computer_rows(_ALWAYS, _DRIVES, _ENABLED)]
+    for axis in axes:
+        rows += [*drive_rows(axis, _DRIVES, _ENABLED), *left_operation_rows(axis, _ENABLED)]
+        rows.append(FaultKind(f"{axis} drive jammed", partial(drives.Jammed, axis), _MOVING, _TRIP, 1.2 + SCAN_S))
+    rows += [row for device in sensors for row in device_rows(device, _ENABLED, 0.3 + SCAN_S)]
+    return FaultLanguage({row.phrase: row for row in rows}, PLAIN_STEPS)

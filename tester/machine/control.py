@@ -1,19 +1,18 @@
 """One control step of any machine: readings and demand in, bounded setpoints out. No I/O, no clock.
 
 Modes, requests, the timing of interlocks and the consequences of a trip are the same for every kind. A kind inherits
-from ``Control`` and implements the commands of each mode, in the sections "by a kind".
+from ``Control`` and implements the commands of each mode (``tester.machine.mode_commands``).
 """
 
 from __future__ import annotations
 
-from math import copysign, inf, isfinite
-from typing import Any, Final, Generic, TypeVar
+from math import inf
+from typing import Any, Final
 
-from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
-from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
+from tester.machine.mode_commands import DemandT, InputsT, ModeCommands, ReadingsT, StateT
 from tester.machine.row import Interlock, Reaction
-from tester.machine.state import ACKNOWLEDGED, ControlEvent, ControlState, Mode, Trip
+from tester.machine.state import ACKNOWLEDGED, ControlEvent, Mode, Trip
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _IDLE: Final = Mode.IDLE
@@ -27,13 +26,7 @@ _LATCHED: Final = Mode.LATCHED
 _AT_REST: Final = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
 _WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})
 
-StateT = TypeVar("StateT", bound=ControlState[BaseSetpoints])
-ReadingsT = TypeVar("ReadingsT", bound=BaseReadings)
-DemandT = TypeVar("DemandT", bound=BaseDemand)
-InputsT = TypeVar("InputsT", bound=ScanInputs)
-
-
-class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
+class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
     """A machine's control: its state, its interlock table and the inputs of the table."""
 
     def __init__(
@@ -53,8 +46,7 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
         ``hold_at_most_s``: a hold ends in a controlled stop after this. ``ack_wait_s``: an acknowledgement waits this
         long for the last cause to go.
         """
-        self.state = state
-        self.view = view
+        super().__init__(state, view)
         self.table = table
         self._withdrawn = withdrawn
         """The demand in every mode but RUN and HOLD: none. A stop is not judged against the load that it lifts."""
@@ -329,87 +321,5 @@ class Control(Generic[StateT, ReadingsT, DemandT, InputsT]):
             state.enter(_IDLE, now, "standstill")
         self.rest_outputs()
 
-    # -- by a kind: the inputs of its rows --------------------------------------------------------------------
-
-    def look(self, demand: DemandT, readings: ReadingsT, scan_s: float, dt: float) -> None:
-        """Update ``view`` for this scan, including ``ScanInputs.note_times``."""
-        raise NotImplementedError
-
-    def unfit(self, readings: ReadingsT) -> list[str]:
-        """Return obstacles to arming beyond the rows."""
-        return []
-
-    def detail(self, readings: ReadingsT) -> str:
-        """Return the values most useful to a reader of the trip."""
-        raise NotImplementedError
-
-    # -- by a kind: outputs, written to ``state.setpoints`` ---------------------------------------------------
-
-    def run_outputs(self, demand: DemandT, readings: ReadingsT, dt: float) -> None:
-        """Command the demand, within the bounds; in RUN and in HOLD."""
-        raise NotImplementedError
-
-    def keep(self, held: DemandT, demand: DemandT) -> None:
-        """Write a hold's demand after ``demand`` into ``held``: no contact."""
-        raise NotImplementedError
-
-    def stop_outputs(self) -> None:
-        """Command a controlled stop, or a fast one (``state.mode``)."""
-        raise NotImplementedError
-
-    def safe_outputs(self) -> None:
-        """Command a safe state at once, without reading anything: the program cannot continue."""
-        raise NotImplementedError
-
-    def emergency_outputs(self) -> None:
-        """Mirror the hardware's emergency stop: nothing may start when the power returns."""
-        raise NotImplementedError
-
-    def rest_outputs(self) -> None:
-        """Command nothing and request no power. An escalation remains until it is acknowledged."""
-        raise NotImplementedError
-
-    def withdraw_escalation(self) -> None:
-        """Resume heartbeats to drives and devices: a person has acknowledged, or a run is armed."""
-        self.state.setpoints.power_off = False
-
-    def end_lease(self, readings: ReadingsT) -> None:
-        """Let the lease of a device that is still on run out (``Interlock.ends_lease``)."""
-
-    # -- by a kind: its stops ---------------------------------------------------------------------------------
-
-    def note_stop(self) -> None:
-        """Record the speeds and positions at the begin of a stop."""
-
-    def note_fast_stop(self) -> None:
-        """Record the speeds at the begin of a quick stop."""
-
-    def note_rest(self) -> None:
-        """Record the positions to rest at."""
-
-    def stop_ended(self) -> bool:
-        """Return whether the rig is at rest, unloaded and without heat, or the time for that is over."""
-        raise NotImplementedError
-
-    def must_cool(self) -> str:
-        """Return why the machine must not stop turning yet after a controlled stop; "" if it may."""
-        return ""
-
-    def cool_outputs(self) -> str:
-        """Command the cool-down; return why it is over, "" until then."""
-        raise NotImplementedError
-
 
 AnyControl = Control[Any, Any, Any, Any]
-
-
-def may_move(readings: BaseReadings) -> bool:
-    """Return whether drives may be powered: safety chain and guard closed, every drive without a fault."""
-    return readings.safety_chain and readings.guard_closed and not readings.drive_fault
-
-
-def bounded(value: float, limit: float) -> float:
-    """Clamp to +-limit; a value that is not finite becomes 0."""
-    if -limit <= value <= limit:
-        return value
-    return copysign(limit, value) if isfinite(value) else 0.0

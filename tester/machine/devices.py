@@ -16,9 +16,8 @@ from drivers.modbus import ModbusLink
 from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
-from tester.machine.field_device import FieldDevice
 from tester.machine.image import NEVER, BaseReadings, BaseSetpoints
-from tester.machine.modbus_health import Inspector
+from tester.machine.modbus_health import FieldDevice, Inspector
 from tester.machine.rig_drivers import RigDrivers
 from tester.machine.silence import fault_text, name_of, refusals, silent_lines, unheard
 from tester.store.recorder import Recorder
@@ -76,7 +75,7 @@ class DeviceList:
         self.lost = ""
         self.counted: list[CountedInRun] = []
         """Further counts of a run, stored with the counters of the buses."""
-        self.inspector = Inspector([(device.title, device.driver) for device in self.modbus])
+        self.inspector = Inspector(self.modbus)
         self._prompts = tuple(prompts)
         self._can_alive = True
         self._can_heard_s = NEVER

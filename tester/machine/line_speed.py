@@ -8,7 +8,7 @@ from typing import Final
 from drivers.modbus.reply_times import REPLIES
 from drivers.sensor import Sensor
 from tester.machine.devices import DeviceList
-from tester.machine.field_device import FieldDevice
+from tester.machine.modbus_health import FieldDevice
 
 SELDOM_S: Final = 0.2
 """Of a device read less often than this two replies are enough to begin with [A]: its limits are far above a reply."""

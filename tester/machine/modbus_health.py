@@ -1,13 +1,27 @@
-"""A slow check of the Modbus devices: their refusals, and the share of failed requests."""
+"""The Modbus devices of a rig, and a slow check of them: their refusals, and the share of failed requests."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import inf
 from typing import Final
 
 from drivers.modbus import Device
 from drivers.modbus.request import Counters
+
+
+@dataclass(slots=True)
+class FieldDevice:
+    """A Modbus device of the rig file."""
+
+    name: str
+    """Its key in the rig file."""
+    title: str
+    """Its name for people."""
+    line: str
+    driver: Device
+
 
 PERIOD_S: Final = 0.5
 """Time between two checks, s [A]. Silence and age are watched in every scan; this is for lasting trouble."""
@@ -20,13 +34,13 @@ LEAST_REQUESTS: Final = 8
 
 
 class _Record:
-    """Requests and failures of a station at the last few looks, oldest first."""
+    """Requests and failures of a station at the last few checks, oldest first."""
 
     __slots__ = ("device", "looks", "title")
 
-    def __init__(self, title: str, device: Device) -> None:
-        self.title = title
-        self.device = device
+    def __init__(self, listed: FieldDevice) -> None:
+        self.title = listed.title
+        self.device = listed.driver
         self.looks: list[tuple[int, int]] = [(0, 0)]
 
     def look(self) -> float:
@@ -46,23 +60,23 @@ def failures(counters: Counters) -> int:
 
 
 class Inspector:
-    """Looks at the Modbus devices of a rig; ``due_s`` is when to look again.
+    """Checks the Modbus devices of a rig; ``due_s``: time of the next check.
 
     ``fault``: the first device that refuses a request or misses our commands; "" = none.
     ``noisy`` names the device with the largest share, where that is one in ten or more; "" = none.
     ``line_errors``: the largest share of failed requests among the devices, of the last few seconds, 0..1.
     """
 
-    def __init__(self, devices: Sequence[tuple[str, Device]]) -> None:
-        """Look at these, with what people call them."""
-        self.records = tuple(_Record(title, device) for title, device in devices)
+    def __init__(self, devices: Sequence[FieldDevice]) -> None:
+        """``devices``: those to check."""
+        self.records = tuple(map(_Record, devices))
         self.due_s = -inf
         self.fault = ""
         self.line_errors = 0.0
         self.noisy = ""
 
     def inspect(self, now: float) -> None:
-        """Take a look at ``now`` s."""
+        """Check every device at ``now`` s."""
         self.due_s = now + PERIOD_S
         fault = complaint = ""
         worst, title = 0.0, ""

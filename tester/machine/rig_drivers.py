@@ -15,7 +15,7 @@ from drivers.temperature_controller import ControllerKind, TemperatureController
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.further_sensors import further_sensors, parts_of, title_of
 from tester.inputs.rig.profiles import profile_of
-from tester.machine.field_device import FieldDevice
+from tester.machine.modbus_health import FieldDevice
 from tester.machine.rig_ports import Ports
 
 

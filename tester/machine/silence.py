@@ -9,7 +9,7 @@ from drivers.canopen.sensor_node import SensorNode
 from drivers.modbus import ModbusLink
 from drivers.ports import LinePort
 from drivers.servo import ServoDrive
-from tester.machine.field_device import FieldDevice
+from tester.machine.modbus_health import FieldDevice
 
 SPREAD_S: Final = 0.015
 """A drive further behind the others than this is missing, s [A]: drives answer one SYNC within 2 ms of each other."""

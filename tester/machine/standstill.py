@@ -2,12 +2,37 @@
 
 from __future__ import annotations
 
-from tester.machine.control import Control, DemandT, InputsT, ReadingsT, StateT
+from tester.inputs.rig import Rig
+from tester.inputs.rig.parameter import Parameter
+from tester.machine.control import Control
+from tester.machine.drive_rows import ACK_WAIT_S
+from tester.machine.interlock_table import InterlockTable
+from tester.machine.mode_commands import DemandT, InputsT, ReadingsT, StateT, may_move
 from tester.machine.state import Mode
 
 
 class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
-    """Outputs of every mode but RUN and HOLD. A kind implements ``stand``."""
+    """Outputs of every mode but RUN and HOLD. A kind implements ``stand`` and ``stop_ended``."""
+
+    def __init__(
+        self, rig: Rig, state: StateT, view: InputsT, table: InterlockTable, demands: tuple[DemandT, DemandT],
+        hold_at_most: Parameter,
+    ) -> None:  # fmt: skip
+        """Read the bounds of the rows from the rig file.
+
+        ``demands``: two fresh ones, for the modes that ignore the recipe's; ``hold_at_most``: the bound of a hold.
+        """
+        values = view.parameters = rig.values()
+        view.note_further(rig)
+        view.stop = state.stop
+        super().__init__(
+            state, view, table, *demands, hold_at_most_s=values[hold_at_most], ack_wait_s=values[ACK_WAIT_S]
+        )
+
+    def enable(self, demand: DemandT, readings: ReadingsT) -> None:
+        """Give the drives power where they are wanted and may move; end a quick stop."""
+        out = self.state.setpoints
+        out.enable, out.quick_stop = demand.enabled and may_move(readings), False
 
     def stand(self) -> None:
         """Command zero to every drive that has a speed, and standby to everything that heats or cools."""

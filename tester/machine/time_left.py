@@ -114,23 +114,7 @@ class TimeLeft:
     def __init__(self, parts: Sequence[PartTime], earlier: Earlier | None = None) -> None:
         """Begin before the first step of the first part."""
         self._earlier = earlier or Earlier()
-        self.steps: list[Step | None] = []
-        """The plan's steps, with None after each part's last: the way to standstill."""
-        self.estimated: list[float] = []
-        self._ends: dict[int, int] = {}
-        """Index of each part's way to standstill, by the identity of the part's last step."""
-        for part in parts:
-            self._list(part)
-        self._kinds = [STANDSTILL if step is None else step.kind for step in self.steps]
-        self._sorts = list(dict.fromkeys(self._kinds))
-        self._sort = np.array([self._sorts.index(kind) for kind in self._kinds], dtype=np.intp)
-        self._estimated = np.array(self.estimated)
-        self._places = {id(step): place for place, step in enumerate(self.steps) if step is not None}
-        planned = {step.condition for step in self.steps if isinstance(step, ConditionStep)}
-        over = accumulate((isinstance(step, ConditionStep) for step in self.steps), initial=0)
-        self._over = [len(self._earlier.over - planned) + count for count in over]
-        """Conditions that are over before each step begins, and after the last."""
-        self._conditions = len(self._earlier.over | planned)
+        self._read(parts)
         self.position = -1
         """Index of the present step; an unplanned wheel change belongs to the step after it."""
         self.measured: dict[int, float] = {}
@@ -160,6 +144,26 @@ class TimeLeft:
         self._within, self._to_come = 0.0, 0
         """Share of the present repeat that is done, and repeats behind it."""
         self._expect()
+
+    def _read(self, parts: Sequence[PartTime]) -> None:
+        """List the steps of all parts, and work out what stays the same for the whole run."""
+        self.steps: list[Step | None] = []
+        """The plan's steps, with None after each part's last: the way to standstill."""
+        self.estimated: list[float] = []
+        self._ends: dict[int, int] = {}
+        """Index of each part's way to standstill, by the identity of the part's last step."""
+        for part in parts:
+            self._list(part)
+        self._kinds = [STANDSTILL if step is None else step.kind for step in self.steps]
+        self._sorts = list(dict.fromkeys(self._kinds))
+        self._sort = np.array([self._sorts.index(kind) for kind in self._kinds], dtype=np.intp)
+        self._estimated = np.array(self.estimated)
+        self._places = {id(step): place for place, step in enumerate(self.steps) if step is not None}
+        planned = {step.condition for step in self.steps if isinstance(step, ConditionStep)}
+        over = accumulate((isinstance(step, ConditionStep) for step in self.steps), initial=0)
+        self._over = [len(self._earlier.over - planned) + count for count in over]
+        """Conditions that are over before each step begins, and after the last."""
+        self._conditions = len(self._earlier.over | planned)
 
     def _list(self, part: PartTime) -> None:
         """Add a part: its steps, less the repeats committed before, and the way to standstill."""

@@ -9,7 +9,7 @@ from drivers.canopen.sensor_node import SensorNode
 from drivers.servo import ServoDrive
 from tester.inputs.rig import Rig
 from tester.machine.devices import DeviceList
-from tester.machine.field_device import FieldDevice
+from tester.machine.modbus_health import FieldDevice
 from tester.service.state_view import BusView, DeviceView
 
 

@@ -12,14 +12,21 @@ from functools import partial
 from typing import Final
 
 from sim.faults import can, drives, modbus, operation
-from sim.faults.common import SCAN_S, bus_rows, computer_rows, connecting_rows, drive_rows, left_operation_rows
+from sim.faults.common import (
+    SCAN_S,
+    bus_rows,
+    computer_rows,
+    connecting_rows,
+    device_rows,
+    drive_rows,
+    left_operation_rows,
+)
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.language import FaultLanguage
 from sim.faults.scene import Scene, switched
 from sim.faults.sensors import SensorFault, controller_output
 from sim.machines.specimen_on_track.rig import TrackRig
 from sim.nodes.motion import VelocityAxis
-from sim.wires.modbus_wire import Kind
 
 STEPS: Final = ("connect", "install", "temper", "settle", "tare", "lower", "slide", "lift", "prompt")
 """Names of steps that a fault can wait for."""
@@ -87,19 +94,12 @@ _SILENT_S: Final = {"load cell": (Onset.SLIDING, 0.2 + SCAN_S), "chamber": (Onse
 """When the readings of a device are needed, and their age at which they are stale with the row's delay, s."""
 
 
-_SPOILED: Final[tuple[tuple[str, Kind], ...]] = (
-    ("silent", "silence"), ("CRC errors", "corrupt"), ("replies cut short", "truncate"),
-)  # fmt: skip
-
-
 _CELL: Final = partial(SensorFault, "load cell", force="fx")
 
 
 def _device_rows() -> Iterator[FaultKind]:
     for device, (when, budget_s) in _SILENT_S.items():
-        for what, kind in _SPOILED:
-            yield FaultKind(f"{device} {what}", partial(modbus.Impaired, device, kind), when, Expected.TRIP, budget_s)
-        yield FaultKind(f"{device} without supply", partial(modbus.device_off, device), when, Expected.TRIP, budget_s)
+        yield from device_rows(device, when, budget_s)
         yield FaultKind(f"{device} reset", partial(modbus.DeviceReset, device), when, Expected.TRIP, budget_s,
                         lasts_s=modbus.REBOOT_S)
         yield FaultKind(f"{device} replies late", partial(modbus.late_reply, device), when, Expected.TRIP,

@@ -10,14 +10,11 @@ from math import inf, isfinite
 
 from tester.kinds.specimen_on_track.interlocks.chamber import CHAMBER_OFF_S
 from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_DELAY_S, STALE_CELL_S
-from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs, TrackLimits, WayMonitor
-from tester.kinds.specimen_on_track.interlocks.known import standing
-from tester.kinds.specimen_on_track.interlocks.operation import HOLD_AT_MOST_S
-from tester.kinds.specimen_on_track.interlocks.stops import STOP_TIMEOUT_S
+from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs, TrackLimits, WayMonitor, standing
+from tester.kinds.specimen_on_track.interlocks.stops import HOLD_AT_MOST_S, STOP_TIMEOUT_S
 from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.control import bounded, may_move
-from tester.machine.drive_rows import ACK_WAIT_S
+from tester.machine.mode_commands import bounded
 from tester.machine.standstill import StandstillControl
 from tester.machine.state import ControlState
 
@@ -38,21 +35,11 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
     def __init__(self, rig: TrackConfig, most_m_s: float = inf) -> None:
         """``most_m_s``: the most that the recipe asks for; commands stay within it and the rig's own bound."""
         state, view = TrackState(TrackSetpoints(lift_mm=rig.arm.raised_mm)), TrackInputs()
-        p = view.parameters = rig.values()
-        view.note_further(rig)
-        view.stop, view.setpoints = state.stop, state.setpoints
+        view.setpoints = state.setpoints
         view.limits = _limits(rig)
-        metres = rig.metres
-        view.track = WayMonitor(rig.axes.track.acceleration * metres)
-        super().__init__(
-            state,
-            view,
-            rig.table,
-            TrackDemand(),
-            TrackDemand(),
-            hold_at_most_s=p[HOLD_AT_MOST_S],
-            ack_wait_s=p[ACK_WAIT_S],
-        )
+        view.track = WayMonitor(rig.axes.track.acceleration * rig.metres)
+        super().__init__(rig, state, view, rig.table, (TrackDemand(), TrackDemand()), HOLD_AT_MOST_S)
+        p = view.parameters
         self.rig = rig
         self.bound_m_s = min(rig.limits.track_speed_m_s, most_m_s)
         self._cell_s = p[STALE_CELL_S] + p[STALE_CELL_DELAY_S]
@@ -108,8 +95,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
     def run_outputs(self, demand: TrackDemand, readings: TrackReadings, dt: float) -> None:
         """Command track, arm and chamber as they are wanted, within the bounds."""
         out, r = self.state.setpoints, readings
-        out.enable = demand.enabled and may_move(r)
-        out.quick_stop = False
+        self.enable(demand, r)
         out.track_m_s = bounded(demand.track_m_s, self.bound_m_s) if self._may_go(demand, r) else 0.0
         if not r.drives_enabled:
             out.lift_mm = r.lift_mm if isfinite(r.lift_mm) else out.lift_mm
@@ -168,11 +154,12 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
     def stop_ended(self) -> bool:
         """Tell whether the track stands with the chamber off, or the time for it is over ("stop not ended")."""
         view = self.view
-        if view.readings.now_s - self.state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
+        since_s = view.readings.now_s - self.state.mode_since_s
+        if since_s > view.parameters[STOP_TIMEOUT_S]:
             return True
         # Once its time is over the chamber's own row has tripped, and its lease ends it.
         off = not view.limits.chamber or view.readings.chamber_percent == 0.0
-        late = view.readings.now_s - self.state.mode_since_s > view.parameters[CHAMBER_OFF_S] + LATE_S
+        late = since_s > view.parameters[CHAMBER_OFF_S] + LATE_S
         return standing(view) and (off or late)
 
 

@@ -16,7 +16,7 @@ from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
 from tester.kinds.specimen_on_track.control import TrackControl
 from tester.kinds.specimen_on_track.devices import TrackDevices
 from tester.kinds.specimen_on_track.procedures.arming import TrackArming
-from tester.kinds.specimen_on_track.procedures.condition import TrackResults
+from tester.kinds.specimen_on_track.procedures.slide import TrackResults
 from tester.kinds.specimen_on_track.procedures.steps import TrackProcedures
 from tester.kinds.specimen_on_track.process import TrackDemand
 from tester.kinds.specimen_on_track.rig import TrackConfig

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from tester.inputs.rig.plain_rig import PlainRig
-from tester.machine.control import bounded, may_move
-from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.interlock_table import InterlockTable
+from tester.machine.mode_commands import bounded
 from tester.machine.plain.image import PlainDemand, PlainReadings, PlainSetpoints
 from tester.machine.plain.rows import HOLD_AT_MOST_S, STOP_TIMEOUT_S, PlainInputs
 from tester.machine.standstill import StandstillControl
@@ -20,11 +19,8 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
     def __init__(self, rig: PlainRig, table: InterlockTable, readings: PlainReadings) -> None:
         """``readings``: the kind's, as they are before anything was read."""
         view = PlainInputs(rig=rig, readings=readings)
-        p, state = view.parameters, ControlState(PlainSetpoints())
-        view.stop = state.stop
-        super().__init__(
-            state, view, table, PlainDemand(), PlainDemand(), hold_at_most_s=p[HOLD_AT_MOST_S], ack_wait_s=p[ACK_WAIT_S]
-        )
+        state = ControlState(PlainSetpoints())
+        super().__init__(rig, state, view, table, (PlainDemand(), PlainDemand()), HOLD_AT_MOST_S)
         self.axes = rig.axes
         self.stand()
 
@@ -38,12 +34,11 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
 
     def run_outputs(self, demand: PlainDemand, readings: PlainReadings, dt: float) -> None:
         """Command what is wanted; nothing moves before every drive is in operation."""
-        out = self.state.setpoints
-        out.enable, out.quick_stop = demand.enabled and may_move(readings), False
+        self.enable(demand, readings)
         self.stand()
         if readings.drives_enabled:
             for name, wanted in demand.speeds.items():
-                out.speeds[name] = bounded(wanted, self.axes[name].max_speed)
+                self.state.setpoints.speeds[name] = bounded(wanted, self.axes[name].max_speed)
 
     def keep(self, held: PlainDemand, demand: PlainDemand) -> None:
         """Stand."""

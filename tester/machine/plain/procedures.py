@@ -17,7 +17,7 @@ from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.condition import MeasureCondition
 from tester.machine.executor import Procedures
 from tester.machine.measured import Ending
-from tester.machine.motions import Ask
+from tester.machine.motions import Ask, ZeroOfCell
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.image import PlainReadings
 from tester.machine.result_keeping import StoredResults
@@ -64,9 +64,8 @@ class PutOn:
         self.stand = Standstill(enabled=False)
         self.ask = Ask(title)
         self.answered = False
-        self._sums: dict[str, list[float]] = {}
-        self._count = 0
-        self._zero_s = nan
+        self.zeros: dict[str, ZeroOfCell] = {}
+        """Of the sensors that are zeroed, by their names."""
 
     def resume(self, ctx: PlainContext) -> None:
         """Come to a stand anew."""
@@ -88,24 +87,23 @@ class PutOn:
         ctx.journal.piece_mounted(
             PieceInfo(one.piece, one.specimen, one.replicate, one.compound, ctx.now, nan, nan, updated_s=ctx.now)
         )
-        self._zero_s = ctx.now
+        zeroed = (name for name, sensor in ctx.sensors.items() if sensor.profile.tare)
+        self.zeros = {name: ZeroOfCell(ZERO_S, name.replace("_", " ")) for name in zeroed}
 
     def _zero(self, ctx: PlainContext) -> bool:
-        ctx.moving = True
-        if ctx.now - self._zero_s > MOVE_AT_MOST_S:
-            raise MoveFailedError("a sensor gives no valid readings to be zeroed by")
-        tared = {name: sensor for name, sensor in ctx.sensors.items() if sensor.profile.tare}
-        if all(sensor.valid and sensor.stamp_s > self._zero_s for sensor in tared.values()):
-            for name, sensor in tared.items():
-                sums = self._sums.setdefault(name, [0.0] * len(sensor.raw))
-                self._sums[name] = [a + b for a, b in zip(sums, sensor.raw, strict=True)]
-            self._count += 1
-        if ctx.now - self._zero_s < ZERO_S or not self._count:
+        done = True
+        for name, zero in self.zeros.items():
+            sensor = ctx.sensors[name]
+            done &= zero.averaged(ctx, sensor.stamp_s, sensor.raw, valid=sensor.valid)
+            if zero.failed:
+                raise MoveFailedError(zero.failed)
+        if not done:
             return False
-        for name, sensor in tared.items():
-            zero = tuple(one / self._count for one in self._sums[name])
-            sensor.set_tare(zero)
-            words = ", ".join(f"{key} {value:.4g}" for key, value in zip(sensor.channels, zero, strict=True))
+        for name, zero in self.zeros.items():
+            sensor = ctx.sensors[name]
+            readings = zero.zero([0.0] * len(sensor.raw))
+            sensor.set_tare(readings)
+            words = ", ".join(f"{key} {value:.4g}" for key, value in zip(sensor.channels, readings, strict=True))
             ctx.journal.event(ctx.now, "tare", f"{name}: {words}")
         return True
 

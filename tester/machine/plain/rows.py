@@ -50,8 +50,6 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
     def __post_init__(self) -> None:
         """Take over what conditions compare with."""
         axes = self.rig.axes.values()
-        self.parameters = self.rig.values()
-        self.note_further(self.rig)
         self.limits = PlainLimits(
             self.rig.can.drive_heartbeat_s,
             max(one.max_speed / one.deceleration for one in axes),

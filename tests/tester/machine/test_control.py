@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tester.machine.control import bounded
+from tester.machine.mode_commands import bounded
 from tester.machine.state import Mode
 from tests.tester.machine.toy import HOLD_S, LampControl, LampDemand, LampReadings
 

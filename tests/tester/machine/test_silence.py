@@ -7,7 +7,7 @@ from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from tester.kinds import load_rig
-from tester.machine.field_device import FieldDevice
+from tester.machine.modbus_health import FieldDevice
 from tester.machine.silence import SPREAD_S, name_of, refusals, silent_lines, unheard
 from tests.drivers.modbus_bench import Bench
 

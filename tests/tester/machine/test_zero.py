@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tester.machine.zero import LEAST, SILENT_S, ZeroOfCell
+from tester.machine.motions import LEAST, SILENT_S, ZeroOfCell
 
 STEP_S = 0.05
 

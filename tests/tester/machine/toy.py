@@ -8,10 +8,11 @@ from typing import Final
 from tester.inputs.rig import Rig
 from tester.inputs.rig.parameter import Parameter
 from tester.machine.context import BaseContext
-from tester.machine.control import Control, may_move
+from tester.machine.control import Control
 from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
+from tester.machine.mode_commands import may_move
 from tester.machine.prompts import Prompts
 from tester.machine.row import CONTROLLED, FAST, POWER_OFF, WARN, Interlock
 from tester.machine.state import ControlState

@@ -1,12 +1,16 @@
-"""What the conditions of this machine's interlocks may look at: plain data, brought up to date once a scan."""
+"""The inputs of this machine's interlock conditions, updated once a scan, and when the track is known to stand.
+
+Old or unknown data do not count as standing. Several rows test for standstill and share its parameters.
+"""
 
 from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
 from math import inf
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
+from tester.inputs.rig.parameter import SHARE, Parameter
 from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
 from tester.machine.inputs import ScanInputs
 from tester.machine.row import Interlock
@@ -113,3 +117,25 @@ class TrackInputs(ScanInputs):
 
 
 Row: TypeAlias = Interlock[TrackInputs]
+
+
+STANDING_SHARE: Final = Parameter(
+    "standing_share", "1", "0.0005", "a track slower than this share of axes.track.max_speed stands [A]", SHARE,
+    hardest="0.001", because="a thousandth of the greatest speed counts as motion where everything must stand",
+)  # fmt: skip
+SPEEDS_OLD_S: Final = Parameter(
+    "speeds_old_s", "s", "500 ms", "a stop does not end on a speed older than this [A]",
+    hardest="1 s",
+    because="the next step of a stop that does not work begins half a second after it: by then it must be known",
+)  # fmt: skip
+
+
+def standing_m_s(v: TrackInputs) -> float:
+    """Return the speed below which the track stands, m/s."""
+    return v.parameters[STANDING_SHARE] * v.limits.fastest_m_s
+
+
+def standing(v: TrackInputs) -> bool:
+    """Tell whether the track is known to stand."""
+    r, slow = v.readings, standing_m_s(v)
+    return r.track_at_s >= r.now_s - v.parameters[SPEEDS_OLD_S] and -slow < r.track_now_m_s < slow

@@ -6,8 +6,7 @@ from math import inf
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
-from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
-from tester.kinds.specimen_on_track.interlocks.known import STANDING_SHARE, standing_m_s
+from tester.kinds.specimen_on_track.interlocks.inputs import STANDING_SHARE, Row, TrackInputs, standing_m_s
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
 from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
 from tester.machine.watches import at_most, condition, within

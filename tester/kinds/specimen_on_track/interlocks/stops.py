@@ -1,14 +1,13 @@
-"""Stops that do not work, and what is to rest and does not."""
+"""Stops that fail, motion where everything must rest, and the bounds of holds, acknowledgements and the cell's zero."""
 
 from __future__ import annotations
 
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
-from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
-from tester.kinds.specimen_on_track.interlocks.known import SPEEDS_OLD_S, STANDING_SHARE, standing
+from tester.kinds.specimen_on_track.interlocks.inputs import SPEEDS_OLD_S, STANDING_SHARE, Row, TrackInputs, standing
 from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
-from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
+from tester.machine.drive_rows import ACK_WAIT_S, not_stopping, quick_stop_failed, stop_not_ended
 from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock
 from tester.machine.watches import condition
 
@@ -101,3 +100,17 @@ MOVING_AT_REST: Final[Row] = Interlock(
 )
 
 ROWS: Final[tuple[Row, ...]] = (NOT_SWITCHED_OFF, QUICK_STOP_FAILED, NOT_STOPPING, STOP_NOT_ENDED, MOVING_AT_REST)
+
+
+HOLD_AT_MOST_S: Final = Parameter(
+    "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
+    hardest="120 min", because="nobody is expected to attend to a rig with its drives on for longer than that",
+)  # fmt: skip
+ZERO_STOP_N: Final = Parameter(
+    "zero_stop_n", "N", "10 N", "a zero of the cell further off than this is not taken: the run ends [A]",
+    hardest="20 N", because="20 N that a tare takes off are a contact as firm as any of these rigs has",
+)  # fmt: skip
+
+OPERATION: Final[tuple[Parameter, ...]] = (HOLD_AT_MOST_S, ACK_WAIT_S, ZERO_STOP_N)
+ABOUT: Final = "holds, acknowledgements, the cell's zero"
+"""The parameters of the section ``interlocks`` that belong to no row, and their purpose."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.kinds.specimen_on_track.interlocks import chamber, force, motion, operation, stops
+from tester.kinds.specimen_on_track.interlocks import chamber, force, motion, stops
 from tester.machine import wires
 from tester.machine.interlock_sheet import InterlockSheet
 from tester.machine.interlock_table import InterlockTable
@@ -14,6 +14,6 @@ TABLE: Final = InterlockTable(
         *wires.ROWS, *motion.ROWS, *force.ROWS, *chamber.ROWS, wires.DEVICE_REFUSED, wires.LINE_NOISY, *stops.ROWS,
         *wires.WARNINGS,
     ),
-    operation.PARAMETERS,
+    stops.OPERATION,
 )  # fmt: skip
-SHEET: Final = InterlockSheet(TABLE.rows, operation.PARAMETERS, operation.ABOUT)
+SHEET: Final = InterlockSheet(TABLE.rows, TABLE.operation, stops.ABOUT)

@@ -6,8 +6,7 @@ from __future__ import annotations
 from typing import Final
 
 from tester.kinds.specimen_on_track.context import TrackContext
-from tester.machine.motions import Ask, Move, Power, Sequence
-from tester.machine.zero import ZeroOfCell
+from tester.machine.motions import Ask, Move, Power, Sequence, ZeroOfCell
 
 TARE_S: Final = 1.0
 """Averaging time of the cell's zero, s [A]."""

@@ -8,8 +8,8 @@ from typing import Final
 from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds.specimen_on_track.context import MountedSpecimen, TrackContext
-from tester.kinds.specimen_on_track.procedures.condition import MeasureTrackCondition, TrackResults
 from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
+from tester.kinds.specimen_on_track.procedures.slide import MeasureTrackCondition, TrackResults
 from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.machine.activity import Activity
 from tester.machine.executor import Procedures, Unforeseen

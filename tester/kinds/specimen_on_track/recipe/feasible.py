@@ -1,4 +1,5 @@
-"""What a rig cannot do of a recipe, or is not expected to do: air without a heater, friction that is too low."""
+"""Parts of a recipe that a rig cannot do, or is not expected to do: temperatures without a chamber, friction that is
+too low, a simulated law without its rubber or surface."""
 
 from __future__ import annotations
 
@@ -6,8 +7,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
+from sim.physics.laws import NO_SETTING
+from sim.physics.materials import OutsideError
 from tester.base.axes import Setpoint, condition_words
-from tester.base.source import Location, Problem, Tree
+from tester.base.source import InvalidSource, Location, Problem, Tree
+from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.conditions import conditions_of
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.kinds.specimen_on_track.axes import AXES
@@ -62,3 +66,27 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
                 f" in {len(result)} conditions: below {100.0 * lost:g} % the contact counts as lost and the run trips"
                 " (interlocks.lost_share)",
             )
+
+
+def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
+    """Yield every compound of which the law cannot be made on the recipe's surface."""
+    sim = rig.sim
+    surface = recipe.abrasive.name if recipe.abrasive is not None else ""
+    setting = law_setting(surface, Path(tree.name)) if sim.of_materials else NO_SETTING
+    told: set[str] = set()
+    for number, specimen in enumerate(recipe.specimens):
+        if specimen.compound in told:
+            continue
+        told.add(specimen.compound)
+        try:
+            sim.known_everywhere(specimen.compound, setting)
+        except OutsideError as error:
+            said = f"{error}; a simulated track slides from standstill on (expected moduli with beyond: hold)"
+        except InvalidSource as error:
+            yield from error.problems
+            continue
+        except ValueError as error:
+            said = str(error)
+        else:
+            continue
+        yield tree.problem(("specimens", number, "compound"), f"compound: sim.law {sim.law}: {said}")

@@ -25,8 +25,7 @@ from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
-from tester.kinds.specimen_on_track.recipe.feasible import low_friction, out_of_reach
-from tester.kinds.specimen_on_track.recipe.law_problems import law_problems
+from tester.kinds.specimen_on_track.recipe.feasible import law_problems, low_friction, out_of_reach
 from tester.kinds.specimen_on_track.recipe.plan_steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.recipe.schema import (
     TrackGrid,

@@ -14,8 +14,8 @@ from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.hub import RUNAWAY_WINDOW_S
 from tester.kinds.wheel_on_belt.interlocks.operation import COLD_K, HOLD_AT_MOST_S, START_K
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.control import bounded, may_move
 from tester.machine.drive_rows import ACK_WAIT_S
+from tester.machine.mode_commands import bounded, may_move
 
 CEILING_STEP_S: Final = 1.0
 """How exactly it knows when a setpoint was left, s."""

@@ -13,8 +13,7 @@ from typing import Final
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import CELL, Press, Readings
 from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
-from tester.machine.motions import Move
-from tester.machine.zero import ZeroOfCell
+from tester.machine.motions import Move, ZeroOfCell
 
 SPEED_SHARE: Final = 0.01
 SPEED_FLOOR_M_S: Final = 0.003

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from sim import machines
-from sim.faults.plain import plain_language
+from sim.faults.common import plain_language
 from sim.plain_twin import PlainTwin
 from sim.rig import RigSpec
 from sim.wires.can_wire import CanWire

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import copysign, inf
 from typing import Annotated
 
+from sim.faults.common import PlainExposure, plain_language
 from sim.faults.kinds import Expected, FaultKind
-from sim.faults.plain import PlainExposure, plain_language
 from sim.faults.scene import Effect, Scene
 from sim.machines import SimulatedMachine
 from sim.noise import NormalStream, normal
