@@ -10,12 +10,28 @@ from typing import ClassVar
 from tester.base.screen import Check, Gate, SoakView
 from tester.inputs.rig import Rig
 from tester.machine.engine import Engine
-from tester.machine.served import News, Wanted
 from tester.machine.state import Mode
 
 
+@dataclass(frozen=True, slots=True)
+class News:
+    """State of a device's data: when the newest came (rig s, -inf: never), whether valid, from what age on stale, s."""
+
+    at_s: float
+    valid: bool
+    stale_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """The setpoint of a value, in the unit for people, and half the width of its gate; None without one."""
+
+    setpoint: float | None
+    band: float | None = None
+
+
 class RunPanel:
-    """A ``MachinePanel`` of a machine that has gates and soaks nothing. A kind adds its devices and checks."""
+    """The view of a run between two ticks. A kind adds its devices, setpoints and checks."""
 
     gates_of: ClassVar[Mapping[str, int]] = {}
     """Bit of each gate in the channel ``gate``, by its key on the screen."""
@@ -29,7 +45,7 @@ class RunPanel:
         raise NotImplementedError
 
     def wanted(self) -> dict[str, Wanted]:
-        """Return nothing: a kind with setpoints on its screen returns them."""
+        """Return the setpoints of the values, by their keys; values without a setpoint may be missing."""
         return {}
 
     def gates(self) -> tuple[Gate, ...]:
@@ -40,16 +56,20 @@ class RunPanel:
         return tuple(Gate(key, not closed & bit) for key, bit in self.gates_of.items())
 
     def soak(self, now: float) -> SoakView | None:
-        """Return None: nothing is soaked."""
+        """Return the soak under way at ``now`` (rig s), None without one."""
         return None
 
     def checks(self) -> tuple[Check, ...]:
-        """Return what the safety inputs say of the rig's readiness."""
+        """Return the connected rig's own checks before a start: by default those of the safety inputs."""
         r = self.engine.ctx.readings
         return (
             Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
             Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
         )
+
+    def mounted(self) -> tuple[int, str]:
+        """Return number and compound of the specimen on the rig, (0, "") for none."""
+        raise NotImplementedError
 
 
 def soak_view(

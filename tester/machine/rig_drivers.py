@@ -6,14 +6,15 @@ from collections.abc import Mapping, Sequence
 
 from drivers.canopen.master import CanMaster
 from drivers.canopen.sensor_node import SensorNode
-from drivers.joined_cell import JoinedCell, LoadCell, Transmitter
+from drivers.joined_cell import JoinedCell, LoadCell
 from drivers.modbus import Device, ModbusLink
 from drivers.ports import LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import ControllerKind, TemperatureController
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
-from tester.inputs.rig.further_sensors import further_sensors, parts_of, title_of
+from tester.inputs.rig.cells import transmitters_of
+from tester.inputs.rig.further_sensors import further_sensors, title_of
 from tester.inputs.rig.profiles import profile_of
 from tester.machine.modbus_health import FieldDevice
 from tester.machine.rig_ports import Ports
@@ -88,14 +89,8 @@ def load_cell_of(
 
     ``most_skew_s``: greatest time between the parts of a reading from several transmitters.
     """
-    parts = parts_of(rig, "load_cell")
-    if not parts:
+    transmitters = transmitters_of(rig, links)
+    if not transmitters:
         cell = sensor_of(rig.devices["load_cell"], links, tuple(channels))
         return cell, {"load_cell": cell}
-    transmitters = {
-        name: Transmitter(
-            title_of(rig, name), profile_of(one.profile), one.unit_id, links[one.line], one.channels, one.parameters
-        )
-        for name, one in parts.items()
-    }
     return JoinedCell(list(transmitters.values()), channels, most_skew_s), dict[str, Device](transmitters)

@@ -6,66 +6,21 @@ rig's kind.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from tester.base.quantities import Quantities
-    from tester.base.screen import Check, Gate, MachineView, SoakView
+    from tester.base.screen import Check, MachineView
     from tester.inputs.recipe.plan import Step
     from tester.inputs.rig import Rig
     from tester.machine.engine import Engine
     from tester.machine.manual import ManualExecutor
+    from tester.machine.panel import RunPanel
     from tester.machine.rig_ports import Ports
     from tester.machine.run import Run
     from tester.store.recorder import Recorder
     from tester.store.run_reader import RunReader
-
-
-@dataclass(frozen=True, slots=True)
-class News:
-    """State of a device's data: when the newest came (rig s, -inf: never), whether valid, from what age on stale, s."""
-
-    at_s: float
-    valid: bool
-    stale_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """The setpoint of a value, in the unit for people, and half the width of its gate; None without one."""
-
-    setpoint: float | None
-    band: float | None = None
-
-
-class MachinePanel(Protocol):
-    """The view of a run of the kind."""
-
-    def news(self) -> Mapping[str, News]:
-        """Return the news of every device that the table of channels names."""
-        ...
-
-    def wanted(self) -> Mapping[str, Wanted]:
-        """Return the setpoints of the values, by their keys; values without a setpoint may be missing."""
-        ...
-
-    def gates(self) -> tuple[Gate, ...]:
-        """Return the gates as of the last scan."""
-        ...
-
-    def soak(self, now: float) -> SoakView | None:
-        """Return the soak under way at ``now`` (rig s), None without one."""
-        ...
-
-    def checks(self) -> tuple[Check, ...]:
-        """Return the connected rig's own checks before a start."""
-        ...
-
-    def mounted(self) -> tuple[int, str]:
-        """Return number and compound of the specimen on the rig, (0, "") for none."""
-        ...
 
 
 class Left(Protocol):
@@ -115,7 +70,7 @@ class ServedKind(Protocol):
         """Return a description of a step of a plan, in a line."""
         ...
 
-    def panel(self, engine: Engine) -> MachinePanel:
+    def panel(self, engine: Engine) -> RunPanel:
         """Look at a run."""
         ...
 

@@ -19,8 +19,8 @@ from tester.base.trouble import in_words
 from tester.base.words import plain_text
 from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.rig import Rig
-from tester.inputs.rig.ceilings import counts_as_simulated
 from tester.inputs.rig.rig_files import risks_of
+from tester.inputs.rig.risks import counts_as_simulated
 from tester.machine.prompts import Prompts
 from tester.machine.result_keeping import condition_records
 from tester.machine.run import Outcome, Run

@@ -13,8 +13,9 @@ from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import further_sensors, quantities_on
 from tester.machine.engine import Engine
+from tester.machine.panel import News, RunPanel, Wanted
 from tester.machine.sampler import values_at
-from tester.machine.served import MachinePanel, News, ServedKind, Wanted
+from tester.machine.served import ServedKind
 from tester.machine.time_left import STANDSTILL, Earlier, PartTime, TimeLeft
 from tester.service.state_view import PlanStep, PlanView, StepState
 
@@ -89,7 +90,7 @@ def unknown_values(rig: Rig) -> tuple[Value, ...]:
 class ValueView:
     """Computes the values of a run from its engine."""
 
-    def __init__(self, engine: Engine, panel: MachinePanel) -> None:
+    def __init__(self, engine: Engine, panel: RunPanel) -> None:
         """Prepare everything that does not change."""
         self.engine = engine
         self.panel = panel

@@ -12,7 +12,7 @@ from pathlib import Path
 from tester.analysis.results import Burst
 from tester.base.quantities import Channel, Quantities
 from tester.base.screen import MachineView, PlotView, Value, trend_columns
-from tester.machine.served import Wanted
+from tester.machine.panel import Wanted
 from tester.results.run_results import results_of
 from tester.run.kind_lookup import load_rig_text, served_kind
 from tester.service.protocol import Event

@@ -68,7 +68,8 @@ class TrackRig(SimRig):
         wired = {name: self._device(name, spec.devices[name]) for name in WORDS if name in spec.devices}
         super().__init__(spec, can, axes, wired, {WORDS[name]: slave for name, slave in wired.items()}, self.plant)
         self.cell = wired["load_cell"]
-        self.chamber = self._chamber(wired)
+        chamber = wired.get("chamber")
+        self.chamber = chamber if isinstance(chamber, ControllerSlave) else None
         self._track = self.axes["track"]
         self._lift = self.axes.get("lift")
         self.metres = _METRES[spec.axes["track"].unit]
@@ -102,11 +103,6 @@ class TrackRig(SimRig):
         if name == "pyrometer":
             return IrSlave(profile, unit_id, self.plant, sensor_c=self.plant.parameters.ambient)
         return IrSlave(profile, unit_id, AmbientAir(self.plant), sensor_c=self.plant.parameters.ambient)
-
-    @staticmethod
-    def _chamber(devices: dict[str, ModbusSlave]) -> ControllerSlave | None:
-        chamber = devices.get("chamber")
-        return chamber if isinstance(chamber, ControllerSlave) else None
 
     # -- the wires' side ------------------------------------------------------------------------------------------
 

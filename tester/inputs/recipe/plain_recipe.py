@@ -18,13 +18,12 @@ from tester.base.units import Quantity, UnitError, show
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
 from tester.inputs.recipe.grid_settings import Settings
 from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
-from tester.inputs.recipe.plan_text import repeats_words, window_words
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.repeats_section import expected
 from tester.inputs.recipe.time_estimate import Estimator, StepEstimate
 from tester.inputs.rig import Rig
-from tester.inputs.rig.ceilings import value_at
+from tester.inputs.rig.risks import value_at
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +174,7 @@ class PlainPart(SpecimenPart):
 
     def words(self, step: Step, one: StepEstimate) -> str:
         if isinstance(step, ConditionStep):
-            return f"{self.title(step)}: {repeats_words(step)} x {window_words(step.window)}"
+            return f"{self.title(step)}: {step.repeats_words} x {step.window.words}"
         return self.title(step)
 
     def title(self, step: Step) -> str:

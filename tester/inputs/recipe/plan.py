@@ -49,6 +49,11 @@ class Window:
     seconds: float | None
     extend_to: float
 
+    @property
+    def words(self) -> str:
+        """Return it in a recipe's notation: 30 rev, or 60 s."""
+        return f"{self.revolutions:g} rev" if self.revolutions is not None else f"{self.seconds or 0.0:g} s"
+
     def duration_s(self, revolutions_per_s: float) -> float:
         """Return the seconds in which the window is collected at a speed in revolutions/s (> 0)."""
         if self.seconds is not None:
@@ -94,6 +99,15 @@ class ConditionStep(Step):
     both_directions: bool = field(default=False, kw_only=True)
     """Repeats alternate between the requested direction and the reverse; ``repeats``, ``at_most`` and ``min_valid``
     count pairs."""
+
+    @property
+    def repeats_words(self) -> str:
+        """Return the number of repeats that must count, and the precision if the recipe has one: 4 (until 2 %).
+
+        In both directions they are pairs: 4 pairs.
+        """
+        until = f" (until {self.until_percent:.3g} %)" if self.until_percent is not None else ""
+        return f"{self.repeats}{' pairs' if self.both_directions else ''}{until}"
 
     @property
     def scheme(self) -> Scheme:

@@ -8,7 +8,7 @@ from typing import Final
 
 from tester.base.words import rough_duration
 from tester.inputs.recipe.conditions import MergedConditions
-from tester.inputs.recipe.plan import ConditionStep, Plan, Step, Window
+from tester.inputs.recipe.plan import ConditionStep, Plan, Step
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.time_estimate import Estimate
 
@@ -39,20 +39,6 @@ def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
     yield f"rig time          {rough_duration(estimate.rig_seconds)} ({least} to {most} in 95 % of runs)"
     yield f"sliding distance  {estimate.sliding_m:.0f} m"
     yield from part.totals(plan, estimate)
-
-
-def repeats_words(step: ConditionStep) -> str:
-    """Return the number of repeats that must count, and the precision if the recipe has one: 4 (until 2 %).
-
-    In both directions they are pairs: 4 pairs.
-    """
-    pairs = " pairs" if step.both_directions else ""
-    return f"{step.repeats}{pairs}" + (f" (until {step.until_percent:.3g} %)" if step.until_percent is not None else "")
-
-
-def window_words(window: Window) -> str:
-    """Return a window in a recipe's notation: 30 rev, or 60 s."""
-    return f"{window.revolutions:g} rev" if window.revolutions is not None else f"{window.seconds or 0.0:g} s"
 
 
 def _indent(step: Step) -> str:

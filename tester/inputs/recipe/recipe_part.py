@@ -9,18 +9,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
+from tester.analysis.terms import Term
+from tester.base.axes import Axes
+from tester.base.source import Location, Problem, Tree
 from tester.inputs.recipe.grid_settings import Settings, settings_of
+from tester.inputs.recipe.plan import ConditionStep, Plan, Stand, Step
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
-
-if TYPE_CHECKING:
-    from tester.analysis.terms import Term
-    from tester.base.axes import Axes
-    from tester.base.source import Location, Problem, Tree
-    from tester.inputs.recipe.plan import ConditionStep, Plan, Stand, Step
-    from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate
-    from tester.inputs.rig import Rig
+from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate, estimate
+from tester.inputs.rig import Rig
 
 
 class RecipePart(ABC):
@@ -121,8 +119,6 @@ class RecipePart(ABC):
 
     def estimate(self, plan: Plan, rig: Rig) -> Estimate:
         """Return the totals of a plan on a rig, with the assumed scatter between repeats."""
-        from tester.inputs.recipe.time_estimate import estimate
-
         return estimate(plan, self.estimator(rig))
 
     @abstractmethod
@@ -153,8 +149,6 @@ class RecipePart(ABC):
 
     def condition_fields(self, step: ConditionStep, one: StepEstimate) -> dict[str, object]:
         """Return a condition's fields in a plan's JSON, beside kind, index and seconds; units in the keys."""
-        from tester.inputs.recipe.plan_text import window_words
-
         return {
             "condition": step.condition,
             "row": step.row,
@@ -168,7 +162,7 @@ class RecipePart(ABC):
             "until_percent": step.until_percent,
             "repeats_expected": round(one.repeats, 2),
             "min_valid": step.min_valid,
-            "window": window_words(step.window),
+            "window": step.window.words,
             "temperature_band_k": step.temperature_band_k,
             "held": one.held,
             "sliding_m": round(one.sliding_m, 3),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from drivers.profiles import ProfileError
 from drivers.profiles.model import DeviceProfile
@@ -10,6 +11,10 @@ from tester.base.source import Location
 from tester.inputs.rig.config import DeviceConfig, OwnDevice, Rig
 from tester.inputs.rig.further_sensors import parts_of, title_of
 from tester.inputs.rig.profiles import profile_of
+
+if TYPE_CHECKING:
+    from drivers.joined_cell import Transmitter
+    from drivers.modbus import ModbusLink
 
 _Found = Iterator[tuple[Location, str]]
 
@@ -66,28 +71,32 @@ def _measures(rig: Rig, name: str, own: OwnDevice, profiles: Mapping[str, Device
             yield ("devices", next(iter(asked))), f"nothing measures {channel} ({needed}; {has}{more})"
 
 
+def transmitters_of(rig: Rig, links: Mapping[str, ModbusLink]) -> dict[str, Transmitter]:
+    """Return the drivers of a load cell's transmitters by their keys; none where it is one device.
+
+    Raises ProfileError, and ValueError for a profile that is none of a transmitter.
+    """
+    from drivers.joined_cell import Transmitter
+
+    return {
+        key: Transmitter(
+            title_of(rig, key), profile_of(part.profile), part.unit_id, links[part.line], part.channels, part.parameters
+        )
+        for key, part in parts_of(rig, "load_cell").items()
+    }
+
+
 def skew_problem(rig: Rig, channels: tuple[str, ...], most_skew_s: float) -> _Found:
     """Yield why the transmitters of a load cell cannot be read close enough together at their lines' usual times."""
     parts = parts_of(rig, "load_cell")
     if not parts or any(line.baud <= 0 for line in rig.lines.values()):
         return
-    from drivers.joined_cell import JoinedCell, Transmitter  # only such a rig pays for the wire's library
+    from drivers.joined_cell import JoinedCell  # only such a rig pays for the wire's library
     from drivers.modbus import ModbusLink
 
     links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
     try:
-        transmitters = [
-            Transmitter(
-                title_of(rig, name),
-                profile_of(part.profile),
-                part.unit_id,
-                links[part.line],
-                part.channels,
-                part.parameters,
-            )
-            for name, part in parts.items()
-        ]
-        cell = JoinedCell(transmitters, channels, most_skew_s)
+        cell = JoinedCell(list(transmitters_of(rig, links).values()), channels, most_skew_s)
     except (ProfileError, ValueError, KeyError):
         return  # reported elsewhere
     if cell.usual_skew_s <= most_skew_s:

@@ -13,27 +13,26 @@ from typing import Annotated, ClassVar, Final, TypeVar
 from drivers.axis import AxisConfig
 from tester.base.config_reader import Range
 from tester.base.source import Location
-from tester.inputs.rig.ceilings import AXES, TRUE, Ceiling
+from tester.inputs.rig.ceilings import AXES, HIGHER, LOWER, TRUE, Ceiling
 from tester.inputs.rig.config import Rig
-from tester.inputs.rig.parameter import SECTION, Direction
+from tester.inputs.rig.parameter import SECTION
 
 OneRig = TypeVar("OneRig", bound="PlainRig")
-_LOWER, _HIGHER = Direction.LOWER, Direction.HIGHER
 
 PLAIN_CEILINGS: Final = (
-    Ceiling("arming.watchdog_proof", "", _HIGHER, TRUE,
+    Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
             "without it there is no proof that the drives stop when this program does"),
-    Ceiling("arming.listen", "s", _HIGHER, "0.5 s", "another master sends twice a second or oftener [A]"),
-    Ceiling("arming.withhold", "s", _HIGHER, "300 ms",
+    Ceiling("arming.listen", "s", HIGHER, "0.5 s", "another master sends twice a second or oftener [A]"),
+    Ceiling("arming.withhold", "s", HIGHER, "300 ms",
             "half as long again as the 200 ms after which a drive must report the missing heartbeat"),
-    Ceiling("scan.enabled", "Hz", _HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
-    Ceiling("scan.idle", "Hz", _HIGHER, "5 Hz", "the inputs are too old after 250 ms: one scan at least looks at them"),
-    Ceiling("can.heartbeat", "s", _LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait"),
-    Ceiling("can.drive_heartbeat", "s", _LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
-    Ceiling("can.consumer_heartbeat", "s", _LOWER, "300 ms", "without heartbeats a drive keeps its last command"),
-    Ceiling(f"{AXES}heartbeat", "s", _LOWER, "100 ms", "as can.drive_heartbeat"),
-    Ceiling(f"{AXES}consumer_heartbeat", "s", _LOWER, "300 ms", "as can.consumer_heartbeat"),
-    Ceiling(f"{AXES}proves_watchdog", "", _HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
+    Ceiling("scan.enabled", "Hz", HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
+    Ceiling("scan.idle", "Hz", HIGHER, "5 Hz", "the inputs are too old after 250 ms: one scan at least looks at them"),
+    Ceiling("can.heartbeat", "s", LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait"),
+    Ceiling("can.drive_heartbeat", "s", LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
+    Ceiling("can.consumer_heartbeat", "s", LOWER, "300 ms", "without heartbeats a drive keeps its last command"),
+    Ceiling(f"{AXES}heartbeat", "s", LOWER, "100 ms", "as can.drive_heartbeat"),
+    Ceiling(f"{AXES}consumer_heartbeat", "s", LOWER, "300 ms", "as can.consumer_heartbeat"),
+    Ceiling(f"{AXES}proves_watchdog", "", HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
 )  # fmt: skip
 """Safety keys of a plain machine beside the interlocks' own."""
 

@@ -11,11 +11,11 @@ from drivers.drives import reader
 from sim.physics import laws
 from tester.base.config_reader import read
 from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
-from tester.inputs.rig.ceilings import Risk, beyond, counts_as_simulated, loosened
 from tester.inputs.rig.checks import problems_of
 from tester.inputs.rig.config import Rig
 from tester.inputs.rig.packaged import complete, new_tree
 from tester.inputs.rig.profiles import extension_drive, extension_law
+from tester.inputs.rig.risks import Risk, beyond, counts_as_simulated, loosened
 
 OneRig = TypeVar("OneRig", bound=Rig)
 laws.look_up_with(extension_law)

@@ -11,9 +11,9 @@ from sim.physics.track import TrackParameters
 from tester.base.config_reader import Range
 from tester.base.quantities import Quantities
 from tester.base.source import Location
-from tester.inputs.rig.ceilings import AXES, TRUE, Ceiling, ceilings_of
+from tester.inputs.rig.ceilings import AXES, HIGHER, LOWER, TRUE, Ceiling, ceilings_of
 from tester.inputs.rig.config import CalibrationConfig, OwnDevice, Rig, section_of
-from tester.inputs.rig.parameter import SECTION, Direction, Parameter
+from tester.inputs.rig.parameter import SECTION, Parameter
 from tester.kinds.specimen_on_track import KIND
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
@@ -108,7 +108,6 @@ if TYPE_CHECKING:
 else:
     TrackInterlocksConfig = section_of("TrackInterlocksConfig", TABLE.parameters, __name__)
 
-LOWER, HIGHER = Direction.LOWER, Direction.HIGHER
 CEILINGS: Final = (
     Ceiling("limits.force", "N", LOWER, "195 N", "the cell ends at 200 N: beyond it nobody sees the force any more"),
     Ceiling("limits.track_speed", "m/s", LOWER, "2.1 m/s",

@@ -11,8 +11,7 @@ from tester.kinds.specimen_on_track.procedures.steps import TemperAir
 from tester.kinds.specimen_on_track.process import GATE_CONTACT, GATE_SETTLING, GATE_SPEED, GATE_TEMPERATURE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.engine import Engine
-from tester.machine.panel import RunPanel, soak_view
-from tester.machine.served import News, Wanted
+from tester.machine.panel import News, RunPanel, Wanted, soak_view
 
 HAND: Final = (
     HandAxis("track", "Track speed", "a tenth of the greatest a step, arm raised"),

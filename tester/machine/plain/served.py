@@ -14,12 +14,12 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
-from tester.machine.panel import NotReused, RunPanel, drives_alone
+from tester.machine.panel import News, NotReused, RunPanel, drives_alone
 from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
-from tester.machine.served import ByHand, History, Left, News
+from tester.machine.served import ByHand, History, Left
 from tester.machine.wires import STALE_INPUTS_S
 from tester.store.recorder import Recorder
 from tester.store.run_reader import RunReader

@@ -117,24 +117,20 @@ class AskBesideTrack:
         return self.ask.step(ctx)
 
 
-class ArmByHand:
+class ArmByHand(AskBesideTrack):
     """Ask a person to raise or lower an arm that has no drive."""
 
     def __init__(self, *, lowered: bool) -> None:
         """``lowered``: where it is to be."""
+        super().__init__(f"{'lower' if lowered else 'raise'} the arm")
         self.lowered = lowered
-        self.ask = AskBesideTrack(f"{'lower' if lowered else 'raise'} the arm")
-
-    def resume(self, ctx: TrackContext) -> None:
-        """Come to a stand again."""
-        self.ask.resume(ctx)
 
     def step(self, ctx: TrackContext) -> bool:
         """Done when a person says so."""
         if ctx.readings.lowered if self.lowered else ctx.readings.raised:
             ctx.demand.lowered = self.lowered
             return True
-        if not self.ask.step(ctx):
+        if not super().step(ctx):
             return False
         if self.lowered:
             ctx.attendant.lower_arm()

@@ -19,7 +19,7 @@ SHOW_S: Final = 1.0
 """How often people are told how far a wait has come, s."""
 
 
-class InstallSpecimen:
+class InstallSpecimen(AskBesideTrack):
     """Ask a person to put a specimen on the raised arm."""
 
     def __init__(self, step: MountSpecimen) -> None:
@@ -29,16 +29,12 @@ class InstallSpecimen:
         text = f"put specimen {step.piece} on the arm and raise it: {step.compound}{note}"
         if step.again:
             text = f"the run goes on with specimen {step.piece} on the raised arm: {step.compound}{note}"
-        self.ask = AskBesideTrack(text)
-
-    def resume(self, ctx: TrackContext) -> None:
-        """Come to a stand again."""
-        self.ask.resume(ctx)
+        super().__init__(text)
 
     def step(self, ctx: TrackContext) -> bool:
         """Done when it is on."""
         ctx.demand.tared = False
-        if not self.ask.step(ctx):
+        if not super().step(ctx):
             return False
         one = self.install
         ctx.attendant.install(one.specimen, one.piece, one.compound, new_specimen=not one.again)
@@ -54,21 +50,17 @@ class InstallSpecimen:
         return True
 
 
-class PrepareTrack:
+class PrepareTrack(AskBesideTrack):
     """Ask a person for other weights or another interface, where they are other ones."""
 
     def __init__(self, step: Prepare) -> None:
         """The step of the plan."""
+        super().__init__(step.text)
         self.prepare = step
-        self.ask = AskBesideTrack(step.text)
-
-    def resume(self, ctx: TrackContext) -> None:
-        """Come to a stand again."""
-        self.ask.resume(ctx)
 
     def step(self, ctx: TrackContext) -> bool:
         """Done when both are as they are to be."""
-        if not self.ask.step(ctx):
+        if not super().step(ctx):
             return False
         one = self.prepare
         ctx.attendant.put_on(one.load_n)

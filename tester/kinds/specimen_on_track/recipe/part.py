@@ -17,7 +17,6 @@ from tester.inputs.recipe.conditions import conditions_of
 from tester.inputs.recipe.grid_settings import Settings
 from tester.inputs.recipe.plain_recipe import Mount, SpecimenPart
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Stand, Step
-from tester.inputs.recipe.plan_text import repeats_words
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
 from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
@@ -172,7 +171,7 @@ class TrackPart(SpecimenPart):
                 told = condition_words(step.setpoint, compound=False)
                 rise_k = one.peak_c - held_by(step.setpoint).temperature_c
                 warm = "" if one.held else f", friction warms it by {rise_k:.0f} K"
-                return f"{step.condition:>4}  {told}  {repeats_words(step)} x {1e3 * step.distance_m:g} mm{warm}"
+                return f"{step.condition:>4}  {told}  {step.repeats_words} x {1e3 * step.distance_m:g} mm{warm}"
             case PromptStep():
                 return f"ask: {step.text}"
             case _:

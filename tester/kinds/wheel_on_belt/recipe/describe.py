@@ -10,7 +10,6 @@ from tester.analysis.reference import EVERY, RESERVED
 from tester.base.axes import condition_words
 from tester.base.words import listed_some, rough_duration
 from tester.inputs.recipe.plan import ConditionStep, PromptStep, Step
-from tester.inputs.recipe.plan_text import repeats_words, window_words
 from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, Estimate, StepEstimate
 from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
 from tester.kinds.wheel_on_belt.image.axes import held_by
@@ -43,7 +42,7 @@ def words(step: Step, one: StepEstimate) -> str:
             bursts = f", {one.bursts} bursts" if one.bursts > 1 else ""
             run_in = f", run-in {step.run_in_m:g} m" if step.both_directions and step.run_in_m else ""
             mark = "  reference" if step.reference else ""
-            scheme = f"{repeats_words(step)} x {window_words(step.window)}{bursts}{run_in}{mark}"
+            scheme = f"{step.repeats_words} x {step.window.words}{bursts}{run_in}{mark}"
             return f"{step.condition:>4}  {held}  {scheme}"
         case Cool():
             return f"cool the hub below {step.hub_below_c:g} degC"

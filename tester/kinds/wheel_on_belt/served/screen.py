@@ -22,8 +22,7 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.served.manual import HAND
 from tester.machine.engine import Engine
-from tester.machine.panel import RunPanel, soak_view
-from tester.machine.served import News, Wanted
+from tester.machine.panel import News, RunPanel, Wanted, soak_view
 
 KIND: Final = "wheel_on_belt"
 PLOTS: Final = (

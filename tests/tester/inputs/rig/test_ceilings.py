@@ -11,8 +11,8 @@ import yaml
 from drivers.canopen.dictionary import VENDOR_ID
 from tester.base.config_reader import key_of
 from tester.base.source import InvalidSource
-from tester.inputs.rig.ceilings import beyond, counts_as_simulated
 from tester.inputs.rig.rig_files import risks_of
+from tester.inputs.rig.risks import beyond, counts_as_simulated
 from tester.kinds import load_rig, load_rig_text, packaged_text
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 from tester.kinds.wheel_on_belt.rig.wheel_ceilings import CEILINGS
