@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import nan
 from typing import Any, Generic, TypeAlias, TypeVar
 
 from tester.inputs.rig import Rig
@@ -84,6 +85,16 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
     def touching(self) -> bool:
         """Return whether contact is wanted, or measured: then every scan is recorded."""
         return False
+
+    def piece(self) -> tuple[int, float, float]:
+        """Return number (0: none), diameter in mm (NaN: it has none) and sliding distance in m of the specimen."""
+        return 0, nan, 0.0
+
+    def record_piece(self, recorder: Recorder, now_s: float) -> None:
+        """Record the state of the specimen at ``now_s``, if there is one."""
+        number, diameter_mm, sliding_m = self.piece()
+        if number:
+            recorder.piece_state(number, diameter_mm, sliding_m, now_s)
 
     def known(self) -> list[str]:
         """Return what earlier runs make known of this rig, a line each, for the journal at arming."""

@@ -48,17 +48,12 @@ class Hand(Protocol):
         ...
 
 
-def _empty_plan() -> Plan:
-    """Return the plan of a run without a recipe."""
-    return Plan(NAME, (), (), 1)
-
-
 class ManualExecutor(Executor[Any]):
     """Replaces the executor: its demand follows a person's requests."""
 
     def __init__(self, hand: Hand) -> None:
         """Begin with the drives enabled, at rest and lifted."""
-        super().__init__(_empty_plan(), Procedures())
+        super().__init__(Plan(NAME, (), (), 1), Procedures())
         self.hand = hand
         self.used_s = float("nan")
         self.pressed_s = float("-inf")

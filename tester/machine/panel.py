@@ -83,17 +83,6 @@ def soak_view(
     )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class NotReused:
-    """A specimen that a finished run left on the rig: the next run begins with one of its own."""
-
-    known: bool
-
-    def usable(self, rig: Rig) -> bool:
-        """Return False: another one is taken to be on."""
-        return False
-
-
 def drives_alone(rig: Rig, *also: str) -> str:
     """Return what drives do without a master, and by when: the first of each one's two watchdogs that runs out.
 

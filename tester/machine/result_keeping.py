@@ -215,15 +215,15 @@ class StoredResults(Generic[ContextT]):
         n, each = len(step.scheme.values(self.repeats)), step.scheme.repeats_each
         return n >= LEAST_REPEATS and self._pooled(step).expanded_percent(n * each) <= step.until_percent
 
-    # -- by a kind ----------------------------------------------------------------------------------------------
+    # -- a kind may record more ----------------------------------------------------------------------------------
 
     def mounted(self, ctx: ContextT) -> int:
         """Return the number of the mounted specimen."""
-        raise NotImplementedError
+        return ctx.piece()[0]
 
     def record_mounted(self, ctx: ContextT) -> None:
         """Record the specimen's state after a repeat."""
-        raise NotImplementedError
+        ctx.record_piece(self.recorder, ctx.now)
 
 
 def condition_records(plan: Plan) -> Iterator[ConditionInfo]:

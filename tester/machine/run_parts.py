@@ -63,7 +63,7 @@ def _nothing(*_: object, **__: object) -> None:
 
 
 class KindRun:
-    """A kind, for running recipes. A kind implements ``build``, ``mount`` and ``store_state``.
+    """A kind, for running recipes. A kind implements ``build`` and ``mount``.
 
     An ``attendant`` is the hands at the rig: the kind's requests to a person, which a simulated rig carries out itself.
     Its methods are the kind's own.
@@ -119,4 +119,4 @@ class KindRun:
 
         ``now_s``: rig time.
         """
-        raise NotImplementedError
+        run.engine.ctx.record_piece(recorder, now_s)

@@ -53,34 +53,40 @@ class ByHand:
     mounted: str
 
 
-class ServedKind(Protocol):
-    """A kind, for a service."""
+@dataclass(frozen=True, slots=True)
+class NotReused:
+    """A specimen that a finished run left on the rig: the next run begins with one of its own."""
 
-    @property
-    def machine(self) -> MachineView:
-        """The tables that clients need."""
-        ...
+    known: bool
 
-    @property
-    def quantities(self) -> Quantities:
-        """The table of channels."""
-        ...
+    def usable(self, rig: Rig) -> bool:
+        """Return False: it is treated as changed."""
+        return False
+
+
+class ServedKind:
+    """A kind, for a service. The default of ``left`` is that of a kind that reuses no specimen."""
+
+    machine: MachineView
+    """The tables that clients need."""
+    quantities: Quantities
+    """The table of channels."""
 
     def title(self, step: Step) -> str:
         """Return a description of a step of a plan, in a line."""
-        ...
+        raise NotImplementedError
 
     def panel(self, engine: Engine) -> RunPanel:
         """Look at a run."""
-        ...
+        raise NotImplementedError
 
     def alone(self, rig: Rig) -> str:
         """Return what the rig's devices do by themselves when the process that owns the rig is gone, in words."""
-        ...
+        raise NotImplementedError
 
     def left(self, reader: RunReader, name: str) -> Left:
         """Return what a stored run of that name left on its rig. Raises StoreError."""
-        ...
+        return NotReused(any(True for _ in reader.pieces()))
 
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: Any, record: Recorder, left: Left | None, history: History
@@ -89,4 +95,4 @@ class ServedKind(Protocol):
 
         ``attendant``, ``history``: as in the kind's ``KindRun``.
         """
-        ...
+        raise NotImplementedError

@@ -106,6 +106,9 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         self._from_m = 0.0
         self._way = 0.0
 
+    def piece(self) -> tuple[int, float, float]:
+        return self.on.number, nan, self.on.sliding_m
+
     def after_reading(self) -> None:
         """Work out what follows from the readings: friction against the way, way slid, load, stretches."""
         r, demand, on = self.readings, self.demand, self.on

@@ -16,11 +16,11 @@ from tester.kinds.specimen_on_track.context import TrackAttendant, TrackContext
 from tester.kinds.specimen_on_track.control import TrackControl
 from tester.kinds.specimen_on_track.devices import TrackDevices
 from tester.kinds.specimen_on_track.procedures.arming import TrackArming
-from tester.kinds.specimen_on_track.procedures.slide import TrackResults
 from tester.kinds.specimen_on_track.procedures.steps import TrackProcedures
 from tester.kinds.specimen_on_track.process import TrackDemand
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.prompts import Prompts
+from tester.machine.result_keeping import StoredResults
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Run, run_of
 from tester.machine.run_parts import KindRun, NoHistory
@@ -57,7 +57,7 @@ class TrackRuns(KindRun):
         control = TrackControl(own, most_m_s)
         quantities = quantities_on(own)
         ctx = TrackContext(own, TrackDemand(), prompts, recorder, attendant, devices, quantities)
-        procedures = TrackProcedures(TrackResults(recorder, point=point))
+        procedures = TrackProcedures(StoredResults[TrackContext](recorder, point=point))
         arming = TrackArming(devices, own)
         return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
@@ -73,12 +73,6 @@ class TrackRuns(KindRun):
         """Yield the weights."""
         for number, weight_n in enumerate(TrackConfig.of(rig).weights, start=1):
             yield Calibration("weights", f"set {number}", repr(weight_n), "N")
-
-    def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
-        """Store how far the specimen has slid."""
-        on = run.engine.ctx.on
-        if on.number:
-            recorder.piece_state(on.number, float("nan"), on.sliding_m, now_s)
 
 
 RUNS: Final = TrackRuns()

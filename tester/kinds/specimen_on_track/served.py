@@ -19,15 +19,14 @@ from tester.kinds.specimen_on_track.screen import MACHINE, TrackPanel
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME as MANUAL
 from tester.machine.manual import ManualExecutor
-from tester.machine.panel import NotReused, drives_alone
+from tester.machine.panel import drives_alone
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.served import ByHand, History, Left, ServedKind
 from tester.store.recorder import Recorder
-from tester.store.run_reader import RunReader
 
 
-class SpecimenOnTrack:
+class SpecimenOnTrack(ServedKind):
     """Answers what a service asks of the kind."""
 
     machine: MachineView = MACHINE
@@ -47,10 +46,6 @@ class SpecimenOnTrack:
         also = ("The chamber stands by itself (30 s without a setpoint).",) if own.chamber else ()
         return drives_alone(own, "The arm stays where it is, with its weights.", *also)
 
-    def left(self, reader: RunReader, name: str) -> NotReused:
-        """Return what a run left on its rig."""
-        return NotReused(bool(reader.pieces()))
-
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: TrackAttendant, record: Recorder, left: Left | None, history: History
     ) -> ByHand:
@@ -64,4 +59,4 @@ class SpecimenOnTrack:
         return ByHand(run, executor, "whatever is on the arm")
 
 
-SERVED: Final[ServedKind] = SpecimenOnTrack()
+SERVED: Final = SpecimenOnTrack()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import nan
 from typing import Final, Protocol
 
 from drivers.sensor import Sensor
@@ -51,6 +52,9 @@ class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
         self.quantities = quantities
         self.sensors = sensors
         self.mounted: Mount | None = None
+
+    def piece(self) -> tuple[int, float, float]:
+        return (self.mounted.piece if self.mounted is not None else 0), nan, self.readings.slid_m
 
     def at_speed(self) -> bool:
         """Tell whether every drive has the speed that is wanted of it."""

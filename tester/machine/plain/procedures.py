@@ -157,23 +157,12 @@ class SteadyRepeat:
         return False
 
 
-class PlainResults(StoredResults[PlainContext]):
-    """Results of a plain machine."""
-
-    def mounted(self, ctx: PlainContext) -> int:
-        """Return the number of the specimen that is on."""
-        return ctx.mounted.piece if ctx.mounted is not None else 0
-
-    def record_mounted(self, ctx: PlainContext) -> None:
-        """Put on record how far it has slid."""
-        if ctx.mounted is not None:
-            self.recorder.piece_state(ctx.mounted.piece, nan, ctx.readings.slid_m, ctx.now)
-
-
 class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat]):
     """One condition: its repeats, from standstill to standstill."""
 
-    def __init__(self, step: ConditionStep, results: PlainResults, speeds: SpeedsOf, settle_s: float) -> None:
+    def __init__(
+        self, step: ConditionStep, results: StoredResults[PlainContext], speeds: SpeedsOf, settle_s: float
+    ) -> None:
         """``speeds``: what the condition demands of the drives."""
         super().__init__(step, results)
         self.speeds = speeds
@@ -205,7 +194,7 @@ class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat])
 class PlainProcedures(Procedures[PlainContext]):
     """Which activity serves which step."""
 
-    def __init__(self, part: PlainPart, results: PlainResults, speeds: SpeedsOf) -> None:
+    def __init__(self, part: PlainPart, results: StoredResults[PlainContext], speeds: SpeedsOf) -> None:
         """``speeds``: the kind's word for what a condition demands."""
         self.part = part
         self.results = results

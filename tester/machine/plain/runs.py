@@ -18,8 +18,9 @@ from tester.machine.plain.context import PlainAttendant, PlainContext
 from tester.machine.plain.control import PlainControl
 from tester.machine.plain.devices import PlainDevices
 from tester.machine.plain.image import PlainReadings
-from tester.machine.plain.procedures import PlainProcedures, PlainResults
+from tester.machine.plain.procedures import PlainProcedures
 from tester.machine.prompts import Prompts
+from tester.machine.result_keeping import StoredResults
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Run, run_of
 from tester.machine.run_parts import KindRun, Part
@@ -68,16 +69,10 @@ class PlainRuns(KindRun):
         readings.channels = [nan] * len(quantities.further)
         control = PlainControl(own, self.table, readings)
         ctx = PlainContext(own, readings, prompts, recorder, attendant, quantities, devices.own)
-        procedures = PlainProcedures(self.part, PlainResults(recorder, point=point), self.speeds)
+        procedures = PlainProcedures(self.part, StoredResults[PlainContext](recorder, point=point), self.speeds)
         arming = PlainArming(devices, own)
         return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: PlainAttendant, compound: str) -> None:
         """Put a new specimen on."""
         attendant.install(0, compound)
-
-    def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
-        """Store how far the specimen has slid."""
-        ctx: PlainContext = run.engine.ctx
-        if ctx.mounted is not None:
-            recorder.piece_state(ctx.mounted.piece, nan, ctx.readings.slid_m, now_s)

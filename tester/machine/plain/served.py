@@ -14,15 +14,14 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
-from tester.machine.panel import News, NotReused, RunPanel, drives_alone
+from tester.machine.panel import News, RunPanel, drives_alone
 from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
-from tester.machine.served import ByHand, History, Left
+from tester.machine.served import ByHand, History, Left, ServedKind
 from tester.machine.wires import STALE_INPUTS_S
 from tester.store.recorder import Recorder
-from tester.store.run_reader import RunReader
 
 STEPS_TO_TOP: Final = 20
 """By hand a drive gets to its greatest speed in this many steps [A]."""
@@ -81,7 +80,7 @@ class SpeedHand:
         return "sensors are zeroed when a specimen is put on"
 
 
-class PlainServed:
+class PlainServed(ServedKind):
     """Answers what a service asks of a plain kind."""
 
     def __init__(
@@ -119,10 +118,6 @@ class PlainServed:
     def alone(self, rig: Rig) -> str:
         """Return what the drives do by themselves."""
         return drives_alone(rig)
-
-    def left(self, reader: RunReader, name: str) -> NotReused:
-        """Return whether a run put a specimen on."""
-        return NotReused(any(True for _ in reader.pieces()))
 
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: PlainAttendant, record: Recorder, left: Left | None, history: History

@@ -208,22 +208,10 @@ class MeasureTrackRepeat:
         self.moves = Sequence(ComeToStand(), *arm(ctx, lowered=False))
 
 
-class TrackResults(StoredResults[TrackContext]):
-    """Results of a specimen on a track."""
-
-    def mounted(self, ctx: TrackContext) -> int:
-        """Return the specimen's number."""
-        return ctx.on.number
-
-    def record_mounted(self, ctx: TrackContext) -> None:
-        """Put the distance that the specimen has slid on record."""
-        self.recorder.piece_state(ctx.on.number, float("nan"), ctx.on.sliding_m, ctx.now)
-
-
 class MeasureTrackCondition(MeasureCondition[TrackContext, TrackCondition, MeasureTrackRepeat]):
     """State object of one condition."""
 
-    def __init__(self, step: TrackCondition, results: TrackResults) -> None:
+    def __init__(self, step: TrackCondition, results: StoredResults[TrackContext]) -> None:
         """``results``: where repeats go."""
         super().__init__(step, results)
         self.waits_since_s = inf

@@ -9,10 +9,11 @@ from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds.specimen_on_track.context import MountedSpecimen, TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
-from tester.kinds.specimen_on_track.procedures.slide import MeasureTrackCondition, TrackResults
+from tester.kinds.specimen_on_track.procedures.slide import MeasureTrackCondition
 from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.machine.activity import Activity
 from tester.machine.executor import Procedures, Unforeseen
+from tester.machine.result_keeping import StoredResults
 from tester.store.records import PieceInfo
 
 SHOW_S: Final = 1.0
@@ -95,7 +96,7 @@ class TemperAir:
 class TrackProcedures(Procedures[TrackContext]):
     """The steps of this machine."""
 
-    def __init__(self, results: TrackResults) -> None:
+    def __init__(self, results: StoredResults[TrackContext]) -> None:
         """``results``: where repeats go."""
         self.results = results
 

@@ -45,7 +45,7 @@ def _heating(rig: RigConfig) -> str:
     return "The jacket has no watchdog of its own: switch its supply off."
 
 
-class WheelOnBelt:
+class WheelOnBelt(ServedKind):
     """The kind's answers to a service."""
 
     machine: MachineView = MACHINE
@@ -76,4 +76,4 @@ class WheelOnBelt:
         return manual.by_hand(RigConfig.of(rig), ports, attendant, record, mounted, heat)
 
 
-SERVED: Final[ServedKind] = WheelOnBelt()
+SERVED: Final = WheelOnBelt()
