@@ -7,7 +7,6 @@ from math import inf, sqrt
 from typing import Final, Protocol
 
 from tester.analysis.judge import ALONE
-from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.schemes import scheme_of
 from tester.analysis.uncertainty import CONFIDENCE
