@@ -151,7 +151,7 @@ class MeasureRepeat(CentredBursts):
 
     def _ready(self, ctx: Context) -> None:
         self._demand_heat(ctx)
-        surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
+        surface, target = ctx.gates.surface.now_c, self.setpoint.temperature_c
         waited = ctx.now - self.ready_since_s
         if waited > self.condition.soak.at_most_s:
             self._end(ctx, Ending.NOT_REACHED, f"surface at {surface:.1f} degC after {waited / 60:.0f} min")
@@ -169,7 +169,7 @@ class MeasureRepeat(CentredBursts):
         """Turn lifted until the surface is back at its temperature, then touch again; the wait keeps counting."""
         self._demand_heat(ctx)
         self.moves.step(ctx)
-        surface, target = ctx.gates.surface_now_c(), self.setpoint.temperature_c
+        surface, target = ctx.gates.surface.now_c, self.setpoint.temperature_c
         if surface <= target - self.offset_k or ctx.now - self.cooling_since_s > COOL_AT_MOST_S:
             self._roll()
 
@@ -199,7 +199,7 @@ class MeasureRepeat(CentredBursts):
         ctx.moving = True
         run_in = self.run_in
         done = run_in.slide(ctx.readings.slip_m_s * ctx.dt)
-        if not done and ctx.gates.surface_now_c() < self.target_c + self.band_k:
+        if not done and ctx.gates.surface.now_c < self.target_c + self.band_k:
             return
         if not done and run_in.pulses >= self.condition.max_bursts:
             self._end(ctx, Ending.CANNOT_HOLD, f"{run_in.left_m:.1f} m of run-in left after {run_in.pulses} pulses")

@@ -113,10 +113,6 @@ class Gates:
         self.touched_s = float("inf")
         """When the wheel last touched; samples settle for a second after it (contact transient)."""
 
-    def surface_now_c(self) -> float:
-        """Return the surface temperature with the thermometer's lag and that of its filter allowed for, degC."""
-        return self.surface.now_c
-
     def update(self, r: Readings, dt: float) -> int:
         """Return the mask of closed gates for this scan (0 = the sample counts)."""
         t = self.target

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
+from tester.inputs.recipe.plan import Mounted
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, speeds_reached
@@ -12,7 +13,7 @@ from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
-from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind, WornState
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind
 from tester.machine.motions import Power, Sequence
 from tester.store.records import PieceInfo
 
@@ -125,7 +126,7 @@ class InstallWheel:
         ctx.view.wheel_changed(ctx.now)
         return True
 
-    def _remount(self, ctx: Context, worn: WornState) -> None:
+    def _remount(self, ctx: Context, worn: Mounted) -> None:
         """Resume with a wheel as the store knows it: its record, its first tare and its number stay."""
         step = self.install
         ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import accumulate, count
 from typing import TYPE_CHECKING
 
@@ -83,21 +82,6 @@ def _changes(sums: list[float], start: int, room: float, fresh: float) -> int:
         changes += 1
 
 
-@dataclass(slots=True)
-class _Wheel:
-    """The work assigned to the present wheel so far."""
-
-    number: int
-    specimen: int
-    replicate: int
-    loss_mm: float
-    sliding_m: float
-    conditions: int = 0
-
-    def wear(self) -> WheelWear:
-        return WheelWear(self.number, self.specimen, self.replicate, self.conditions, self.loss_mm, self.sliding_m)
-
-
 class _Expansion:
     """Builds the steps of one plan."""
 
@@ -109,7 +93,7 @@ class _Expansion:
         self.conditions = conditions_of(recipe, wheel_settings)
         self.references = ReferenceRounds(recipe, rig.ambient_c, len(self.conditions))
         self.steps: list[WheelStep] = []
-        self.wheels: list[_Wheel] = []
+        self.wheels: list[WheelWear] = []
         self.count = 0
         self.at_c: float | None = None
         """Surface of the wheel that is on, as the last steps left it; None of a new one."""
@@ -137,7 +121,7 @@ class _Expansion:
             axes=recipe.axes,
             steps=tuple(self.steps),
             specimens=(*specimens, *self.references.specimens),
-            wear=tuple(wheel.wear() for wheel in self.wheels),
+            wear=tuple(self.wheels),
             replace_after_mm=recipe.wheel.replace_after,
             min_valid=min((condition.settings.min_valid for condition in self.conditions), default=1),
             prepare=self.prepare,
@@ -180,12 +164,12 @@ class _Expansion:
                     self._prompts(self.every_condition)
                 self._measure(wheel, condition, setpoints[condition.row - 1], costs[condition.row - 1])
 
-    def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> _Wheel:
+    def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> WheelWear:
         if self.references.reserved is not None and self.conditions:
             self._on_reserved(self.references.reserved)
         return self._mount(specimen, replicate, heat_c)
 
-    def _mount(self, specimen: Specimen, replicate: int, heat_c: float | None) -> _Wheel:
+    def _mount(self, specimen: Specimen, replicate: int, heat_c: float | None) -> WheelWear:
         number = len(self.wheels) + 1
         self.at_c = heat_c
         self.steps += prepare_wheel(
@@ -199,7 +183,7 @@ class _Expansion:
         )
         grind = self.prepare.pre_grind
         ground = self.estimator.pre_grind(grind, specimen.compound) if grind else StepEstimate(0.0)
-        wheel = _Wheel(number, specimen.index, replicate, ground.loss_mm, ground.sliding_m)
+        wheel = WheelWear(number, specimen.index, replicate, 0, ground.loss_mm, ground.sliding_m)
         self.wheels.append(wheel)
         return wheel
 
@@ -210,27 +194,27 @@ class _Expansion:
         held_c = self.held(condition.values)
         if not reserved.number:
             wheel = self._mount(specimen, 1, held_c)
-            reserved.number = wheel.number
+            reserved.number = wheel.wheel
         else:
             wheel = self.wheels[reserved.number - 1]
             self._remount(wheel, specimen, held_c)
         setpoint = Setpoint(specimen.compound, condition.values, self.recipe.axes)
         self._measure(wheel, condition, setpoint, self.estimator.costs.of(setpoint, condition.settings), reference=True)
 
-    def _exchanged(self, wheel: _Wheel, specimen: Specimen, held_c: float) -> None:
+    def _exchanged(self, wheel: WheelWear, specimen: Specimen, held_c: float) -> None:
         """Put the reserved wheel on for a reference, then the present one again."""
         assert self.references.reserved is not None
         self._on_reserved(self.references.reserved)
         self._remount(wheel, specimen, held_c)
 
-    def _remount(self, wheel: _Wheel, specimen: Specimen, held_c: float) -> None:
+    def _remount(self, wheel: WheelWear, specimen: Specimen, held_c: float) -> None:
         cool_c = self.references.hub_below_c(held_c)
         numbers = count(len(self.steps))
-        self.steps += mount_again(specimen, wheel.replicate, wheel.number, held_c, cool_c, numbers=numbers)
+        self.steps += mount_again(specimen, wheel.replicate, wheel.wheel, held_c, cool_c, numbers=numbers)
 
     def _measure(
         self,
-        wheel: _Wheel,
+        wheel: WheelWear,
         condition: Condition[WheelSettings],
         setpoint: Setpoint,
         cost: StepEstimate,
@@ -252,7 +236,7 @@ class _Expansion:
             WheelCondition(
                 len(steps), self.count, row, wheel.specimen, wheel.replicate, grid, setpoint, how.repeats,
                 how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most, how.until_percent,
-                wheel.number, how.max_bursts, how.wear_check, how.run_in_m, reference,
+                wheel.wheel, how.max_bursts, how.wear_check, how.run_in_m, reference,
                 both_directions=how.both_directions,
             )
         )  # fmt: skip

@@ -9,18 +9,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias
 
-from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
+from tester.inputs.recipe.plan import ConditionStep, Mounted, Plan, PromptStep, Step
 
 WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
 """Diameter check after a condition: not at all, by rolling at zero slip, or measured by a person."""
-
-
-@dataclass(frozen=True, slots=True)
-class WornState:
-    """State of a wheel that is used again after an interruption: diameter in mm, sliding distance in m."""
-
-    diameter_mm: float
-    sliding_m: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +29,7 @@ class Install(Step):
     compound: str
     note: str = ""
     replicate: int = 1
-    worn: WornState | None = None
+    worn: Mounted | None = None
     again: bool = False
 
 
@@ -103,9 +95,9 @@ class Cool(Step):
 WheelStep: TypeAlias = Install | PreGrind | Rest | Heat | WheelCondition | Cool | PromptStep
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class WheelWear:
-    """Predicted wear of a wheel in the plan: loss of diameter in mm, sliding distance in m."""
+    """Predicted wear of a wheel in the plan: loss of diameter in mm, sliding distance in m; it grows with the plan."""
 
     wheel: int
     specimen: int

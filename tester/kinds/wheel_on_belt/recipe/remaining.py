@@ -22,7 +22,6 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     WheelCondition,
     WheelPlan,
     WheelStep,
-    WornState,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel
 
@@ -89,9 +88,8 @@ def _only_prepared(plan: WheelPlan, segment: Sequence[WheelStep], wheel: Mounted
 
 def _mounted(plan: WheelPlan, wheel: Mounted) -> Install:
     specimen = plan.specimen(wheel.specimen)
-    state = WornState(wheel.diameter_mm, wheel.sliding_m)
     return Install(
-        INSERTED, wheel.specimen, wheel.number, specimen.compound, specimen.note, wheel.replicate, worn=state
+        INSERTED, wheel.specimen, wheel.number, specimen.compound, specimen.note, wheel.replicate, worn=wheel
     )
 
 
