@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from tester.inputs.rig.parameter import Parameter
-from tester.kinds.wheel_on_belt.interlocks import friction, hub, load, motion, operation, rest, stops, surface, witness
+from tester.kinds.wheel_on_belt.interlocks import friction, hub, load, motion, operation, stops, surface, witness
 from tester.machine import wires
 from tester.machine.interlock_sheet import InterlockSheet
 from tester.machine.interlock_table import InterlockTable
@@ -14,7 +14,7 @@ from tester.machine.row import Interlock
 TABLE: Final = InterlockTable(
     (
         *wires.ROWS, *motion.ROWS, *load.ROWS, *witness.ROWS, *friction.ROWS, *surface.ROWS, *hub.ROWS,
-        wires.DEVICE_REFUSED, wires.LINE_NOISY, surface.WHEEL_WORN, *stops.ROWS, *rest.ROWS, *wires.WARNINGS,
+        wires.DEVICE_REFUSED, wires.LINE_NOISY, surface.WHEEL_WORN, *stops.ROWS, *wires.WARNINGS,
     ),
     operation.PARAMETERS,
 )  # fmt: skip
