@@ -18,10 +18,9 @@ from tester.inputs.recipe.repeats_section import MADE_UP, POOLED_DF, SURE, expec
 from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_TURNS, instruments_budget, roll_check_u_mm
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, held_by
-from tester.kinds.wheel_on_belt.recipe.body import Body
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
 from tester.kinds.wheel_on_belt.recipe.cost import ROLLING_M_S, ConditionCosts
-from tester.kinds.wheel_on_belt.recipe.order import Before, OrderCosts
+from tester.kinds.wheel_on_belt.recipe.order import Before, Body, OrderCosts
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Cool,
     Heat,

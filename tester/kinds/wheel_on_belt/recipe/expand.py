@@ -25,7 +25,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     WheelStep,
     WheelWear,
 )
-from tester.kinds.wheel_on_belt.recipe.rounds import ReferenceRounds, ReservedWheel
+from tester.kinds.wheel_on_belt.recipe.references import ReferenceRounds, ReservedWheel
 from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe, WheelSettings, wheel_settings
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, mount_again, prepare_wheel
 
