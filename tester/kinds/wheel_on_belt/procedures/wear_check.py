@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from math import hypot, isfinite, pi
-from typing import Final, NamedTuple
+from typing import Final
 
 from tester.analysis.wear_rate import NO_CONDITION, WearCheck
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N, ROLL_CHECK_TURNS, roll_check_u_mm
@@ -82,7 +82,10 @@ class RollCheck:
         if reference is None:
             reference = wheel.reference = CheckReference(ctx.now, cold_mm, wheel.loss_mm)
         loss_mm = reference.loss_mm + 2.0 * (cold_mm - reference.press_mm)
-        conclude(ctx, self.before, Taken("roll", reference.at_s, loss_mm, u_mm, mean_c, press_mm, load_n))
+        conclude(
+            ctx, self.before, "roll", loss_mm, u_mm, reference_s=reference.at_s, rubber_c=mean_c, press_mm=press_mm,
+            load_n=load_n,
+        )  # fmt: skip
 
 
 class CheckByRolling:
@@ -148,7 +151,7 @@ class CheckByPerson:
             wheel.by_hand_s = ctx.now
         u_mm = hypot(wear.gauge_mm, wear.growth_mm_per_k * wear.check_rubber_k)
         loss_mm = wheel.installed_mm - (found_mm - wear.growth_mm(mean_c))
-        conclude(ctx, self.before, Taken("person", wheel.by_hand_s, loss_mm, u_mm, mean_c))
+        conclude(ctx, self.before, "person", loss_mm, u_mm, reference_s=wheel.by_hand_s, rubber_c=mean_c)
         return True
 
 
@@ -162,34 +165,28 @@ def measured_mm(answer: str) -> float | None:
     return float(match[1].replace(",", ".")) if match is not None else None
 
 
-class Taken(NamedTuple):
-    """Result of a check: loss of diameter and its standard uncertainty, mm, and their sources."""
+def conclude(
+    ctx: Context, before: int, method: str, loss_mm: float, u_mm: float, *, reference_s: float, rubber_c: float,
+    press_mm: float = NAN, load_n: float = NAN,
+) -> None:  # fmt: skip
+    """Record a check, and use its loss of diameter from now on if it is trustworthy.
 
-    method: str
-    reference_s: float
-    loss_mm: float
-    u_mm: float
-    rubber_c: float
-    press_mm: float = NAN
-    load_n: float = NAN
-
-
-def conclude(ctx: Context, before: int, taken: Taken) -> None:
-    """Record a check and use its loss of diameter from now on, if it is trustworthy."""
-    wheel, wear, loss_mm, u_mm = ctx.wheel, ctx.rig.wear, taken.loss_mm, taken.u_mm
+    ``loss_mm``, ``u_mm``: loss of diameter since ``reference_s``, and its standard uncertainty.
+    """
+    wheel, wear = ctx.wheel, ctx.rig.wear
     check = WearCheck(
         piece=wheel.wheel,
-        method=taken.method,
+        method=method,
         t_s=ctx.now,
-        reference_s=taken.reference_s,
+        reference_s=reference_s,
         before=before,
         after=wheel.condition,
         diameter_mm=wheel.installed_mm - loss_mm,
         u_mm=u_mm,
-        rubber_c=taken.rubber_c,
+        rubber_c=rubber_c,
         u_growth_mm_k=wear.growth_uncertainty_mm_per_k,
-        press_mm=taken.press_mm,
-        load_n=taken.load_n,
+        press_mm=press_mm,
+        load_n=load_n,
         sliding_m=wheel.sliding_m,
         exposure_n_m=wheel.exposure_n_m,
         width_mm=wheel.width_mm,
@@ -198,7 +195,7 @@ def conclude(ctx: Context, before: int, taken: Taken) -> None:
         expected_mm=wheel.cold_mm,
     )
     doubt = _doubt(ctx, check)
-    text = f"loss of diameter {loss_mm:.3f} mm by {taken.method} check (u {u_mm:.3f} mm)"
+    text = f"loss of diameter {loss_mm:.3f} mm by {method} check (u {u_mm:.3f} mm)"
     text += f", {wheel.loss_mm:.3f} mm estimated"
     ctx.journal.wear_check(replace(check, used=int(not doubt)))
     if doubt:
