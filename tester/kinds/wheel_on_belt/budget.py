@@ -1,4 +1,4 @@
-"""What this machine's measuring chain may be off by."""
+"""Possible errors of this machine's measuring chain."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ compounds."""
 
 
 def terms_of(cell_sensitivity: float, record: str) -> tuple[Term, ...]:
-    """Return the terms of a rig; one whose cell was calibrated with weights has what was found in them.
+    """Return the terms of a rig, with the result of a calibration of its cell with weights, if there was one.
 
     ``cell_sensitivity``: of Fx over Fz, with its standard uncertainty (``commission.weights``), 0: not stated.
     """
@@ -69,9 +69,9 @@ BETWEEN_PERCENT: Final = 100.0 * sum(term.standard for term in TERMS if term.act
 def instruments_budget(
     held: Held, mu: float, sliding_m_s: float, size: Size, slope: Slope, *, both_directions: bool = False
 ) -> Budget:
-    """Return what the measuring chain adds to the uncertainty of a coefficient that is expected.
+    """Return the measuring chain's part of the uncertainty of an expected coefficient.
 
-    ``size``: of the wheel, as it is expected by then; ``slope``: what is known of the sensitivity to temperature.
+    ``size``: of the wheel, as it is expected by then; ``slope``: the known sensitivity to temperature.
     """
     means = {"wheel_speed_m_s": held.wheel_speed_m_s, "belt_speed_m_s": held.belt_speed_m_s}
     turning = {"wheel_speed_m_s": 0.0, "belt_speed_m_s": -held.slip_velocity_m_s} if both_directions else None

@@ -1,4 +1,4 @@
-"""Updates the inputs of the interlocks' conditions, once a scan."""
+"""The inputs of the interlocks' conditions, brought up to date once a scan."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class InterlockInputs(Inputs):
     """What earlier runs make known of the heat balance, in words."""
 
     def __post_init__(self) -> None:
-        """Take over the parts of the rig file that conditions compare with, and the state they look at."""
+        """Take over the rig file's limits for the conditions, and control's state."""
         rig, state = self.rig, self.state
         self.parameters = p = values_of(rig.interlocks, rig.table.parameters)
         self.note_further(rig)
@@ -58,7 +58,7 @@ class InterlockInputs(Inputs):
         self.heat = _heat_balance(rig, p)
 
     def look(self, demand: Demand, r: Readings, scan_s: float, dt: float) -> None:
-        """Take this scan's demand and readings, and work out what several conditions ask for."""
+        """Take this scan's demand and readings, and compute the values that several conditions use."""
         self.demand, self.readings = demand, r
         state = self.state
         self.note_times(state, r.now_s, scan_s)
@@ -121,28 +121,28 @@ class InterlockInputs(Inputs):
             self.rest_mm = r.press_mm
 
     def wheel_changed(self, now: float) -> None:
-        """Begin anew with a wheel at ambient temperature: nothing is compared with the one before."""
+        """Restart with a wheel at ambient temperature: nothing is compared with the wheel before."""
         self.observer.new_wheel()
         self._forget_readings(now)
 
     def know_heat(self, known: KnownRatio) -> None:
-        """Take over what the rig's own heatings have shown, before the first scan."""
+        """Take over the history of the rig's heatings, before the first scan."""
         widest, beyond = self.parameters[hub.HEAT_SHARE], self.parameters[hub.HEAT_SHARE_KNOWN]
         self.heat.share = known.share(widest, beyond)
         self.heat_known = known.words(widest, beyond)
 
     def _forget_readings(self, now: float) -> None:
-        """Compare no temperature with the one before."""
+        """Compare the next temperatures with no earlier ones."""
         self.surface.forget(now)
         self.jacket.forget(now)
         self.heat.forget()
 
 
 def limits_of(rig: RigConfig) -> RigLimits:
-    """Take over what conditions compare with from a rig file's sections beside ``interlocks``.
+    """Return the limits of a rig file's sections beside ``interlocks`` with which conditions compare.
 
     The configuration is known by its annotations and therefore stays Python where the scan is compiled
-    (docs/decisions/0019); asking it in every scan would cost more than comparing.
+    (docs/decisions/0019); reading it in every scan would cost more than comparing.
     """
     limits, belt = rig.limits, rig.axes.belt
     low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)

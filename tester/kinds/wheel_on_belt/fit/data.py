@@ -26,7 +26,7 @@ _AGAIN: Final = "_dupT"
 
 
 class Reading(Enum):
-    """What is done with inferred rows."""
+    """The treatment of inferred rows."""
 
     WITHOUT = "without"
     """They are left out. Every verdict is of this reading."""

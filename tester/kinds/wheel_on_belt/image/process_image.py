@@ -1,4 +1,4 @@
-"""The process image: what one scan knows, what the recipe wants, and what is commanded.
+"""The process image: the readings of a scan, the recipe's demand, and the commands.
 
 One instance of each exists per rig. The scan overwrites the fields in place at fixed places (inputs fill
 ``Readings``, the executor writes ``Demand``, control writes ``Setpoints``): like a PLC's image it is

@@ -1,4 +1,4 @@
-"""Records angle and speed of the wheel whenever a request over its slip ring fails.
+"""The record of the wheel's angle and speed whenever a request over its slip ring fails.
 
 The record is stored with the counters of the buses when a run, or a part of one, ends; ``tester.analysis.ring_errors``
 evaluates it. The wheel's angle is integrated from the wheel's speed: it counts from the wheel's position when mounted,

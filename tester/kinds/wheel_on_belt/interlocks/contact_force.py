@@ -23,7 +23,7 @@ _DEPTH_SHARE: Final = 1.0 / (1.0 - STIFFNESS_EXPONENT)
 
 @dataclass(slots=True)
 class Contact:
-    """What the load loop knows of the contact."""
+    """The contact as the load loop tracks it."""
 
     contact_mm: float = nan
     """Press position at the last first touch; NaN until the wheel has been touched since its installation."""

@@ -69,7 +69,7 @@ class HeatBalance:
     _hub_c: float = nan
 
     def forget(self) -> None:
-        """Begin anew: a person was at the wheel and its hub, or another wheel is on."""
+        """Restart: a person was at the wheel and its hub, or another wheel is on."""
         self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
         self.still_k = self._lost_w = 0.0
         self._smoothing = False
@@ -126,7 +126,7 @@ which heating up hardly shows."""
 
 @dataclass(frozen=True, slots=True)
 class KnownRatio:
-    """What the heatings of a rig have shown: how many count, their ratio, and by how much the newest lie apart."""
+    """The history of a rig's heatings: their number, their ratio, and by how much the newest differ."""
 
     count: int = 0
     ratio: float = nan

@@ -21,7 +21,7 @@ from tester.machine.wires import STALE_INPUTS_S
 
 @dataclass(slots=True)
 class RigLimits:
-    """What conditions compare with beside their own parameters: numbers from the rig file's other sections."""
+    """Limits beside the conditions' own parameters: numbers from the rig file's other sections."""
 
     load_n: float
     heartbeat_s: float
@@ -69,7 +69,7 @@ class PressBand:
 
 @dataclass(slots=True)
 class StopStart:
-    """What a stop began from."""
+    """The state in which a stop began."""
 
     speed_m_s: float = 0.0
     """The faster of wheel and belt."""
@@ -87,7 +87,7 @@ class Inputs(ScanInputs):
     readings: Readings = field(init=False)
     demand: Demand = field(init=False)
     setpoints: Setpoints = field(init=False)
-    """What the scan before has commanded."""
+    """The commands of the scan before."""
     contact: Contact = field(init=False)
     stop_start: StopStart = field(init=False)
     hub_setpoints: list[tuple[float, float]] = field(init=False)
@@ -101,7 +101,7 @@ class Inputs(ScanInputs):
     force: ForceObserver = field(init=False)
     heat: HeatBalance = field(init=False)
     model_c: float = nan
-    """What the thermal observer has for the rubber's surface."""
+    """The rubber's surface by the thermal observer."""
     pressing: bool = False
     """Contact is wanted."""
     turning: bool = False

@@ -1,4 +1,4 @@
-"""What takes more than one reading to see: rates, jumps, values that stand still, speeds on their ramps.
+"""Monitors of several readings: rates, jumps, values that stand still, speeds on their ramps.
 
 Each monitor is brought up to date when something new has arrived, not in every scan; the interlocks compare its
 results in every scan.
@@ -50,7 +50,7 @@ class JacketMonitor:
         self.blind_until_s = now + self.blind_s
 
     def update(self, r: Readings, heat: bool, setpoint_c: float) -> None:
-        """Take in a new reading; ``heat`` and ``setpoint_c`` (degC) are what is commanded."""
+        """Take in a new reading; ``heat`` and ``setpoint_c`` (degC) are the commands."""
         stamp = r.jacket_at_s
         dt, self.stamp_s = stamp - self.stamp_s, stamp
         if not heat or r.heat_percent <= 0.0:
@@ -119,7 +119,7 @@ class SurfaceMonitor:
         self.blind_until_s = now + self.blind_s
 
     def update(self, r: Readings, model_c: float) -> None:
-        """Take in a new reading; ``model_c`` is what the observer has for it."""
+        """Take in a new reading; ``model_c``: the same by the observer."""
         self.stamp_s = r.surface_at_s
         if r.surface_changed_s > self.changed_s or not isfinite(self.model_c):
             self.changed_s = r.surface_changed_s
@@ -133,7 +133,7 @@ class SurfaceMonitor:
 
 @dataclass(slots=True)
 class PressTracker:
-    """How far the press has come towards the contact beyond its commands."""
+    """The press's travel towards the contact beyond its commands."""
 
     ramp_mm_s2: float
     """Of a slow ramp."""

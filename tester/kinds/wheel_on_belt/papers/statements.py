@@ -1,4 +1,4 @@
-"""What the paper states in words: numbers of its text, errors that it quotes, its appendices, its conclusions."""
+"""Statements of the paper in words: numbers of its text, errors that it quotes, its appendices, its conclusions."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ PRESS_BUMP_MM = 0.2
 
 
 class Bump(Enum):
-    """Which drive is moved to see that it follows."""
+    """The drive that is moved to see that it follows."""
 
     WHEEL = "turn the wheel"
     BELT = "turn the belt"
@@ -80,7 +80,7 @@ class Proof(WatchdogProof):
         axes.belt.target = creep if belt else 0.0
 
     def move(self, now: float, elapsed: float) -> bool:
-        """See that each drive follows, one after the other."""
+        """Check that each drive follows, one after the other."""
         if elapsed < BUMP_S:
             return False
         if self.bump is Bump.PRESS:

@@ -90,7 +90,7 @@ class RunIn:
         self.pulses = 0
 
     def slide(self, distance_m: float) -> bool:
-        """Take in what has been slid in a scan; return whether the run-in is over."""
+        """Take in the distance slid in a scan; return whether the run-in is over."""
         self.left_m -= distance_m
         return self.left_m <= 0.0
 
@@ -107,7 +107,7 @@ def run_in_m(step: WheelCondition, repeat: int) -> float:
 
 
 class CentredBursts:
-    """The bursts of a repeat by their temperature: where the next one starts, when it is over, what it teaches."""
+    """The bursts of a repeat by their temperature: where a burst starts, when it is over, how the start is learned."""
 
     def __init__(self, step: WheelCondition, setpoint: Held, offset_k: float, counter: BlockCounter) -> None:
         """``offset_k``: how far below the setpoint bursts start, from the repeat before."""
@@ -185,7 +185,7 @@ class CentredBursts:
             self.offset_k = max(self.offset_k + 0.7 * mean_k, OFFSET_LEAST_K)
 
     def _band_needed(self, ctx: Context) -> str:
-        """Work out how fast the surface warms and which band would hold one whole revolution; return it as text.
+        """Return the surface's rate of warming and the band that would hold a whole revolution, as text.
 
         The trend's filter needs seconds to follow: in a short burst the rise from reading to reading is more exact.
         A band in which nothing could be counted is never reported as sufficient.

@@ -55,7 +55,7 @@ _MOVE_OUT: Final = Phase.MOVE_OUT
 
 
 class MeasureRepeat(CentredBursts):
-    """State object of one repeat."""
+    """The activity of one repeat."""
 
     def __init__(
         self,

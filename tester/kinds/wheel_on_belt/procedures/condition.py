@@ -19,7 +19,7 @@ from tester.machine.motions import Sequence
 
 
 class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRepeat]):
-    """State object of one condition."""
+    """The activity of one condition."""
 
     def __init__(self, step: WheelCondition, results: WheelResults, reference_tare: list[float]) -> None:
         """``reference_tare``: the wheel's first zero."""

@@ -71,7 +71,7 @@ class Touch:
 
 
 class Friction:
-    """Average friction and load at the wheel's speed and another one of the belt."""
+    """Average friction and load at the wheel's speed and another speed of the belt."""
 
     def __init__(self, wheel_m_s: float, belt_m_s: float) -> None:
         """Both speeds, m/s."""

@@ -41,7 +41,7 @@ class Average:
     age_s: float = 0.0
 
     def update(self, x: float, target: float, dt: float) -> float:
-        """Take in one value that stood for ``dt`` s; return the average."""
+        """Take in a value that lasted ``dt`` s; return the average."""
         value = self.value
         off, jump = abs(x - target), RESTART_SHARE * abs(target)
         if (off > self.floor and off > jump) or not -_INF < value < _INF:
@@ -79,7 +79,7 @@ class SurfaceTrend:
     """The temperature with the thermometer's lag and that of the filter allowed for, degC."""
 
     def update(self, surface_c: float, stamp_s: float, lag_s: float) -> None:
-        """Take in a reading of a thermometer with a lag; one that is not newer than the last is ignored."""
+        """Take in a reading of a thermometer with a lag; a reading that is not newer than the last is ignored."""
         if stamp_s <= self.stamp_s or not isfinite(surface_c):
             return
         dt, self.stamp_s = stamp_s - self.stamp_s, stamp_s
@@ -95,7 +95,7 @@ class SurfaceTrend:
 
 
 class Gates:
-    """The live gates of one rig."""
+    """The live gates of a rig."""
 
     def __init__(self, config: GatesConfig) -> None:
         """Start with nothing known: every gate closed."""

@@ -53,7 +53,7 @@ class Unloaded:
 
     @property
     def done(self) -> bool:
-        """The press is lifted and the cell unloaded, or one of the two could not be shown."""
+        """Whether the press is lifted and the cell unloaded, or either could not be shown."""
         return self.stage is LiftStage.WATCH or bool(self.failure)
 
     def step(self, now: float) -> None:

@@ -114,7 +114,7 @@ class Yaw(Move):
     name = "reaching the angles"
 
     def __init__(self, positions: Mapping[str, float] | None = None) -> None:
-        """Where to; None: all of them to zero, straight."""
+        """``positions``: the targets; None: zero for all, straight."""
         self.positions = positions
         self.began_s = float("nan")
 

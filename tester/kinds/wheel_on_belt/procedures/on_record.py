@@ -1,4 +1,4 @@
-"""What a condition puts on record beside its samples: the wheel's state after a repeat, the check after a soak.
+"""A condition's record beside its samples: the wheel's state after a repeat, the check after a soak.
 
 Rolling without slip, the surface is colder than the hub by what the air takes. The thermal observer works that out
 from the hub's sensor alone (``control.observer``), so that the check compares thermometer and hub. They may differ by
@@ -72,7 +72,7 @@ def allowed_k(hub_c: float, model_c: float) -> float:
 
 
 def soak_check(ctx: Context, condition: int) -> SoakCheck | None:
-    """Return thermometer and model at the end of a condition's soak; None where one of them is not known."""
+    """Return thermometer and model at the end of a condition's soak; None where either is unknown."""
     r, observer = ctx.readings, ctx.observer
     if not r.jacket_valid or not isfinite(observer.surface_c):
         return None

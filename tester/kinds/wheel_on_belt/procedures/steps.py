@@ -1,4 +1,4 @@
-"""Which activity serves which step of a plan, and unforeseen work: a worn wheel, a person at it."""
+"""The activities for the steps of a plan, and unforeseen work: a worn wheel, a person at it."""
 
 from __future__ import annotations
 

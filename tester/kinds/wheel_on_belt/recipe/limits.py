@@ -1,4 +1,4 @@
-"""Checks a recipe against the rig's limits; each problem has the position of the value and the source of the limit.
+"""Checks of a recipe against the rig's limits; each problem has the position of the value and the source of the limit.
 
 It checks the file's tree, value by value, instead of the validated recipe: a recipe with a misspelt key also gets its
 load beyond the limit reported, so that all problems come at once. The schema reports unreadable values itself.

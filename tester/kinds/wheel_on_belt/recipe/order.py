@@ -104,7 +104,7 @@ class OrderCosts:
     """Extra cost of a condition for its place in the plan."""
 
     def __init__(self, rig: RigConfig, constants: EstimateConstants, body: Body) -> None:
-        """Take what the formulas need of the rig."""
+        """Take the formulas' parameters from the rig."""
         self.constants = constants
         self.body = body
         self.ambient_c = rig.ambient_c

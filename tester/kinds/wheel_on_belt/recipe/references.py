@@ -87,7 +87,7 @@ class ReservedWheel:
 
 
 class ReferenceRounds:
-    """The references of one plan, as they are given out."""
+    """The references of one plan, handed out one after the other."""
 
     def __init__(self, recipe: WheelRecipe, ambient_c: float, conditions: int) -> None:
         """``conditions``: of one replicate; ``ambient_c``: at the rig, degC."""

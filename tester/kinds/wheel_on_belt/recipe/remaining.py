@@ -27,7 +27,7 @@ from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_whe
 
 
 def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
-    """Return the plan of what is left to do; without steps where nothing is."""
+    """Return the plan of the steps that are left; without steps where none is."""
     steps: list[WheelStep] = []
     for segment in _segments(plan):
         steps += segment if steps and plan.references else _rest_of(plan, segment, stand)
@@ -49,7 +49,7 @@ def _segments(plan: WheelPlan) -> Iterator[Sequence[WheelStep]]:
 
 
 def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> list[WheelStep]:
-    """Return what is left of one specimen's steps."""
+    """Return the steps of one specimen that are left."""
     places = [place for place, step in enumerate(segment) if isinstance(step, WheelCondition)]
     numbers = {place: step.condition for place, step in enumerate(segment) if isinstance(step, WheelCondition)}
     left = [place for place in places if numbers[place] not in stand.ended]
@@ -77,7 +77,7 @@ def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> lis
 
 
 def _only_prepared(plan: WheelPlan, segment: Sequence[WheelStep], wheel: Mounted, mounted: set[int]) -> list[WheelStep]:
-    """Return what is left where wheels are ground in and nothing is measured."""
+    """Return the steps that are left where wheels are only ground in."""
     steps = [] if wheel.ground else [_mounted(plan, wheel), *_prepare(plan, wheel)]
     for place, step in enumerate(segment):
         if isinstance(step, Install) and step.wheel not in mounted:
@@ -94,7 +94,7 @@ def _mounted(plan: WheelPlan, wheel: Mounted) -> Install:
 
 
 def _prepare(plan: WheelPlan, wheel: Mounted) -> list[WheelStep]:
-    """Return what the wheel still has to go through before it measures."""
+    """Return the preparation that the wheel still needs before it measures."""
     if wheel.last_condition:
         return []
     specimen = plan.specimen(wheel.specimen)

@@ -1,4 +1,4 @@
-"""Finds conditions that a wheel would not outlast: grinding plus one condition exceed ``wheel.replace_after``."""
+"""Conditions that a wheel would not outlast: grinding plus one condition exceed ``wheel.replace_after``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WORST_AT_MOST = ("load", *(axis.name for axis in AXES if axis.drive))
 
 
 def wear_problems(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Problem]:
-    """Return what would wear a wheel beyond ``wheel.replace_after`` in one go: grinding it and one condition."""
+    """Return the conditions that wear a wheel beyond ``wheel.replace_after`` in one go, grinding included."""
     costs = WheelEstimator(rig).costs
     allowed = recipe.wheel.replace_after
     layer = rig.observer.wheel.rubber_layer

@@ -238,7 +238,7 @@ class WearConfig:
     """Of a wear rate from load, slip and width of the tread."""
 
     def growth_mm(self, rubber_c: float) -> float:
-        """Return what the diameter has gained over the cold one at a mean temperature of the rubber (degC), mm."""
+        """Return the growth of the diameter over the cold one, mm, at a mean temperature of the rubber, degC."""
         return self.growth_mm_per_k * (rubber_c - self.reference_c)
 
 

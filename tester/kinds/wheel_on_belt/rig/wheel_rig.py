@@ -1,4 +1,4 @@
-"""A rig of this kind: its sections together, and the knowledge for reading its file (tester.inputs.rig.config)."""
+"""A rig of this kind: its sections together, and the rules for reading its file (tester.inputs.rig.config)."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def with_torque_limit(rig: RigConfig) -> RigConfig:
 
 
 def torque_problem(rig: RigConfig) -> str:
-    """Return why the limit of the press's torque does not do, or ""; the rig is one of ``with_torque_limit``."""
+    """Return why the limit of the press's torque is not suitable, or ""; the rig is one of ``with_torque_limit``."""
     press = rig.axes.press
     if press.screw is None:
         return ""

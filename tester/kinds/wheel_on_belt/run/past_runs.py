@@ -1,4 +1,4 @@
-"""What later runs and pages read in the records of past runs: heatings as evidence, and requests over the slip ring.
+"""Records of past runs for later runs and pages: heatings as evidence, and requests over the slip ring.
 
 Heatings are events of the kind ``heat`` whose data is JSON: the rig, the assumptions behind its ratio, and the numbers.
 A rig file with other assumptions counts as another rig for its heat, and starts without evidence.

@@ -60,7 +60,7 @@ class WheelPanel(RunPanel):
     }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
-        """Look only."""
+        """Look at the run of an engine; change nothing."""
         super().__init__(engine)
         self._gates = engine.ctx.rig.gates
         limits = engine.ctx.rig.interlocks
