@@ -7,8 +7,9 @@ left, and at a temperature boundary where that costs no further wheel.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Sequence
-from itertools import accumulate, count
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from tester.base.axes import Setpoint
@@ -97,8 +98,8 @@ class _Expansion:
         self.count = 0
         self.at_c: float | None = None
         """Surface of the wheel that is on, as the last steps left it; None of a new one."""
-        self.every_condition = [step.prompt for step in recipe.steps if step.every == "condition"]
-        self.every_temperature = [step.prompt for step in recipe.steps if step.every == "temperature"]
+        self.every_condition = _prompts(recipe, "condition")
+        self.every_temperature = _prompts(recipe, "temperature")
 
     def plan(self) -> WheelPlan:
         """Return the whole plan."""
@@ -146,7 +147,7 @@ class _Expansion:
         for block, points in zip(blocks, changes, strict=True):
             if 0 in points:
                 wheel = self._new_wheel(specimen, replicate, None)
-            self._prompts(self.every_temperature)
+            self._add(self.every_temperature)
             warm = False
             for position, condition in enumerate(block):
                 held_c = self.held(condition.values)
@@ -155,13 +156,13 @@ class _Expansion:
                 elif self.references.due_on_reserved():
                     self._exchanged(wheel, specimen, held_c)
                 elif not warm or held_c != self.at_c:
-                    self.steps += self.references.heating(len(self.steps), self.at_c, held_c)
+                    self._add(self.references.heating(self.at_c, held_c))
                 warm, self.at_c = True, held_c
                 if not condition.row:
                     self._measure(wheel, condition, setpoints[-1], costs[-1], reference=True)
                     continue
                 if self.every_condition:
-                    self._prompts(self.every_condition)
+                    self._add(self.every_condition)
                 self._measure(wheel, condition, setpoints[condition.row - 1], costs[condition.row - 1])
 
     def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> WheelWear:
@@ -172,15 +173,7 @@ class _Expansion:
     def _mount(self, specimen: Specimen, replicate: int, heat_c: float | None) -> WheelWear:
         number = len(self.wheels) + 1
         self.at_c = heat_c
-        self.steps += prepare_wheel(
-            self.prepare,
-            specimen,
-            replicate,
-            number,
-            cool=number > 1,
-            heat_c=heat_c,
-            numbers=count(len(self.steps)),
-        )
+        self._add(prepare_wheel(self.prepare, specimen, replicate, number, cool=number > 1, heat_c=heat_c))
         grind = self.prepare.pre_grind
         ground = self.estimator.pre_grind(grind, specimen.compound) if grind else StepEstimate(0.0)
         wheel = WheelWear(number, specimen.index, replicate, 0, ground.loss_mm, ground.sliding_m)
@@ -209,8 +202,7 @@ class _Expansion:
 
     def _remount(self, wheel: WheelWear, specimen: Specimen, held_c: float) -> None:
         cool_c = self.references.hub_below_c(held_c)
-        numbers = count(len(self.steps))
-        self.steps += mount_again(specimen, wheel.replicate, wheel.wheel, held_c, cool_c, numbers=numbers)
+        self._add(mount_again(specimen, wheel.replicate, wheel.wheel, held_c, cool_c))
 
     def _measure(
         self,
@@ -241,9 +233,13 @@ class _Expansion:
             )
         )  # fmt: skip
 
-    def _prompts(self, texts: list[str]) -> None:
-        for text in texts:
-            self.steps.append(PromptStep(len(self.steps), text))
+    def _add(self, steps: Iterable[WheelStep]) -> None:
+        """Add steps, numbered by their places."""
+        self.steps += [replace(step, index=place) for place, step in enumerate(steps, start=len(self.steps))]
+
+
+def _prompts(recipe: WheelRecipe, every: str) -> list[PromptStep]:
+    return [PromptStep(INSERTED, step.prompt) for step in recipe.steps if step.every == every]
 
 
 def _prepare(recipe: WheelRecipe, rig: RigConfig) -> PreparePolicy:

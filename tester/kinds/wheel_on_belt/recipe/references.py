@@ -28,6 +28,7 @@ from tester.kinds.wheel_on_belt.recipe.schema import (
     WheelSettings,
     wheel_settings,
 )
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED
 
 AT: Final[Location] = (REFERENCE,)
 """Its place in a recipe."""
@@ -145,14 +146,14 @@ class ReferenceRounds:
         self.made += 1
         return self._first_row + self.made - 1
 
-    def heating(self, index: int, from_c: float | None, to_c: float) -> list[WheelStep]:
+    def heating(self, from_c: float | None, to_c: float) -> list[WheelStep]:
         """Return the steps to the temperature of a condition, degC; ``from_c`` None: on a new wheel.
 
         Down, the hub cools first: a surface does not stay colder than the hub below it.
         """
         if from_c is not None and to_c < from_c:
-            return [Cool(index, self.hub_below_c(to_c)), Heat(index + 1, to_c)]
-        return [Heat(index, to_c)]
+            return [Cool(INSERTED, self.hub_below_c(to_c)), Heat(INSERTED, to_c)]
+        return [Heat(INSERTED, to_c)]
 
     def hub_below_c(self, to_c: float) -> float:
         """Return what the hub has to come down to before a surface can be held at a temperature, degC."""

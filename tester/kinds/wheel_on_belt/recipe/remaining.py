@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import repeat
 
 from tester.inputs.recipe.plan import Mounted, PromptStep, Stand
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
@@ -98,9 +97,7 @@ def _prepare(plan: WheelPlan, wheel: Mounted) -> list[WheelStep]:
     if wheel.last_condition:
         return []
     specimen = plan.specimen(wheel.specimen)
-    steps = prepare_wheel(
-        plan.prepare, specimen, wheel.replicate, wheel.number, cool=True, heat_c=None, numbers=repeat(INSERTED)
-    )
+    steps = prepare_wheel(plan.prepare, specimen, wheel.replicate, wheel.number, cool=True, heat_c=None)
     wanted: list[WheelStep] = [step for step in steps if not isinstance(step, Cool | Install)]
     if not wheel.ground:
         return wanted
