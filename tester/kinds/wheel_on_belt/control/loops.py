@@ -49,7 +49,7 @@ class LoadLoop(Contact):
     def velocity(self, demand: Demand, readings: Readings, dt: float, loop: LoadLoopConfig) -> float:
         """Return the press velocity in mm/s (positive = towards the wheel) for this scan.
 
-        Unknown force or position never presses: the result is then a retraction.
+        With unknown force or position the press retracts.
         """
         force, position = readings.force_z_n, readings.press_mm
         if demand.press is not _LOAD or not (-_INF < force < _INF and -_INF < position < _INF):
@@ -159,7 +159,7 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
 
 @dataclass(slots=True)
 class HeatLoop:
-    """State of the outer loop."""
+    """State of the outer heat loop: surface error to hub setpoint."""
 
     hub_setpoint_c: float = 25.0
     target_c: float = float("nan")
@@ -192,7 +192,7 @@ class HeatLoop:
 
 
 class WheelState(ControlState[Setpoints]):
-    """Everything ``WheelControl.step`` carries from one scan to the next; plain data, copyable."""
+    """The state of ``WheelControl`` from one scan to the next: plain data, copyable."""
 
     def __init__(self, hub_min_c: float) -> None:
         """Begin in idle, with the hub's setpoint at its least, degC."""

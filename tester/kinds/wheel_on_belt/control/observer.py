@@ -1,9 +1,9 @@
-"""The thermal observer: what the rubber's surface should read, worked out from the hub and the friction alone.
+"""The thermal observer: the expected reading of the rubber's surface, computed from hub and friction alone.
 
 The infrared thermometer can lie (misaligned, dirty, wrong emissivity) and a heat loop that believes it overheats the
 rubber. The observer never uses it after the start: the hub's own sensor is its boundary, the measured friction power
 its source, the rig file's ``observer`` section its parameters. It is coarser than the simulated wheel
-on purpose: a few cells and half a second of step are enough to tell 8 K.
+on purpose: a few cells and steps of half a second are enough to detect 8 K.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 
 CELLS: Final = 5
 OUTER_CELL_MM: Final = 0.5
-"""Mesh over the rubber layer [A]: the surface's first second is not its business."""
+"""Mesh over the rubber layer [A]: too coarse for the first second of the surface."""
 STEP_S: Final = 0.5
 """Length of a step; the outermost cell is stable up to about one second [A]."""
 LONGEST_S: Final = 60.0
@@ -27,8 +27,8 @@ LONGEST_S: Final = 60.0
 class ThermalObserver:
     """Temperatures of rubber and belt, degC; ``surface_c`` is NaN before hub and surface have been read once.
 
-    ``rub`` collects what one scan brought; ``step`` is called when ``due_s`` has come, and leaves in ``given_j``
-    the heat that it let flow from hub to rubber, J.
+    ``rub`` collects the friction of a scan. ``step`` is called when ``due_s`` has come; ``given_j`` is then the heat
+    that has flowed from hub to rubber in it, J.
     """
 
     def __init__(self, rig: RigConfig) -> None:
@@ -68,13 +68,13 @@ class ThermalObserver:
         self.surface_c = self._ambient_c
 
     def rub(self, power_w: float, dt: float) -> None:
-        """Note ``dt`` s of contact at a friction power in W; what is not a number counts as none."""
+        """Note ``dt`` s of contact at a friction power in W; NaN counts as none."""
         if power_w >= 0.0:
             self._energy_j += power_w * dt
         self._contact_s += dt
 
     def step(self, now: float, hub_c: float, wheel_m_s: float, measured_c: float) -> None:
-        """Catch up with ``now``; ``measured_c`` is used once, to begin with."""
+        """Advance to ``now``; ``measured_c`` is used only for the start."""
         self.due_s = now + STEP_S
         self.given_j = 0.0
         if not isfinite(hub_c):

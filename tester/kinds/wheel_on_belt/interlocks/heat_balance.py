@@ -1,9 +1,9 @@
-"""The heater's energy held against what hub and wheel, as shown, can have stored and lost: what is not shown of it.
+"""The heat balance: the heater's energy less what the temperatures shown explain as stored or lost.
 
-A hub sensor that reads low, late or loose, or a supply that it shares with the thermometer, makes the controller put in
-heat that nothing shows. The sum below is that heat: it grows by what the heater gives, shrinks by what the temperatures
-shown explain and by what the beliefs may be off, and never falls below zero. So beliefs that are off by less than the
-share leave it at zero for ever, and what is further off adds up.
+A hub sensor that reads low, late or loose, or shares a supply with the thermometer, makes the controller put in heat
+that no temperature shows. ``HeatBalance`` sums up that heat. The sum grows by the heater's output, shrinks by the heat
+that the temperatures explain and by an allowance for wrong parameters, and never falls below zero. Parameters that are
+off by less than the allowance leave it at zero; a larger error adds up.
 """
 
 from __future__ import annotations
@@ -34,24 +34,24 @@ class HeatBalance:
     """``observer.thermal.jacket_power``: of the heater at 100 %."""
     ambient_c: float
     share: float
-    """How far the beliefs may be off, of the heat that is stored and lost; tightened by a history (heat_ratio)."""
+    """Allowed error of the parameters, a share of the heat stored and lost; tightened by a history (KnownRatio)."""
     leak_w: float
-    """What the heat may go astray by besides, W."""
+    """Allowed further loss, W."""
     unseen_k: float = 0.0
     """Heat not shown, as the kelvin by which it warms the hub."""
     put_w: float = 0.0
     """Smoothed power of the heater ..."""
     shown_w: float = 0.0
-    """... and the same of what the temperatures explain."""
+    """... and the same of the heat that the temperatures explain."""
     put_j: float = 0.0
     """Heat of the heater since the comparison began ..."""
     shown_j: float = 0.0
-    """... and what the temperatures explain of it."""
+    """... and the part that the temperatures explain."""
     still_k: float = 0.0
-    """While the reading stands: heat beyond the least given meanwhile, and beyond what losses explain, as the kelvin by
+    """While the reading does not move: heat beyond the least output meanwhile, and beyond the losses, as the kelvin by
     which it warms the hub.
 
-    A hub that stands loses what it lost then: what the beliefs are off in steady losses drops out.
+    A hub at a constant temperature loses what it lost then: an error of the steady losses drops out.
     """
     _still_c: float = nan
     """The reading when it last moved."""
@@ -78,8 +78,8 @@ class HeatBalance:
         self.begun += 1
 
     def update(self, now_s: float, hub_c: float, output_percent: float, rubber_j: float) -> None:
-        """Take in the hub's temperature shown, the heater's output behind its contactor (%), and the heat that has gone
-        from hub to rubber since the last time (J)."""
+        """Take in the hub's temperature, the heater's output behind its contactor, %, and the heat from hub to rubber
+        since the last call, J."""
         dt = now_s - self._at_s
         before_c, self._at_s, self._hub_c = self._hub_c, now_s, hub_c
         if not (0.0 < dt <= LONGEST_S and before_c == before_c and hub_c == hub_c):
@@ -159,10 +159,10 @@ NO_HISTORY: Final = KnownRatio()
 def known_ratio(ratios: Sequence[float], widest: float, known: float) -> KnownRatio:
     """Return what the ratios of a rig's heatings, the oldest first, make known; ``widest``, ``known``: as in ``share``.
 
-    The ratio is the median of the newest, but never more than that of the first ones that agree within ``known``: a
-    supply that drifts by 1 % a run takes the newest along, and each of its runs would pass beside the one before. The
-    first ones stay where they are. (A wrong supply that was there from the first heating on is in them too: its ratio
-    is then beyond what the beliefs explain, or looks like a hub of more heat capacity.)
+    The ratio is the median of the newest, but never more than that of the first ones that agree within ``known``. A
+    supply that drifts by 1 % a run would shift the newest, so that each run agrees with the one before it; the first
+    ones stay. (A supply that was wrong from the first heating on is in them as well: its ratio is then beyond what the
+    parameters explain, or looks like a hub of more heat capacity.)
     """
     sound = [ratio for ratio in ratios if 1.0 - widest <= ratio <= 1.0 + widest]
     for begin in range(len(sound) - FIRST + 1):

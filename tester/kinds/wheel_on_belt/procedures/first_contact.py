@@ -1,8 +1,8 @@
 """A wheel's first contact: at a small load the belt passes the wheel's speed either way; friction must reverse.
 
-Rolling, friction is zero where wheel and belt are equally fast. If it does not change its sign while the belt goes from
-somewhat faster to somewhat slower than the wheel, one of the two is not as fast as it is taken to be: it turns the
-wrong way round, its scale is wrong, or the wheel has another diameter. Each is found at a load that a hand could hold.
+Rolling, friction is zero where wheel and belt are equally fast. If it keeps its sign while the belt goes from
+somewhat faster to somewhat slower than the wheel, one of the two has another speed than assumed: it turns the wrong way
+round, its scale is wrong, or the wheel has another diameter. Each is found at a load that a hand could hold.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ NEAR: Final = 1.2
 
 
 class Touch:
-    """Press to a little load; the wheel must be where its diameter puts it."""
+    """Press to a small load; the wheel must be where its diameter puts it."""
 
     def __init__(self, load_n: float, off_mm: float) -> None:
-        """``off_mm``: how far from where it should be the wheel may be touched."""
+        """``off_mm``: allowed distance of the first touch from its expected place."""
         self.load_n = load_n
         self.off_mm = off_mm
         self.touched_s = float("nan")
@@ -96,7 +96,7 @@ class Friction:
 
     @property
     def sign(self) -> float:
-        """Which way friction acts on the wheel: 1 back, -1 on, 0 neither clearly."""
+        """Direction in which friction acts on the wheel: 1 back, -1 onwards, 0 unclear."""
         mean_n = self.friction_n / self.count
         clear_n = max(LEAST_N, CLEAR_SHARE * self.load_n / self.count)
         return 1.0 if mean_n > clear_n else -1.0 if mean_n < -clear_n else 0.0

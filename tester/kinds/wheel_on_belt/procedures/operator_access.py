@@ -14,11 +14,11 @@ from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Move, Power, Sequence
 
 STILL_WARM_K: Final = 5.0
-"""A hub that has stopped turning may show this much more than while it turned, K [A]: no reason for a warning."""
+"""A hub that has stopped may show this much more than while it turned, K [A], without a warning."""
 
 
 class Standing(Move):
-    """Wait until nothing turns, no drive applies torque and the heater's contactor is open."""
+    """Wait until wheel and belt stand, no drive applies torque and the heater's contactor is open."""
 
     limit_s = 10.0  # [A]; drives that are off come to a stand in far less
     name = "coming to a stand for a person to go near"
@@ -53,7 +53,7 @@ class Free(Move):
 class AskAtRest:
     """Put a question about the wheel: cool enough to touch, lifted, standing, heat and drives off.
 
-    A hot wheel turns on slowly, unloaded, until its hub may be touched: standing it would bake in one spot. The
+    A hot wheel turns on slowly, unloaded, until its hub may be touched: a standing wheel would bake in one spot. The
     question is asked only once all of it is reached.
     """
 

@@ -18,7 +18,7 @@ NEAR_AMBIENT_K: Final = 3.0
 HEAT_LOAD_N: Final = 200.0
 """Highest load for heating up in rolling contact [A]: the paper's reference load."""
 HEAT_AT_MOST_S: Final = 5400.0
-"""Longest heating up to one temperature [A]."""
+"""Longest heating up to a temperature [A]."""
 COOL_AT_MOST_S: Final = 3 * 3600.0
 """Longest cooling of a hub before a person may touch it; then a prompt shows how warm it is [A]."""
 

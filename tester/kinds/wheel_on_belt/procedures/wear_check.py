@@ -1,6 +1,6 @@
 """Checks of the wheel's diameter: by rolling at a light load, or a number that a person has measured.
 
-Rolling, at equal load, the press is deeper by the lost radius. Its other motions are subtracted or stated:
+Rolling, at equal load, the press is deeper by the lost radius. Other causes of its motion are subtracted or stated:
 the load in the check (its mean is corrected to the nominal one by the contact's stiffness), the cell's zero (a tare
 just before), runout (whole turns), and heat, which makes the wheel grow: every check is brought back to the reference
 temperature with the rig file's ``wear.growth``, so that cold is compared with cold. A wheel's first roll check is the
@@ -30,9 +30,9 @@ TARE_WAIT_S: Final = 0.4
 TARE_S: Final = 1.0
 LARGER_BY: Final = 3.0
 """A wheel that measures larger than at the check before by more than this many standard uncertainties has not grown:
-that check is not believed [A]."""
+that check is not used [A]."""
 CLEAR_BY: Final = 4.0
-"""A loss of this many standard uncertainties gives the wheel's rate well enough for use [A]: to 25 %."""
+"""A loss of this many standard uncertainties gives a usable rate of the wheel [A]: to 25 %."""
 QUESTION: Final = "measure the wheel's diameter and answer with it, such as 89.62 mm (yes: not measured)"
 
 
@@ -225,7 +225,7 @@ def _learn_rate(wheel: WheelLife, check: WearCheck) -> None:
 
 
 def _doubt(ctx: Context, check: WearCheck) -> str:
-    """Return why a check is not believed, "" where it is."""
+    """Return why a check is not used, "" if it is."""
     wheel, last = ctx.wheel, ctx.wheel.last_check
     left_mm = check.diameter_mm - (wheel.installed_mm - 2.0 * ctx.rig.observer.wheel.rubber_layer)
     if left_mm < 0.0:

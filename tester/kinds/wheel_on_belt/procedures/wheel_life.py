@@ -1,9 +1,9 @@
 """The wheel on the rig, and its two diameters.
 
 *Cold* is the diameter at ``wear.reference``, as a calliper finds it there: that of the rig file, of every record and
-of every check. Wear alone changes it. *Warm* is the diameter it runs with, grown by its heat: what the rim's speed,
-slip and the distance slid are worked out with from the shaft's speed, and where the press touches. ``Readings`` has
-them as ``cold_mm`` and ``diameter_mm``, brought up to date from here in every scan.
+of every check. Only wear changes it. *Warm* is the diameter it runs with, grown by its heat: rim speed, slip, distance
+slid and the place of touch follow from it. ``Readings`` has them as ``cold_mm`` and ``diameter_mm``, updated here in
+every scan.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ would otherwise send the drives a new command in every scan."""
 
 
 def rubber_c(hub_c: float, surface_c: float) -> float:
-    """Return the rubber's mean temperature, degC, from what the rig measures: hub and surface by halves.
+    """Return the rubber's mean temperature, degC, from those of hub and surface by halves.
 
     In steady heat flow temperature falls nearly evenly through the layer. Friction warms the surface before the layer,
     the jacket the hub: over the recipe ``wear`` on the simulated rig this mean explains the loaded wheel's growth to
@@ -44,7 +44,7 @@ class CheckReference:
 
 @dataclass(slots=True)
 class WheelLife:
-    """The wheel on the rig: which one, what it has lost, and how far its heat has made it grow.
+    """The wheel on the rig: its identity, its loss of diameter, and its growth by heat.
 
     The loss between measurements is estimated by the wear law dR = k F v dt / (2 pi R w) with the rig file's k
     (physics: load, wear, transients).
@@ -91,7 +91,7 @@ class WheelLife:
         self.loss_mm += 2.0 * rate_mm3_per_n_m * force_n * distance / (pi * self.cold_mm * self.width_mm)
 
     def show(self, r: Readings, wear: WearConfig) -> None:
-        """Work out both diameters from the newest temperatures, and hand them to the process image.
+        """Write both diameters, from the newest temperatures, to the process image.
 
         While hub or surface is not known, the wheel keeps what it had gained: rubber cools slowly.
         """

@@ -1,6 +1,6 @@
-"""A check of the load cell's zero after long contact: between two steps that press, never inside a repeat or a soak.
+"""A check of the load cell's zero after long contact: between two steps in contact, never in a repeat or a soak.
 
-Every repeat lifts and takes its zero first; heating up, soaks and pre-grinding stay in contact as long as they take.
+Every repeat lifts and takes its zero first; heating up, soaks and pre-grinding keep the contact all the time.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Estimates a plan's duration, wear and temperatures: closed formulas, no simulation.
+"""Estimates of a plan's duration, wear and temperatures: closed formulas, no simulation.
 
 The times are sums of the moves that the executor makes; those of a condition are in ``.cost``.
 """
@@ -42,7 +42,7 @@ def predicted_loss_mm(step: WheelCondition, rig: RigConfig) -> float:
 
 
 def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float, float]:
-    """Return by how much sooner and later, s, precisions are reached that a run's own deviation decides."""
+    """Return the time, s, by which precisions that depend on a run's own deviation may be reached sooner and later."""
     sooner_s = later_s = 0.0
     least, most = SURE
     for step, estimate in zip(plan.steps, steps, strict=True):
@@ -156,7 +156,7 @@ class WheelEstimator(Estimator):
         return self.parts and not (isinstance(plan, WheelPlan) and plan.references)  # that of manual mode is plain
 
     def _until(self, before: Before, step: WheelCondition, estimate: StepEstimate) -> StepEstimate:
-        """Return an estimate with the repeats that a precision takes so early in a run: little is pooled yet."""
+        """Return an estimate with the repeats that a precision takes early in a run, when few repeats are pooled."""
         repeats, each = estimate.repeats, repeats_each(step)
         if estimate.held and before.pooled < POOLED_DF:
             repeats = each * expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
@@ -177,8 +177,8 @@ class WheelEstimator(Estimator):
     def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
         """Return the range of the rig time, s, that is to hold 95 % of runs.
 
-        What waits for temperatures follows the thermometer's bias, one for all of a session, hence adds up;
-        repeats that are made up for come one by one (Poisson); a precision's repeats follow the run's own deviation.
+        Waits for temperatures follow the thermometer's bias, which is the same all session, so they add up. Repeats
+        made up for are independent (Poisson). A precision's repeats follow the run's own deviation.
         """
         seconds, waits_s, scattered = 0.0, down_s, 0.0
         for estimate in steps:

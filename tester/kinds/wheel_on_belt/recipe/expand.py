@@ -243,7 +243,7 @@ def _prompts(recipe: WheelRecipe, every: str) -> list[PromptStep]:
 
 
 def _prepare(recipe: WheelRecipe, rig: RigConfig) -> PreparePolicy:
-    """Return what every new wheel goes through."""
+    """Return the preparation of every new wheel."""
     grind, rest = recipe.pre_grind, recipe.rest
     return PreparePolicy(
         pre_grind=None

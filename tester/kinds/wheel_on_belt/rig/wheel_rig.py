@@ -50,7 +50,7 @@ def problems_between(rig: RigConfig) -> _Found:
 
 
 def _speeds(rig: RigConfig) -> _Found:
-    """A drive that clamps below the rig's limit would run slower than it is asked, silently."""
+    """A drive that clamps below the rig's limit would silently run slower than commanded."""
     wheel = rig.axes.wheel.max_speed * 0.5e-3 * rig.geometry.wheel_diameter_mm
     if wheel < rig.limits.wheel_speed_m_s:
         yield ("axes", "wheel", "max_speed"), f"gives {wheel:.3f} m/s, less than limits.wheel_speed"

@@ -1,6 +1,6 @@
 """Manual mode of this machine: its axes, their steps, and the reasons for refusing a step.
 
-Single speeds and angles move only lifted: under load a wheel that turns faster than its belt grinds.
+Single speeds and angles move only while lifted: under load a wheel that turns faster than its belt grinds.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def by_hand(
 
 
 def take_over(run: Run, worn: PieceInfo | None = None) -> ManualExecutor:
-    """Put a person in the place of the run's recipe; ``worn``: the wheel, None for a new one.
+    """Let a person command the run instead of its recipe; ``worn``: the wheel, None for a new one.
 
     A simulated rig gets such a wheel.
     """
