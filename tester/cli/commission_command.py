@@ -70,7 +70,10 @@ def commission(
     if simulated and compound and compound not in part.compounds:
         expected = ", ".join(part.compounds)
         raise click.UsageError(f'--compound: no friction model for "{compound}" to simulate it (expected {expected})')
-    options = CommissionOptions(rig, overrides, accept_risk, out, seed, operator, compound, speed)
+    options = CommissionOptions(
+        rig=rig, overrides=overrides, accept_risk=accept_risk, out=out, seed=seed, operator=operator, lapse=speed,
+        compound=compound,
+    )  # fmt: skip
     path = record_path(out, loaded.name)
     try:
         if only_list:
@@ -83,12 +86,17 @@ def commission(
             outcome = _line_by_line(loaded, options, twin)
     except (CannotStartError, RecordError) as error:
         raise click.ClickException(str(error)) from error
+    _summarise(outcome)
+    click.echo(str(path))
+    return EXIT_CODES[outcome.ended.name]
+
+
+def _summarise(outcome: CommissionOutcome) -> None:
+    """Print the rig time of each step, and how the commissioning ended."""
     for name, seconds in outcome.took_s:
         click.echo(f"  {name:16} {seconds:6.1f} s of rig time", err=True)
     at = f" at: {outcome.step}" if outcome.step else ""
     click.echo(f"{outcome.ended.value}{at}; {outcome.rig_s / 60:.1f} min of rig time", err=True)
-    click.echo(str(path))
-    return EXIT_CODES[outcome.ended.name]
 
 
 def _line_by_line(rig: Rig, options: CommissionOptions, twin: Person | None) -> CommissionOutcome:

@@ -20,22 +20,16 @@ if TYPE_CHECKING:
 @seed_option
 @click.option(
     "--seconds", default=60.0, show_default=True, metavar="S", type=click.FloatRange(1.0, 3600.0),
-    help="How long devices are read and the computer is timed.",
+    help="How long to read the devices and time the computer.",
 )  # fmt: skip
 @click.option("--out", default="runs", show_default=True, metavar="DIR", help="Folder that runs are written to.")
 @click.option("--quick", is_flag=True, help="Ask only the Modbus units of the rig file, not every number.")
 @click.option("--bundle", default=None, metavar="FILE.zip", help="Write findings, rig file, versions and parameters.")
 @json_option
 def doctor(
-    rig_name: str,
-    overrides: tuple[str, ...],
-    seed: int,
-    seconds: float,
-    out: str,
-    quick: bool,
-    bundle: str | None,
+    rig_name: str, overrides: tuple[str, ...], seed: int, seconds: float, out: str, quick: bool, bundle: str | None,
     as_json: bool,
-) -> int:
+) -> int:  # fmt: skip
     """Look at a rig and report what is wrong and what to do; exit code 1 if there is a fault.
 
     It moves nothing, enables no drive and writes nothing to a device: it reads objects and registers, and listens to

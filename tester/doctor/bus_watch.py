@@ -13,7 +13,7 @@ from tester.doctor.open_wires import Wires
 from tester.inputs.rig import Rig
 
 PATIENCE_S = 0.15
-"""Patience for a reading, s: a slow profile's 60 ms, an adapter's latency, and a busy computer [A]."""
+"""Time limit for a reading, s: a slow profile's 60 ms, an adapter's latency, and a busy computer [A]."""
 
 STEP_S = 0.001
 """Period for reading the lines, s."""
@@ -52,7 +52,7 @@ class RigWatch:
     can_errors: dict[str, int] | None = None
     """Error frames by kind; None if the adapter reports none."""
     can_state: str = ""
-    """The adapter's own state at the end, "" if it reports none."""
+    """The adapter's state at the end, "" if it reports none."""
     units: dict[str, UnitWatch] = field(default_factory=dict[str, UnitWatch])
     """By the devices' names in the rig file."""
     lines_lost: dict[str, str] = field(default_factory=dict[str, str])

@@ -11,6 +11,7 @@ from tester.doctor.bus_watch import UnitWatch
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
 from tester.doctor.line_survey import LineSurvey, UnitSurvey
+from tester.inputs.rig import LineConfig
 from tester.inputs.rig.further_sensors import title_of
 
 READINGS_S = 40.0
@@ -42,7 +43,7 @@ def lines(e: Examination) -> Iterator[Finding]:
             if other:
                 yield fault(
                     subject,
-                    f"answers at the settings of line {other}, and that at those of this one: exchanged adapters",
+                    f"answers at the settings of line {other}, which answers at this one's: exchanged adapters",
                     f"exchange the plugs, or lines.{name}.port and lines.{other}.port",
                 )
                 continue
@@ -65,14 +66,18 @@ def lines(e: Examination) -> Iterator[Finding]:
 
 def _exchanged_with(e: Examination, name: str) -> str:
     """Return the line whose devices seem to be exchanged with this line's; "" without any."""
-    mine, here = e.rig.lines[name], e.lines[name].answers_at
+    config, settings = e.rig.lines[name], e.lines[name].answers_at
     for other, line in e.lines.items():
-        config, there = e.rig.lines[other], line.answers_at
-        if other == name or here is None or there is None:
+        other_settings = line.answers_at
+        if other == name or settings is None or other_settings is None:
             continue
-        if (here.baud, here.parity, there.baud, there.parity) == (config.baud, config.parity, mine.baud, mine.parity):
+        if _alike(settings, e.rig.lines[other]) and _alike(other_settings, config):
             return other
     return ""
+
+
+def _alike(one: LineConfig, other: LineConfig) -> bool:
+    return (one.baud, one.parity) == (other.baud, other.parity)
 
 
 def devices(e: Examination) -> Iterator[Finding]:

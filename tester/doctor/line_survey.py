@@ -14,9 +14,9 @@ from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 
 PATIENCE_S = 0.25
-"""Patience for a device of the rig file, s: beyond every profile's reply time, and late adapters."""
+"""Time limit for a device of the rig file, s: beyond every profile's reply time, and late adapters."""
 SCAN_S = 0.06
-"""Patience for any other unit number, s [A]: the slowest profile's turnaround is 20 ms, an adapter's latency 16 ms."""
+"""Time limit for any other unit number, s [A]: the slowest profile's turnaround takes 20 ms, an adapter 16 ms."""
 UNITS = range(1, 248)
 """Addresses of devices (Modbus over serial line V1.02, 2.2)."""
 STEP_S = 0.002

@@ -98,10 +98,8 @@ class Computer:
 
 def _nearest(path: str) -> Path:
     """Return a path, or the nearest existing folder above it."""
-    here = Path(path).absolute()
-    while not here.exists() and here != here.parent:
-        here = here.parent
-    return here
+    absolute = Path(path).absolute()
+    return next((folder for folder in (absolute, *absolute.parents) if folder.exists()), absolute)
 
 
 if sys.platform == "win32":

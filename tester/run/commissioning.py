@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any
 
 from tester import kinds
@@ -27,17 +26,10 @@ from tester.run.session import SessionOptions
 
 
 @dataclass(frozen=True, slots=True)
-class CommissionOptions:
-    """Options of the command line."""
+class CommissionOptions(SessionOptions):
+    """Options of the command line. ``lapse``: of the steps; recipes run as fast as possible."""
 
-    rig: str = "sim"
-    overrides: tuple[str, ...] = ()
-    accept_risk: str = ""
-    out: Path = Path("runs")
-    seed: int = 0
-    operator: str = ""
     compound: str = ""
-    lapse: float | None = None
 
 
 def part_of(rig: Rig) -> CommissionPart:
@@ -62,10 +54,7 @@ def commission(rig: Rig, options: CommissionOptions, person: Person) -> Commissi
         except RigInUseError as error:
             raise CannotStartError(str(error)) from error
         record = CommissionRecord(path, clock.utc_now, options.operator or user())
-        session = SessionOptions(
-            rig=options.rig, overrides=options.overrides, accept_risk=options.accept_risk, out=options.out,
-            seed=options.seed, operator=options.operator,
-        )  # fmt: skip
+        session = replace(options, lapse=None)
         walk = Commissioning(
             part_of(rig).steps,
             rig,

@@ -55,7 +55,7 @@ def _tell_strain(layout: DmaLayout, at: int, text: str, result: Findings) -> Non
     if high > ALIKE * low:
         result.doubt(
             (layout.at + 1, 1),
-            f"measured at strains of {phrase}: moduli of filled rubber fall with strain, and laws take them for one",
+            f"measured at strains of {phrase}: moduli of filled rubber fall with strain, and laws assume one strain",
             lasting=True,
         )
 
@@ -75,6 +75,8 @@ MAX_BYTES = 16 * 1024 * 1024
 TAN_PERCENT, TAN_LEAST = 2.0, 5e-4
 """A column of loss factors agrees with the moduli within this share, or this difference [A]."""
 
+Point = tuple[int, Mapping[str, float]]
+"""The line of a row, from 0, and its numbers by quantity."""
 _WITH_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+([eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 
@@ -104,14 +106,14 @@ class _Reading:
         self._choose()
         self._complete()
         self.findings.end()
-        values, lines = self._numbers()
+        points = self._numbers()
         self.findings.end()
-        self._check_frequency(values, lines)
+        self._check_frequency(points)
         self.findings.end()
-        rows = [self._row(value) for value in values]
-        judge(rows, lambda number: (lines[number] + 1 if lines else self.place[0], 1), self.findings)
+        rows = [self._row(values) for _, values in points]
+        judge(rows, lambda number: (points[number][0] + 1 if points else self.place[0], 1), self.findings)
         self.findings.end()
-        self._cross_check(values, lines)
+        self._cross_check(points)
         tell_unused(self.layout, {column.index for column in self.columns.values()}, self.findings)
         return ModuliTable(tuple(rows))
 
@@ -223,20 +225,18 @@ class _Reading:
 
     # -- numbers ----------------------------------------------------------------------------------------------
 
-    def _numbers(self) -> tuple[list[dict[str, float]], list[int]]:
-        """Return each row's numbers in degC, Hz and Pa, by quantity, and its line."""
+    def _numbers(self) -> list[Point]:
+        """Return the line of each row, and its numbers in degC, Hz and Pa, by quantity."""
         comma = self._comma()
-        values: list[dict[str, float]] = []
-        lines: list[int] = []
+        points: list[Point] = []
         for line, cells in self.layout.rows():
-            row: dict[str, float] = {}
+            values: dict[str, float] = {}
             for column in self.columns.values():
                 cell = cells[column.index] if column.index < len(cells) else ""
                 number = self._number(cell, column, line, comma)
-                row[column.quantity] = conversion(column.quantity, column.unit)(number)
-            values.append(row)
-            lines.append(line)
-        return values, lines
+                values[column.quantity] = conversion(column.quantity, column.unit)(number)
+            points.append((line, values))
+        return points
 
     def _comma(self) -> bool:
         """Return whether numbers have a decimal comma; refuse a file that mixes commas and points."""
@@ -286,14 +286,14 @@ class _Reading:
         loss = values[f'{letter}"'] if f'{letter}"' in values else storage * values["tan"]
         return ModuliRow(temperature, frequency, factor * storage, factor * loss)
 
-    def _check_frequency(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
-        """Compare the frequency that a person has set for every point with the file's own, if it has any."""
+    def _check_frequency(self, points: Sequence[Point]) -> None:
+        """Compare the frequency that a person has set for every point with the file's column, if there is one."""
         stated = self.options.frequency_hz
         name = "frequency" if "frequency" in self.columns else "omega"
         if stated is None or name not in self.columns:
             return
-        for value, line in zip(values, lines, strict=True):
-            frequency = value[name]
+        for line, values in points:
+            frequency = values[name]
             if not stated / ALIKE < frequency < stated * ALIKE:
                 self.findings.refuse(
                     (line + 1, 1), f"frequency: {frequency:g} Hz is not the {stated:g} Hz that is set for all"
@@ -302,7 +302,7 @@ class _Reading:
             f"frequency: {stated:g} Hz, as set, for rows of the file within {ALIKE:g} times of it"
         )
 
-    def _cross_check(self, values: Sequence[Mapping[str, float]], lines: Sequence[int]) -> None:
+    def _cross_check(self, points: Sequence[Point]) -> None:
         """Compare a column of tan delta with E'' over E', and note the conversions."""
         note = self.findings.notes.append
         used = ", ".join(f'{name} from "{column.text}"' for name, column in self.columns.items())
@@ -319,15 +319,15 @@ class _Reading:
             note(f"{letter}'' is {letter}' times tan delta: the file has no column of it")
             return
         off: list[tuple[float, int, float, float]] = []
-        for value, line in zip(values, lines, strict=True):
-            ratio = value[f'{letter}"'] / value[f"{letter}'"]
-            apart = abs(ratio - value["tan"])
+        for line, values in points:
+            ratio = values[f'{letter}"'] / values[f"{letter}'"]
+            apart = abs(ratio - values["tan"])
             if apart > max(TAN_PERCENT / 100.0 * abs(ratio), TAN_LEAST):
-                off.append((apart, line, value["tan"], ratio))
+                off.append((apart, line, values["tan"], ratio))
         if off:
             _, line, tan, ratio = max(off)
             difference = f"tan delta {tan:g} is not {letter}''/{letter}' = {ratio:.4g}"
-            more = f" (the worst of {len(off)} of {len(values)} points)"
+            more = f" (the worst of {len(off)} of {len(points)} points)"
             self.findings.doubt((line + 1, 1), f"{difference}{more}: the moduli count", lasting=True)
         else:
             note(f"tan delta agrees with {letter}''/{letter}' within {TAN_PERCENT:g} %")

@@ -37,7 +37,7 @@ _UNITS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "temperature": ("degC", "K"),
     "frequency": ("Hz", "kHz", "rad/s"),
     "omega": ("rad/s",),
-    **{one: tuple(_MODULUS_UNITS) for one in ("E'", 'E"', "G'", 'G"')},
+    **{modulus: tuple(_MODULUS_UNITS) for modulus in ("E'", 'E"', "G'", 'G"')},
     "tan": ("1",),
 })
 """Units of each quantity."""

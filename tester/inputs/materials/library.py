@@ -115,7 +115,7 @@ class Library:
         path = self.path(role, name)
         if path is not None:
             return path
-        known = [*dict.fromkeys(one for folder in self.folders for _, one in _named(folder / FOLDERS[role]))]
+        known = [*dict.fromkeys(title for folder in self.folders for _, title in _named(folder / FOLDERS[role]))]
         near = get_close_matches(name, known, 1)
         meant = f", did you mean {shown(near[0])}?" if near else ""
         where = ", ".join(str(folder / FOLDERS[role]) for folder in self.folders)

@@ -13,16 +13,16 @@ from math import isfinite, log10
 from tester.inputs.materials.files import Findings, Place
 
 LEAST_ROWS = 4
-"""With fewer there is nothing to interpolate [A]."""
+"""Least number of points to interpolate between [A]."""
 FEW_ROWS = 12
-"""With fewer a table is doubted [A]."""
+"""A table with fewer points is doubted [A]."""
 COLDEST_C, HOTTEST_C = -150.0, 400.0
 SLOWEST_HZ, FASTEST_HZ = 1e-4, 1e4
 """Range of instruments themselves [A]: beyond, a frequency is another quantity or was shifted already."""
 SOFTEST_PA, STIFFEST_PA = 1e4, 2e10
 """Range of storage moduli of rubber and its glass [A]."""
 NOISE_K = 1.0
-"""Temperatures of a sweep go back by less than this [A]."""
+"""Noise of a sweep's temperatures [A]: they go back by less than this."""
 ALIKE = 1.05
 """Frequencies within this ratio differ by an instrument's noise alone [A]."""
 WLF_SPAN_K = 100.0
@@ -111,7 +111,7 @@ def _duplicates(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> 
         point = (row.temperature_c, row.frequency_hz)
         if point in seen:
             line = place(seen[point])[0]
-            duplicate = f"{row.temperature_c:g} degC and {row.frequency_hz:g} Hz stand in line {line} already"
+            duplicate = f"{row.temperature_c:g} degC and {row.frequency_hz:g} Hz are already in line {line}"
             findings.refuse(place(number), duplicate)
         seen.setdefault(point, number)
 
@@ -169,11 +169,11 @@ def _order_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) ->
 
 
 def _turn(temperatures_c: Sequence[float]) -> int | None:
-    """Return the place at which temperatures have gone back by more than a chamber's noise; None where they do not."""
+    """Return the index at which temperatures have gone back by more than a chamber's noise; None if they never do."""
     lowest = highest = temperatures_c[0]
-    for number, here in enumerate(temperatures_c):
-        lowest, highest = min(lowest, here), max(highest, here)
-        if here - lowest > NOISE_K and highest - here > NOISE_K:
+    for number, temperature_c in enumerate(temperatures_c):
+        lowest, highest = min(lowest, temperature_c), max(highest, temperature_c)
+        if temperature_c - lowest > NOISE_K and highest - temperature_c > NOISE_K:
             return number
     return None
 
@@ -190,11 +190,11 @@ def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | No
         if decade_k is None:
             yield f"measured at {frequencies[0]:g} Hz alone, and decade_k is missing: 8 K a decade (paper G) counts"
         if high - low < 2.0 * (decade_k or 8.0):
-            yield f"{high - low:g} K at one frequency stand for less than two decades"
+            yield f"{high - low:g} K at one frequency are equivalent to less than two decades"
         return
     if frequencies[-1] < ALIKE * frequencies[0]:
         span = f"{frequencies[0]:g} to {frequencies[-1]:g} Hz"
-        yield f"frequencies of {span} are taken for several: say the one that they stand for, if it is one sweep"
+        yield f"frequencies of {span} are taken for several: if it is one sweep, state its frequency"
     if glass_c is None:
         yield "Tg is missing: without it several frequencies are not put on one curve, and no law can use them"
     elif low <= glass_c - POLE_K:

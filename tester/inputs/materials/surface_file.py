@@ -72,9 +72,9 @@ def _table(model: RadialModel, tree: Tree, findings: Findings) -> RadialSpectrum
     for number, (q, power) in enumerate(model.rows):
         if not q > 0.0 or not power > 0.0:
             findings.refuse(tree.position((*at, number)), f"q {q:g} 1/m, C {power:g} m4: both are to be above 0")
-    for number, (before, here) in enumerate(pairwise(model.rows), start=1):
-        if not here[0] > before[0]:
-            disorder = f"q {here[0]:g} 1/m does not rise above {before[0]:g} 1/m: a point twice, or out of order"
+    for number, (before, after) in enumerate(pairwise(model.rows), start=1):
+        if not after[0] > before[0]:
+            disorder = f"q {after[0]:g} 1/m does not rise above {before[0]:g} 1/m: a point twice, or out of order"
             findings.refuse(tree.position((*at, number)), disorder)
     if len(model.rows) < 2:
         findings.refuse(tree.position(at), f"{len(model.rows)} points are too few (expected 2 or more)")

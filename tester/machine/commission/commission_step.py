@@ -1,4 +1,4 @@
-"""A step of a commissioning, and what a kind brings for it."""
+"""A step of a commissioning, and the parts that a kind supplies for it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tester.machine.rig_ports import Ports
 
 
 class Seat(Protocol):
-    """A rig on its wires for one step: driven by a ticker, and handed to a procedure."""
+    """A rig on its wires for one step: a ticker drives it, a procedure uses it."""
 
     @property
     def ready(self) -> bool:
@@ -125,7 +125,7 @@ class Walk:
         self.seat = seat
         self.person = person
         self.ended = False
-        """The procedure has ended, or given up."""
+        """The procedure is over, successful or not."""
         self.error: Exception | None = None
         self.lost = ""
         """Why the bus is gone; "" while it works."""

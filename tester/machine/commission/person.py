@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from tester.machine.prompts import GO, Asks, Prompts, Question
@@ -88,11 +89,11 @@ def press(key: str, text: str, guarded: Callable[[], bool] = lambda: True) -> Di
 
 def wait(seconds: float) -> Dialogue:
     """Let rig time pass, s."""
-    until_s: list[float] = []
+    until_s = inf
 
     def over(now_s: float) -> bool:
-        if not until_s:
-            until_s.append(now_s + seconds)
-        return now_s >= until_s[0] - 1e-9
+        nonlocal until_s
+        until_s = min(until_s, now_s + seconds)
+        return now_s >= until_s - 1e-9
 
     yield over

@@ -87,7 +87,7 @@ class CommissionRecord:
             if entry is None:
                 continue  # cut off by a kill; a changed line would show in the next line's hash
             if entry.previous != last:
-                raise RecordError(f"{self.path}: line {number} does not follow from the one before: one was changed")
+                raise RecordError(f"{self.path}: line {number} does not follow from the one before: a line was changed")
             last = entry.sha256
             self.entries.append(entry)
 

@@ -27,8 +27,8 @@ STOPS = {STOP.command, FAST_STOP.command}
 class Ended(Enum):
     """How a commissioning ended."""
 
-    DONE = "done"
-    LEFT = "left by the person; it resumes at the first open step"
+    DONE = "every step is done: the rig is commissioned"
+    LEFT = "left before the end: it resumes at the first open step"
     REFUSED = "refused"
     FAILED = "failed"
     STOPPED = "stopped"

@@ -13,7 +13,7 @@ from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
 from tester.machine.commission.commission_step import CommissionStep
 from tester.machine.commission.record import CommissionRecord, RecordError, StepStanding, record_path, standing_of
-from tester.machine.commission.step_engine import CommissionOutcome, Ended
+from tester.machine.commission.step_engine import CommissionOutcome
 from tester.machine.prompts import Question
 from tester.run.commissioning import CommissionOptions, commission, part_of
 from tester.run.endings import CannotStartError
@@ -163,13 +163,3 @@ class Guide:
         under_way = record.entries[-1] if record.entries else None
         open_step = under_way is not None and under_way.what in ("begun", "reading")
         self._now = under_way.step if under_way is not None and open_step else ""
-
-
-ENDINGS = {
-    Ended.DONE: "every step is done: the rig is commissioned",
-    Ended.LEFT: "left before the end: it resumes at the first open step",
-    Ended.REFUSED: "refused",
-    Ended.FAILED: "failed",
-    Ended.STOPPED: "stopped",
-}
-"""How a commissioning ended, in words."""

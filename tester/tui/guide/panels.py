@@ -11,7 +11,7 @@ from tester.machine.commission.commission_step import StepReading
 from tester.machine.commission.record import StepStanding
 from tester.machine.commission.step_engine import Ended
 from tester.tui.formatting import clean, fit
-from tester.tui.guide.guide import ENDINGS, GuideView
+from tester.tui.guide.guide import GuideView
 from tester.tui.screen_scene import ScreenScene
 from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
 
@@ -69,7 +69,7 @@ def end_words(seen: GuideView) -> tuple[str, str]:
         at = f" at {outcome.step}" if outcome.step else ""
         why = f": {clean(outcome.text)}" if outcome.text else ""
         again = "" if outcome.ended is Ended.DONE else ". r goes on where it stands"
-        return f"{ENDINGS[outcome.ended]}{at}{why}{again}", ABNORMAL if outcome.ended in BAD else "bold"
+        return f"{outcome.ended.value}{at}{why}{again}", ABNORMAL if outcome.ended in BAD else "bold"
     if not seen.now:
         return f"nothing is connected, nothing moves. Next: {seen.next or NONE}", ""
     if seen.question is not None:

@@ -1,5 +1,5 @@
-"""Commissioning of a wheel on a belt: its steps as data (``steps``), a module for each procedure.
+"""Commissioning of a wheel on a belt: its steps as data (``commission_steps``), a module for each procedure.
 
-``quiet`` holds a rig with untested scales: connected, answering, nothing powered but the one axis that a person
-jogs. ``armed`` holds one that has been shown to lift, to follow and to stop.
+``quiet`` is the rig with untested scales: connected, with no power but for the one axis that a person jogs. ``armed``
+is the rig after proofs that it lifts, follows and stops.
 """

@@ -6,9 +6,10 @@ Control, interlocks, limits and stops are those of a run; only the demand comes 
 from __future__ import annotations
 
 from collections.abc import Generator
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
+from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.commission.moves import COMMISSIONING, MovesExecutor
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import rig_bounds
@@ -24,28 +25,28 @@ from tester.store.recorder import NullRecorder
 
 
 class ArmedSeat:
-    """The rig as the later steps see it (tester.machine.commission.commission_step.Seat)."""
+    """The rig during the later steps (tester.machine.commission.commission_step.Seat)."""
 
-    def __init__(self, rig: RigConfig, ports: Ports, hands: Any) -> None:
+    def __init__(self, rig: Rig, ports: Ports, hands: Any) -> None:
         """Send nothing; the simulated rig gets a new wheel."""
-        self.rig = rig
-        self.run = build_run(rig, WheelPlan(COMMISSIONING, (), (), 1), ports, hands, NullRecorder(), Prompts())
+        self.rig = believed = RigConfig.of(rig)
+        self.run = build_run(believed, WheelPlan(COMMISSIONING, (), (), 1), ports, hands, NullRecorder(), Prompts())
         self.executor = MovesExecutor()
         engine = self.run.engine
         engine.executor = self.executor
-        engine.control.bounds = rig_bounds(rig)
+        engine.control.bounds = rig_bounds(believed)
         self.ctx: Context = engine.ctx
         hands.install(1, 1, "1#", new_specimen=True)
         self._stopped = False
 
     @property
     def ready(self) -> bool:
-        """Armed: it runs."""
+        """Whether it is armed and in RUN."""
         return self.run.connected and self.run.engine.control.state.mode is Mode.RUN
 
     @property
     def finished(self) -> bool:
-        """At rest and released."""
+        """Whether it is at rest and released."""
         return self.run.finished
 
     @property
@@ -79,17 +80,15 @@ class ArmedSeat:
 
 def mean_temperatures(seat: ArmedSeat, seconds: float) -> Generator[Waits, str, tuple[float, float]]:
     """Return the means of surface and hub over a time, degC."""
-    sums = [0.0, 0.0, 0.0]
-    began: list[float] = []
+    surfaces, hubs, began_s = list[float](), list[float](), inf
 
     def enough(now_s: float) -> bool:
-        r = seat.ctx.readings
-        began.append(now_s) if not began else None
+        nonlocal began_s
+        r, began_s = seat.ctx.readings, min(began_s, now_s)
         if isfinite(r.surface_c) and isfinite(r.hub_c) and r.surface_valid and r.jacket_valid:
-            sums[0] += r.surface_c
-            sums[1] += r.hub_c
-            sums[2] += 1.0
-        return now_s - began[0] >= seconds and sums[2] > 0.0
+            surfaces.append(r.surface_c)
+            hubs.append(r.hub_c)
+        return now_s - began_s >= seconds and bool(surfaces)
 
     yield enough
-    return sums[0] / sums[2], sums[1] / sums[2]
+    return sum(surfaces) / len(surfaces), sum(hubs) / len(hubs)

@@ -1,9 +1,9 @@
-"""The steps of this machine's commissioning, in their order: data."""
+"""The steps of this machine's commissioning, in their order, as data."""
 
 from __future__ import annotations
 
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 from sim.physics.friction import KNOWN
 from tester.kinds.wheel_on_belt.commission import first, jog, readings, thermometer, touch, watchdogs, weights
@@ -11,28 +11,15 @@ from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
-from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.commission.commission_step import CommissionPart, CommissionStep
-from tester.machine.rig_ports import Ports
 
 _BUS: Final = ("can", "lines", "devices")
 _CELL: Final = ("devices.load_cell", "lines.load_cell")
 _HEAT: Final = ("devices.ir_thermometer", "devices.jacket")
 _ALL: Final = (*_BUS, "axes", "geometry", "limits", "loops", "gates", "interlocks", "arming", "wear", "observer")
 _HOMED: Final = tuple(f"axes.{axis.name}" for axis in POSITIONED)
+_QUIET: Final = partial(JogSeat, jog.SPEEDS)
 _JOGGED: Final = tuple(f"jog {axis.name}" for axis in jog.AXES)
-
-
-def _quiet(rig: Any, ports: Ports, hands: Any) -> JogSeat:
-    return JogSeat(RigConfig.of(rig), ports, jog.SPEEDS)
-
-
-def _armed(rig: Any, ports: Ports, hands: Any) -> ArmedSeat:
-    return ArmedSeat(RigConfig.of(rig), ports, hands)
-
-
-def _trial(rig: Any, ports: Ports, hands: Any) -> watchdogs.TrialSeat:
-    return watchdogs.TrialSeat(RigConfig.of(rig), ports)
 
 
 def _jog(axis: jog.JoggedAxis) -> CommissionStep:
@@ -41,32 +28,32 @@ def _jog(axis: jog.JoggedAxis) -> CommissionStep:
         f"direction and scale of the {axis.name} axis",
         (f"axes.{axis.name}", *(("geometry",) if axis.name == "press" else ())),
         ("identify",),
-        _quiet,
+        _QUIET,
         partial(jog.jog_axis, axis),
         readings=readings.of_axis(axis),
     )
 
 
 STEPS: Final = (
-    CommissionStep("identify", "who is on the wires", (*_BUS, "axes"), (), _quiet, readings.identify,
+    CommissionStep("identify", "who is on the wires", (*_BUS, "axes"), (), _QUIET, readings.identify,
          readings=readings.of_bus),
     *(_jog(axis) for axis in jog.AXES),
-    CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _quiet, weights.calibrate,
+    CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _QUIET, weights.calibrate,
          readings=readings.of_cell),
     CommissionStep("home", "homing, and whether zero is straight", (*_HOMED, "can", "arming"),
-         _JOGGED, _armed, touch.home, readings=readings.of_positions),
+         _JOGGED, ArmedSeat, touch.home, readings=readings.of_positions),
     CommissionStep("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED,
-         _trial, watchdogs.watchdogs, readings=readings.of_armed(readings.SPEEDS, readings.PRESS)),
-    CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), _armed,
+         watchdogs.TrialSeat, watchdogs.watchdogs, readings=readings.of_armed(readings.SPEEDS, readings.PRESS)),
+    CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), ArmedSeat,
          touch.touch, readings=readings.of_armed(readings.PRESS, readings.FORCES, readings.SPEEDS)),
-    CommissionStep("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), _armed,
+    CommissionStep("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), ArmedSeat,
          touch.roll, readings=readings.of_armed(readings.SPEEDS, readings.FORCES)),
     CommissionStep("directions", "crosstalk and misalignment by both directions of slip", _ALL, ("rolling",),
          alone=first.directions),
-    CommissionStep("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",), _armed,
-         thermometer.soak, readings=readings.of_armed(readings.HEAT, readings.SPEEDS)),
+    CommissionStep("thermometer", "thermometer against a hub soak", (*_HEAT, "geometry", "observer"), ("home",),
+         ArmedSeat, thermometer.soak, readings=readings.of_armed(readings.HEAT, readings.SPEEDS)),
     CommissionStep("first", "a first condition three times", _ALL, ("rolling", "thermometer"), alone=first.coefficient),
 )  # fmt: skip
-"""In order of dependence: each step relies on the ones before; the heating steps come last, so that it cools once."""
+"""In order of dependence; the heating steps come last, so that the rig cools only once."""
 
 COMMISSIONS: Final = CommissionPart(STEPS, tuple(KNOWN), TwinPerson)

@@ -36,18 +36,19 @@ grids:
     temperature: {temperature} degC
 """
 WARMER_K: Final = 0.1
-"""A repeat slips in from the loop's ``rolling_offset`` below its temperature, at most 0.3 K below and 0.1 K above that
-(tester.kinds.wheel_on_belt.procedures.bursts): the middle of it is met by a wheel as it is [A]."""
+"""Temperature above the middle of the band in which a repeat slips in [A]: the band reaches from 0.3 K below to 0.1 K
+above the loop's ``rolling_offset`` under the repeat's temperature (tester.kinds.wheel_on_belt.procedures.bursts). An
+unheated wheel is then inside it."""
 BELOW_K: Final = 3.0
-"""The first condition's hub is to be this much below the soak's [A]: slip warms the tread by 1 K, and the ratio of the
-losses is known to a tenth of itself."""
+"""The first condition's hub is this much below the soak's [A]: slip warms the tread by 1 K, and the ratio of the losses
+is known to 10 %."""
 LOAD_N: Final = 100.0
 SLIP_M_S: Final = 0.1
-"""Of the first conditions [A]: 6 W of friction, which hardly warm a tread."""
+"""Slip velocity of the first conditions [A]: 6 W of friction hardly warm a tread."""
 WHEEL_M_S: Final = 0.8
 PAIRS: Final = 5
-"""Repeats in both directions [A]: 2 % of scatter leave 0.5 degrees (95 %), of three pairs 1.4."""
-TOLD_SHARE: Final = 0.25
+"""Repeats in both directions [A]: 2 % of scatter leave 0.5 degrees (95 %); three pairs would leave 1.4."""
+WARNED_SHARE: Final = 0.25
 REFUSED_SHARE: Final = 0.5
 """Deviation of a first coefficient from its compound's model that gives a warning, or a refusal [A]: the paper's
 compounds are a quarter to a third apart.
@@ -147,6 +148,6 @@ def _plausible(notes: Notes, compound: str, mu: float, surface_c: float) -> dict
             f"{text} (more than {100 * REFUSED_SHARE:g} %): is the wheel of another compound? Else the load cell's"
             " zero, or a belt that is worn or greasy"
         )
-    if abs(off) > TOLD_SHARE:
+    if abs(off) > WARNED_SHARE:
         notes.tell(f"  {text}: take care; the cause may be a belt of another grade, or another compound")
     return {"expected_mu": expected, "off_share": off}

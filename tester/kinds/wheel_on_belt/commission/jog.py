@@ -1,8 +1,8 @@
 """Jog an axis: first a little, for its direction and that it is this axis; then further, for its scale.
 
-A person reads a ruler, a protractor or a dial gauge and types the value. The scale is what was read over what the
-drive reports to have moved; beyond the tolerance the step is refused, and the message gives the correct increments.
-The first way is so short and slow that ten times as far and fast is harmless.
+A person reads a ruler, a protractor or a dial gauge and types the value. The scale is the read way over the way that
+the drive reports; beyond the tolerance the step is refused, and the message gives the correct increments. The first way
+is short and slow: ten times as far and fast is harmless.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
 
 FIRST_SHARE: Final = 0.3
-"""The first, little way may be read off by this share [A]: a ruler on some millimetres."""
+"""Tolerance of the first, little way, share [A]: a ruler on some millimetres."""
 SPRING_S: Final = 1.5
-"""A spring has taken the press back by then, s [A]: 4 mm at 20 mm/s take 0.2 s."""
+"""Time for a spring to take the press back, s [A]: 4 mm at 20 mm/s take 0.2 s."""
 RIGHT, REVERSED, OTHER, NOTHING = "yes", "reversed", "other", "nothing"
 
 
@@ -34,7 +34,7 @@ class JoggedAxis:
     tolerance: float
     reading: float
     back: bool
-    """It is brought back afterwards; one that turns round and round is not."""
+    """It is moved back afterwards, unlike an axis that turns round and round."""
     holds: bool = False
     """It is read while its drive holds it: without power a spring takes it back."""
 
@@ -55,8 +55,8 @@ AXES: Final = (
     JoggedAxis("camber", JogSpeeds(1.0, 0.5, 2.0, 5.0), "deg", "an inclinometer on the wheel's carrier",
          "to the side that the rig's papers call positive", 0.05, 0.1, True),
 )  # fmt: skip
-"""Ways and speeds in the axes' units (rad, m, mm, deg; a second) [A]; tolerances [A], readings: half of what the finest
-mark of such an instrument tells [A]."""
+"""Ways and speeds in the axes' units (rad, m, mm, deg; a second) [A]; tolerances [A]; readings: half of the finest
+division of such an instrument [A]."""
 
 SPEEDS: Final = {axis.name: axis.speeds for axis in AXES}
 
@@ -109,7 +109,7 @@ def jog_axis(axis: JoggedAxis, seat: JogSeat, notes: Notes) -> Dialogue:
 
 
 def _move(axis: JoggedAxis, seat: JogSeat, which: str, way: float, speed: float) -> Measured:
-    """Wait for a key, a closed guard, and the axis; return how far the drive says it went."""
+    """Wait for a key, a closed guard, and the axis; return the way that the drive reports."""
     text = f"{axis.name}: hands off, guard closed; it moves by {axis.shown(way):.4g} {axis.unit} at most, and stops"
     yield from press(f"jog {axis.name} {which}", text, seat.guarded)
     jog = seat.jogging.begin(axis.name, way, speed, holds=axis.holds)
@@ -118,7 +118,7 @@ def _move(axis: JoggedAxis, seat: JogSeat, which: str, way: float, speed: float)
 
 
 def _rest(axis: JoggedAxis, seat: JogSeat) -> Dialogue:
-    """Take the power of an axis that was held to be read."""
+    """Switch off an axis that kept its power to be read."""
     jog = seat.jogging.rest() if axis.holds else None
     if jog is not None:
         yield lambda now_s: jog.over
@@ -130,7 +130,7 @@ def _mark(axis: JoggedAxis) -> Dialogue:
 
 
 def _read(axis: JoggedAxis, which: str) -> Measured:
-    """Ask how far it has gone; the way that it should is positive."""
+    """Ask how far it has moved; the intended direction is positive."""
     text = f"{axis.name}: how far has it moved, by {axis.instrument}?"
     return (yield from measure(f"jog {axis.name} {which} read", text, axis.unit))
 
@@ -150,7 +150,7 @@ def _direction(axis: JoggedAxis, seat: JogSeat, seen: str) -> None:
 
 
 def _wrong_scale(axis: JoggedAxis, seat: JogSeat, share: float, why: str) -> str:
-    """Return what is wrong with a scale, and the lines of the rig file that would be right."""
+    """Return the error of a scale, with the correct lines of the rig file."""
     config = seat.believed.axes.driven()[axis.name]
     if not abs(share) > 1e-6:
         return f"the {axis.name} axis has not moved according to the reading: no scale can be computed"

@@ -14,7 +14,7 @@ COMMISSIONING: Final = "commissioning"
 
 
 class MovesExecutor(Executor[Any]):
-    """Serves one activity after the other, as a procedure hands them in; between two the demand stays."""
+    """Runs one activity after the other, as a procedure sets them; between two the demand is kept."""
 
     def __init__(self) -> None:
         """Begin without a demand."""

@@ -15,6 +15,7 @@ from typing import Any, Final, Protocol
 from drivers.axis import AxisConfig
 from drivers.cia402 import Goal, State
 from drivers.servo import ServoDrive
+from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -31,7 +32,7 @@ STILL_S: Final = 1.0
 TORQUE_SHARE: Final = 0.3
 """Share of the rated torque for a jog [A]: bearings and inertia of this machine's axes take a tenth of it."""
 PRESS_LOAD_N: Final = 60.0
-"""The press gets the torque that surely produces this load, N [A]: its spring pulls back with 40 N."""
+"""Load that the press's torque surely produces, N [A]: its spring pulls back with 40 N."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +66,13 @@ def jog_rig(rig: RigConfig, speeds: dict[str, JogSpeeds]) -> RigConfig:
 
 @dataclass(slots=True)
 class JogMove:
-    """One key press: an axis moves ``way`` (signed, its unit) at ``speed``, or as far as it gets in ``PRESS_S``."""
+    """One key press: an axis moves ``way`` (signed, its unit) at ``speed``, for ``PRESS_S`` at most."""
 
     axis: str
     way: float
     speed: float
     holds: bool = False
-    """It keeps its power at rest: without power it would not stay there (a press with a spring)."""
+    """It keeps its power at rest: a spring would move an unpowered press."""
     moved: float = 0.0
     """Distance that the drive itself reports."""
     over: bool = False
@@ -320,9 +321,10 @@ class QuietSeat:
 class JogSeat(QuietSeat):
     """The rig while a person jogs its axes, one at a time, with the drives bounded (``jog_rig``)."""
 
-    def __init__(self, rig: RigConfig, ports: Ports, speeds: dict[str, JogSpeeds]) -> None:
+    def __init__(self, speeds: dict[str, JogSpeeds], rig: Rig, ports: Ports, hands: Any) -> None:
         """Connect."""
-        bounded = jog_rig(rig, speeds)
+        believed = RigConfig.of(rig)
+        bounded = jog_rig(believed, speeds)
         devices = build_devices(bounded, ports)
         self.jogging = Jogging(devices, bounded)
-        super().__init__(bounded, rig, devices, self.jogging)
+        super().__init__(bounded, believed, devices, self.jogging)

@@ -26,7 +26,7 @@ Table = tuple[tuple[str, str, str, int], ...]
 
 
 def of_bus(seat: JogSeat) -> Sequence[StepReading]:
-    """Return whether each drive and device answers."""
+    """Return for each drive and device whether it answers."""
     drives = [(drive.config.name, drive.online) for drive in seat.devices.drives]
     devices = [*drives, *((device.title, device.driver.ready) for device in seat.devices.modbus)]
     return tuple(StepReading(name, nan, "", 0, "heard" if online else "not heard") for name, online in devices)
@@ -108,6 +108,6 @@ def identify(seat: JogSeat, notes: Notes) -> Dialogue:
         )
     answer = yield from choose("identify", "are these the devices of this rig?", "yes", "no")
     if answer != "yes":
-        raise StepRefused("the person at the rig does not know these devices again: check adapters, node and unit ids")
+        raise StepRefused("the person at the rig does not recognise these devices: check adapters, node and unit ids")
     notes.values = identities
     notes.text = f"{len(identities)} devices found and recognised"

@@ -1,4 +1,4 @@
-"""Where a temperature that settles is going, and how sure that is: its tail is fitted while it is still on its way."""
+"""The end of a settling temperature and its uncertainty, from a fit of its tail before it has settled."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Final
 import numpy as np
 
 MEAN_S: Final = 5.0
-"""Readings are averaged over this long before they are fitted, s [A]."""
+"""Length of the means that are fitted, s [A]."""
 PAST_SHARE: Final = 0.75
-"""The tail begins once the rise is down to this share of its greatest [A]: faster modes than the last are over."""
+"""The tail begins once the rise is down to this share of its greatest [A]: the faster modes have decayed."""
 TAIL: Final = 12
-"""Means of the tail that are fitted, at least: a minute."""
+"""Least number of means of the tail that are fitted: a minute."""
 TIMES_S: Final = np.geomspace(20.0, 1000.0, 200)
-"""Time constants that are tried, s."""
+"""Tried time constants, s."""
 
 
 class SettlingFit:
@@ -29,7 +29,7 @@ class SettlingFit:
         self.means.append(mean)
 
     def going(self) -> tuple[float, float]:
-        """Return where the tail goes to and its standard uncertainty; NaN while there is too little of it.
+        """Return the end of the tail and its standard uncertainty; NaN while the tail is too short.
 
         y(t) = end - step exp(-t / T): least squares for end and step at each T of ``TIMES_S``; the best T's rows of
         d y / d (end, step, T) give the uncertainty, the residuals the noise.
@@ -55,7 +55,7 @@ class SettlingFit:
         return (end, sqrt(variance)) if isfinite(variance) else (nan, nan)
 
     def _tail(self) -> np.ndarray:
-        """Return the means since the rise is well past its greatest."""
+        """Return the means after the rise has passed its greatest."""
         means = np.asarray(self.means)
         if len(means) < 2 * TAIL:
             return means[:0]

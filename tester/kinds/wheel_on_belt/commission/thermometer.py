@@ -1,8 +1,8 @@
 """The thermometer against the hub: cold, where both are as warm as the air, and at a soak of at most 45 degC.
 
-Cold it is the offset. Warm, lifted and turning, the tread follows the hub: its excess over the air is the hub's over
-1 + ratio (``loops.loss_ratios``). What the thermometer shows of that excess is its gain, which to first order is the
-set emissivity over the true one, for a tread that is not much warmer than what it reflects.
+The difference when cold is the offset. Warm, lifted and turning, the tread follows the hub: its excess over the air is
+the hub's over 1 + ratio (``loops.loss_ratios``). The thermometer's share of that excess is its gain: to first order the
+set emissivity over the true one, as the tread is not much warmer than the surroundings that it reflects.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from tester.machine.commission.person import Dialogue, StepRefused, Waits, wait
 from tester.machine.motions import Power, Sequence
 
 MOST_C: Final = 45.0
-"""The hub's temperature in the soak, at most."""
+"""Highest temperature of the hub in the soak, degC."""
 HUB_C: Final = 42.0
-"""Where the hub is held [A]: its controller overshoots by some kelvin."""
+"""Temperature at which the hub is held, degC [A]: its controller overshoots by some kelvin."""
 TURNS_M_S: Final = 0.3
 COLD_K: Final = 2.0
-"""Offset, cold [A]: 1 K of bias, and the hub's sensor."""
+"""Tolerance of the cold offset [A]: 1 K of bias, and the hub's sensor."""
 GAIN_SHARE: Final = 0.10
-"""Of the excess at the soak [A]: the ratio of the losses is known to a third of itself, 5 % of the excess."""
+"""Tolerance of the gain [A]: the ratio of the losses is known to a third, 5 % of the excess."""
 AVERAGE_S: Final = 10.0
 SURE_K: Final = 0.3
-"""Soaked: where the surface is going is known with this standard uncertainty, K: 2.5 % of the excess [A] ..."""
+"""Soaked: the end of the surface's tail is known with this standard uncertainty, K: 2.5 % of the excess [A] ..."""
 SAME_S: Final = 30.0
 SAME_K: Final = 0.5
-"""... and has been the same within this for so long, K, s [A] ..."""
+"""... and has been the same within ``SAME_K`` for ``SAME_S`` [A] ..."""
 AT_MOST_S: Final = 900.0
-"""... within this, s."""
+"""... before this time has passed, s."""
 
 
 def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
@@ -54,7 +54,8 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
         )
     yield from seat.do(Sequence(Power(True), Lift(), Turn(TURNS_M_S, TURNS_M_S)))
     lifted, _ = loss_ratios(seat.rig)
-    # The heat loop makes a setpoint of the hub from one of the surface; that is then kept, whatever is shown.
+    # The heat loop turns this surface setpoint into one of the hub; the hub's is then frozen, whatever the thermometer
+    # shows, because the thermometer is what is being tested.
     seat.ctx.demand.surface_c = (HUB_C + air * lifted + surface) / (2.0 + lifted)
     yield from wait(2.0 * seat.rig.loops.heat.period_s)
     seat.ctx.demand.freeze_heat = True
@@ -85,8 +86,10 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
 
 
 def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float, float]]:
-    """Wait until it is known where the surface is going with the hub held; return that, its standard uncertainty, K,
-    and the hub, degC."""  # fmt: skip
+    """Wait until the end of the surface's tail is known, with the hub held.
+
+    Return that end, degC, its standard uncertainty, K, and the hub's temperature, degC.
+    """
     fit, last = SettlingFit(), deque[tuple[float, float]](maxlen=round(SAME_S / MEAN_S))
     began_s = seat.ctx.now
     while True:
@@ -94,8 +97,8 @@ def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float, float]
         fit.add(surface)
         going, standard = fit.going()
         last.append((going, hub))
-        same = len(last) == last.maxlen and all(abs(one - going) <= SAME_K for one, _ in last)
+        same = len(last) == last.maxlen and all(abs(end - going) <= SAME_K for end, _ in last)
         if same and standard <= SURE_K:
-            return going, standard, sum(one for _, one in last) / len(last)
+            return going, standard, sum(hub for _, hub in last) / len(last)
         if seat.ctx.now - began_s > AT_MOST_S:
             raise StepRefused(f"not soaked after {AT_MOST_S / 60:g} min: hub {hub:.1f}, surface {surface:.1f} degC")

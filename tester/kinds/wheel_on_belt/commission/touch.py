@@ -20,7 +20,7 @@ DIAMETER_MM: Final = 0.5
 """
 TARE_S: Final = 2.0
 ROLLING_N: Final = 50.0
-"""Load of the rolling wheel [A]: the indentation shortens its radius by only some hundredths of a mm."""
+"""Load of the rolling wheel [A]: the indentation shortens its radius by some hundredths of a mm only."""
 SPEEDS_M_S: Final = (0.2, 0.5, 0.8)
 HALVINGS: Final = 6
 """Number of halvings to find the belt speed at which friction reverses: from +-(3 % and 10 mm/s) to 0.05 %."""
@@ -72,17 +72,17 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
     press_mm = seat.ctx.contact.contact_mm
     yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
     notes.values = {"compound": compound, "diameter_mm": read, "touched_mm": press_mm, "zero": reference}
-    zero = ", ".join(f"{one:.2f}" for one in reference[:3])
+    zero = ", ".join(f"{force:.2f}" for force in reference[:3])
     notes.text = f"wheel of {compound}, {read:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
 
 
 def _compound(notes: Notes) -> Generator[Waits, str, str]:
     """Return the wheel's compound, from the command line or the person."""
-    given, known = notes.given.get("compound", ""), ", ".join(KNOWN)
-    if given:
-        answer = yield from choose("compound given", f"is the wheel of the compound {given}?", "yes", "no")
+    named, known = notes.given.get("compound", ""), ", ".join(KNOWN)
+    if named:
+        answer = yield from choose("compound given", f"is the wheel of the compound {named}?", "yes", "no")
         if answer == "yes":
-            return given
+            return named
     text = f"which compound is on the wheel? The expected coefficient is known for {known}"
     return (yield from line("compound", f"{text}; any other name will do"))
 
@@ -125,7 +125,7 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
         )
     notes.values = {
         "ratio_error": ratio, "standard_uncertainty": standard, "creep_m_s": creep,
-        "turns_round": [list(one) for one in reversals], "surface_c": surface_c,
+        "turns_round": [*map(list, reversals)], "surface_c": surface_c,
     }  # fmt: skip
     notes.text = (
         f"speed ratio off by {100 * ratio:+.2f} % (standard uncertainty {100 * standard:.2f} %),"

@@ -17,7 +17,7 @@ from tester.machine.prompts import GO, Asks, Prompt, Prompts, Question
 THINKS_S: Final = 15.0
 """Rig time of an answer that needs a reading or a hung weight, s [A]."""
 STILL_M_S: Final = 0.002
-"""A person sees no motion slower than this, m/s [A]."""
+"""Slowest motion that a person sees, m/s [A]."""
 KEY_S: Final = 2.0
 """Rig time from a question to a key, s [A]."""
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from math import inf, isfinite
-from typing import Final
+from typing import Any, Final
 
 from drivers.canopen import objects as o
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import TemperatureController
+from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, has_power
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import Proof
@@ -29,11 +30,11 @@ SETPOINT_LATE: Final = 0x8250
 MORE_S: Final = 0.15
 """Setpoints are withheld for the longest deadline plus this, s [A]: the EMCY arrives, and the ramp from creep ends."""
 NEEDS_DEADLINE: Final = ("wheel", "belt", "press")
-"""Axes that keep moving at their last setpoint."""
+"""Axes that would keep moving at their last setpoint."""
 COOLER_K: Final = 20.0
 """The jacket's setpoint is this much below the hub's temperature: it runs without heating."""
 RUNS_S: Final = 1.5
-"""Time for which it runs with its setpoint, s: three writes of it, and a reading."""
+"""Time that it runs with its setpoint, s: three writes of it, and a reading."""
 LEASE_MORE_S: Final = 3.0
 """Time for the jacket to report the end of its lease, s [A]: a period of its own and of its readings."""
 NO_OUTPUT_PERCENT: Final = 0.5
@@ -126,11 +127,12 @@ class Trials:
 class TrialSeat(QuietSeat):
     """The rig lifted and unloaded, for trying watchdogs; drives have the torque of a run."""
 
-    def __init__(self, rig: RigConfig, ports: Ports) -> None:
+    def __init__(self, rig: Rig, ports: Ports, hands: Any) -> None:
         """Connect."""
-        devices = build_devices(rig, ports)
-        self.trials = Trials(devices, rig)
-        super().__init__(rig, rig, devices, self.trials)
+        believed = RigConfig.of(rig)
+        devices = build_devices(believed, ports)
+        self.trials = Trials(devices, believed)
+        super().__init__(believed, believed, devices, self.trials)
 
     @property
     def ready(self) -> bool:
@@ -149,7 +151,7 @@ def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
     """Let each watchdog run out in front of a person; raises StepRefused for one that has no effect."""
     arming = seat.rig.arming
     if not (arming.bump_test and arming.watchdog_proof):
-        raise StepRefused("watchdogs not shown: the rig file does without (arming.bump_test, arming.watchdog_proof)")
+        raise StepRefused("watchdogs not shown: switched off in the rig file (arming.bump_test, arming.watchdog_proof)")
     drives = seat.devices.drives
     unproven = [drive.config.name for drive in drives if not drive.config.proves_watchdog]
     needing = [drive for drive in drives if drive.config.name in NEEDS_DEADLINE]
@@ -158,10 +160,10 @@ def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
         raise StepRefused(f"watchdogs not shown: the rig file leaves out axes.*.proves_watchdog: {', '.join(unproven)}")
     if without:
         raise StepRefused(f"no deadline for setpoints (axes.*.rpdo_deadline): {', '.join(without)}")
-    what = "hands off, guard closed; wheel, belt and press move a little, then wheel and belt creep"
-    yield from _shown(seat, notes, "heartbeat", Proof(seat.devices, seat.rig), f"{what}, and our heartbeat stays away")
+    motion = "hands off, guard closed; wheel, belt and press move a little, then wheel and belt creep"
+    yield from _shown(seat, notes, "heartbeat", Proof(seat.devices, seat.rig), f"{motion}, without our heartbeat")
     proof = SetpointProof(seat.devices, seat.rig)
-    yield from _shown(seat, notes, "setpoints", proof, f"{what}, and their setpoints stay away")
+    yield from _shown(seat, notes, "setpoints", proof, f"{motion}, without setpoints")
     heat = yield from _lease(seat, notes)
     notes.values["heat"] = heat
     notes.text = (
@@ -185,7 +187,7 @@ def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text:
         notes.values.setdefault(name, {})[drive.config.name] = report
     seen = yield from choose(f"watchdog {name} seen", "did wheel and belt stand still by themselves?", "yes", "no")
     if seen != "yes":
-        raise StepRefused(f"watchdogs: a person saw wheel or belt run on without {name}, though their drives say not")
+        raise StepRefused(f"watchdogs: a person saw wheel or belt run on without {name}, which their drives deny")
 
 
 def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:

@@ -1,12 +1,12 @@
 """Calibrate the load cell with hung weights: points, fit, residuals, uncertainty, who, with what, until when.
 
-Nothing has power. Each weight loads one channel; the cell's readings less its zero are fitted with one slope a channel
-through zero. Wires that are crossed, a sign, a gain and a weight that was typed wrongly show before anything presses:
+Nothing has power. Each weight loads one channel; a line through zero is fitted to each channel's readings less its
+zero. Crossed wires, a wrong sign, a wrong gain and a mistyped weight show before anything presses:
 
 - a typed weight that is off the channel's other points by more than ``TYPED_SHARE`` is asked for again, once;
-- a channel that another one answers for, or with the other sign, or with another gain, is refused with what to set.
+- a channel whose weights show on another one, with the other sign or with another gain is refused, with the remedy.
 
-The cell's error is not taken off the readings: it enters the budget as it was found (``budget.calibrated``).
+The readings are not corrected by the cell's error: it enters the budget (``budget.calibrated``).
 """
 
 from __future__ import annotations
@@ -72,15 +72,15 @@ def settled_cell(seat: JogSeat) -> Generator[Waits, str, list[float]]:
 
 CHANNELS: Final = ("x", "y", "z")
 PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0, 100.0), "y": (50.0, 100.0, 200.0)}
-"""Weights about, N, by the channel that they load: rising, and one on the way back for hysteresis [A]."""
+"""Approximate weights, N, by the loaded channel: rising, and one on the way back for hysteresis [A]."""
 AVERAGE_S: Final = 1.0
-"""Each point is averaged this long once it has settled, s [A]: 0.25 N of noise, 100 readings a second: 0.025 N."""
+"""Averaging time of a settled point, s [A]: 0.25 N of noise at 100 readings a second leaves 0.025 N."""
 STILL_N: Final = 0.1
-"""Settled: the quarters of that time are the same within this and their noise [A]: 0.2 % of the least weight."""
+"""Settled: the quarters of that time agree within this and their noise [A]: 0.2 % of the least weight."""
 SWINGS_S: Final = 30.0
 """Longest swing of a weight, s [A]."""
 TYPED_SHARE: Final = 0.05
-"""A point this far off its channel's others is a typed one, not the cell's [A]: its linearity is 0.1 %."""
+"""A point this far off its channel's others was mistyped [A]: the cell's linearity is 0.1 %."""
 CROSSED_SHARE: Final = 0.5
 """A channel that shows more than this share of a weight on another has that channel's wires [A]."""
 GAIN_SHARE: Final = 0.02
@@ -94,14 +94,14 @@ the direction of a wire over a pulley within 1 degree 1.5e-4."""
 
 @dataclass(slots=True)
 class HungChannel:
-    """The points of one channel: what was hung, N, and what all channels showed above zero, N."""
+    """The points of one channel: the hung force, N, and the readings of all channels above zero, N."""
 
     name: str
     hung_n: list[float] = field(default_factory=list[float])
     shown_n: list[tuple[float, float, float]] = field(default_factory=list[tuple[float, float, float]])
 
     def slopes(self) -> tuple[float, float, float]:
-        """Return what each channel shows of a newton on this one, by least squares through zero."""
+        """Return each channel's reading for a newton on this one, by least squares through zero."""
         square = sum(f * f for f in self.hung_n)
         x, y, z = (
             sum(f * s[i] for f, s in zip(self.hung_n, self.shown_n, strict=True)) / square for i in range(3)
@@ -109,14 +109,14 @@ class HungChannel:
         return x, y, z
 
     @property
-    def own(self) -> int:
-        """The channel's own place."""
+    def place(self) -> int:
+        """The channel's place in ``CHANNELS``."""
         return CHANNELS.index(self.name)
 
     def residuals(self) -> list[float]:
-        """Return what the channel's own readings are off its line, N."""
-        slope = self.slopes()[self.own]
-        return [s[self.own] - slope * f for f, s in zip(self.hung_n, self.shown_n, strict=True)]
+        """Return the deviations of the channel's readings from its line, N."""
+        slope = self.slopes()[self.place]
+        return [s[self.place] - slope * f for f, s in zip(self.hung_n, self.shown_n, strict=True)]
 
     def standard(self) -> float:
         """Return the standard uncertainty of the slope: scatter about the line, and the weights."""
@@ -125,7 +125,7 @@ class HungChannel:
         return hypot(scatter / sqrt(sum(f * f for f in self.hung_n)), WEIGHT_SHARE)
 
     def typed_wrongly(self) -> int:
-        """Return the place of the point that is farthest off the median sensitivity, -1 where none is too far."""
+        """Return the index of the point farthest off the median sensitivity, -1 if none is too far."""
         answer = self.answering()
         shares = [s[answer] / f for f, s in zip(self.hung_n, self.shown_n, strict=True)]
         middle = median(shares)
@@ -134,7 +134,7 @@ class HungChannel:
         return worst if off[worst] > TYPED_SHARE else -1
 
     def answering(self) -> int:
-        """Return the place of the channel that shows most of these weights."""
+        """Return the index of the channel that shows most of these weights."""
         totals = [sum(abs(s[i]) for s in self.shown_n) for i in range(3)]
         return totals.index(max(totals))
 
@@ -194,15 +194,15 @@ def _again(notes: Notes, channel: HungChannel, wrong: int) -> Dialogue:
 
 
 def _judge(channel: HungChannel) -> None:
-    """Raise StepRefused for a channel that is not wired, scaled or mounted as the rig file says."""
-    slopes, own, name = channel.slopes(), channel.own, channel.name
+    """Raise StepRefused for a channel whose wiring, scale or mounting differs from the rig file."""
+    slopes, place, name = channel.slopes(), channel.place, channel.name
     answer = channel.answering()
-    if answer != own and abs(slopes[answer]) > CROSSED_SHARE:
+    if answer != place and abs(slopes[answer]) > CROSSED_SHARE:
         raise StepRefused(
             f"load cell channels are swapped: a weight on F{name} shows on F{CHANNELS[answer]}"
             f" ({slopes[answer]:+.2f} N/N). Change the wires at the transmitter, or the profile's addresses"
         )
-    gain = slopes[own]
+    gain = slopes[place]
     if gain < 0.0:
         raise StepRefused(
             f"the sign of the load cell's F{name} is reversed: a weight shows {gain:+.3f} N/N."
@@ -214,16 +214,16 @@ def _judge(channel: HungChannel) -> None:
             f" Multiply the channel's sensitivity at the transmitter (mV/V at full load) by {gain:.5f}, or the scale of"
             f" its signal in the profile by {1 / gain:.5f}"
         )
-    for place, slope in enumerate(slopes):
-        if place != own and abs(slope) > COUPLING_SHARE:
+    for other, slope in enumerate(slopes):
+        if other != place and abs(slope) > COUPLING_SHARE:
             raise StepRefused(
-                f"F{CHANNELS[place]} shows {100 * slope:+.1f} % of a force on F{name}, more than"
+                f"F{CHANNELS[other]} shows {100 * slope:+.1f} % of a force on F{name}, more than"
                 f" {100 * COUPLING_SHARE:g} %: crosstalk, or the cell is mounted {57.3 * abs(slope):.1f} degrees off"
             )
 
 
 def _due() -> Generator[Waits, str, str]:
-    """Ask until when the calibration counts."""
+    """Ask for the last day of the calibration."""
     text = "until which day does this calibration count (2027-01-31)? A year is usual for a cell in daily use [A]"
     while True:
         answer = yield from line("due", text)
@@ -236,7 +236,7 @@ def _due() -> Generator[Waits, str, str]:
 def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weights: str, due: str) -> None:
     """Report and record the results, and print the lines for the rig file."""
     by_name = {channel.name: channel for channel in channels}
-    gains = {name: channel.slopes()[channel.own] for name, channel in by_name.items()}
+    gains = {name: channel.slopes()[channel.place] for name, channel in by_name.items()}
     standards = {name: channel.standard() for name, channel in by_name.items()}
     ratio = gains["x"] / gains["z"] - 1.0
     sensitivity = hypot(ratio, standards["x"], standards["z"])

@@ -62,7 +62,7 @@ def test_swapped_temperature_and_frequency_are_doubted_where_temperatures_go_in_
 
 def test_a_point_that_stands_twice_is_refused_with_both_lines() -> None:
     problems, _ = found_in([*sweep(), sweep()[3]])
-    assert problems == ["21: -45 degC and 1 Hz stand in line 4 already"]
+    assert problems == ["21: -45 degC and 1 Hz are already in line 4"]
 
 
 def test_a_sweep_up_and_down_is_doubted() -> None:
@@ -109,7 +109,7 @@ def test_one_frequency_without_a_decade_is_doubted() -> None:
 
 
 def test_a_narrow_sweep_at_one_frequency_is_doubted() -> None:
-    assert doubts_of(sweep(4), None, 8.0) == ["15 K at one frequency stand for less than two decades"]
+    assert doubts_of(sweep(4), None, 8.0) == ["15 K at one frequency are equivalent to less than two decades"]
 
 
 def test_several_frequencies_need_a_glass_transition_that_fits() -> None:
