@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from tester.results.formats import Format
     from tester.results.run_results import ReferenceWatch, RunResults
     from tester.results.table_rows import TableRow
-    from tester.store.records import Change, SessionInfo, StoredEvent, StoredExclusion, StoredTrip
+    from tester.store.journal_records import StoredEvent, StoredExclusion, StoredTrip
+    from tester.store.records import Change, SessionInfo
 
 
 # tester show

@@ -13,16 +13,8 @@ from tester.results.run_files import MANIFEST
 from tester.results.run_results import RingPart, RunResults, results_of
 from tester.results.table_rows import Measured
 from tester.results.verify import Verification, verify
-from tester.store.records import (
-    Change,
-    SessionInfo,
-    StoredEvent,
-    StoredExclusion,
-    StoredPrompt,
-    StoredRepeat,
-    StoredTare,
-    StoredTrip,
-)
+from tester.store.journal_records import StoredEvent, StoredExclusion, StoredPrompt, StoredTare, StoredTrip
+from tester.store.records import Change, SessionInfo, StoredRepeat
 from tester.store.run_reader import RunReader
 
 ALARMING = frozenset({"alarm", "trip"})

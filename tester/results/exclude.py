@@ -14,8 +14,10 @@ from tester.base.words import plain_text
 from tester.results.formats import FORMATS
 from tester.results.run_files import MANIFEST, manifest_problems, write_all
 from tester.store.amend import add_exclusion, standing
-from tester.store.records import StoredExclusion, StoredRepeat
-from tester.store.run_reader import DATABASE, RunReader
+from tester.store.journal_records import StoredExclusion
+from tester.store.record_file import DATABASE
+from tester.store.records import StoredRepeat
+from tester.store.run_reader import RunReader
 
 MADE_ANEW = frozenset({DATABASE, *(kind.file for kind in FORMATS.values() if kind.kept is not None)})
 """Files of a run's folder that an exclusion changes, beside the manifest."""

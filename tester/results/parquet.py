@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib import import_module
 from itertools import islice
 from math import isfinite
 from typing import BinaryIO, Protocol, cast
 
+from tester.base.plugins import MissingExtraError, needs
 from tester.base.quantities import Channel
 from tester.results.tables import OWNER, RISK_COLUMN
-from tester.store.arrow import arrow_module
 from tester.store.records import StoredRepeat
 from tester.store.run_reader import RunReader, SampleBlock
 
 _BLOCKS_PER_GROUP = 128
 """Row groups of up to 65,536 samples: 13 MB in memory."""
-
-_WHAT = "the format parquet"
 
 _Columns = dict[str, list[float | None]]
 
@@ -47,8 +46,8 @@ def write_parquet(reader: RunReader, file: BinaryIO) -> None:
     Condition, repeat and attempt are null for samples outside repeats. A run with an accepted risk has a further column
     that names it, as in its other tables. Raises StoreError, OSError, and MissingExtraError without pyarrow.
     """
-    pa = cast(_ParquetModules, arrow_module("pyarrow", _WHAT))
-    pq = cast(_Parquet, arrow_module("pyarrow.parquet", _WHAT))
+    pa = cast(_ParquetModules, _module("pyarrow"))
+    pq = cast(_Parquet, _module("pyarrow.parquet"))
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     whole, real = pa.int64(), pa.float64()
     channels = reader.quantities().recorded
@@ -87,3 +86,11 @@ def _columns(group: list[SampleBlock], owners: dict[int, StoredRepeat], channels
 
 def _whole(value: float) -> int | None:
     return int(value) if isfinite(value) else None
+
+
+def _module(name: str) -> object:
+    """Return pyarrow or a module of it; raises MissingExtraError where it is not installed."""
+    try:
+        return import_module(name)
+    except ModuleNotFoundError as error:
+        raise MissingExtraError(needs("the format parquet", "pyarrow", "parquet")) from error

@@ -31,7 +31,8 @@ from tester.results.settings_compared import RepeatedSetting, settings_of
 from tester.results.surroundings import SurroundingsOf
 from tester.results.table_rows import Measured, TableRow
 from tester.store.amend import standing
-from tester.store.records import PieceInfo, StoredCondition, StoredExclusion, StoredRepeat, StoredRun
+from tester.store.journal_records import StoredExclusion
+from tester.store.records import PieceInfo, StoredCondition, StoredRepeat, StoredRun
 from tester.store.run_folders import RunStatus, run_status, under_way
 from tester.store.run_reader import RunReader
 

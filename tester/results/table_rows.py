@@ -10,7 +10,8 @@ from tester.analysis.flags import remedy_of
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import ConditionStatus, SoakCheck
 from tester.base.axes import condition_words
-from tester.store.records import ConditionInfo, StoredCondition, StoredExclusion, StoredRepeat
+from tester.store.journal_records import StoredExclusion
+from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,8 +18,9 @@ from tester.results.run_results import RunResults
 from tester.store.amend import problems as exclusion_problems
 from tester.store.amend import standing
 from tester.store.chain import ChainFound
+from tester.store.journal_records import StoredExclusion
 from tester.store.record_schema import StoreError
-from tester.store.records import StoredExclusion, StoredRun
+from tester.store.records import StoredRun
 from tester.store.run_folders import RunStatus, under_way
 from tester.store.run_reader import RunReader
 from tester.store.sql import calibration_sha256, text_sha256

@@ -16,8 +16,8 @@ from tester.base.source import InvalidSource, load_tree
 from tester.inputs.rig import Rig
 from tester.results.run_files import MANIFEST, manifest_problems, write_all
 from tester.store.amend import acknowledge_trips
+from tester.store.journal_records import StoredTrip
 from tester.store.record_schema import StoreError
-from tester.store.records import StoredTrip
 from tester.store.run_folders import run_folders, under_way
 from tester.store.run_reader import RunReader
 

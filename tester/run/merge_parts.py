@@ -17,8 +17,8 @@ from tester.run.endings import PartEnd, RunEnding, StopLevel, ending_of
 from tester.run.folder import PARTS, Begin, Job, Work
 from tester.store.disk import sync_folder
 from tester.store.merge import Merge
+from tester.store.record_file import DATABASE
 from tester.store.record_schema import NotBegunError, StoreError
-from tester.store.run_reader import DATABASE
 from tester.store.writer import RunWriter
 
 MERGED = "parts.merged"

@@ -27,7 +27,7 @@ from tester.run.kind_lookup import run_parts
 from tester.run.provenance import record_parameters, record_statistics
 from tester.run.set_up import GoodRun
 from tester.run.simulated import Witnessed, truth_of
-from tester.store.run_reader import DATABASE
+from tester.store.record_file import DATABASE
 from tester.store.writer import RESERVE_BYTES, RunWriter
 
 if TYPE_CHECKING:

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from multiprocessing.queues import SimpleQueue
 from multiprocessing.sharedctypes import Synchronized
 from threading import Thread, current_thread, main_thread
-from types import TracebackType
 from typing import ParamSpec, TypeVar
 
 from tester.base.processes import leave_to_parent, not_inherited
@@ -41,9 +40,7 @@ class WorkerPool:
     def __enter__(self) -> WorkerPool:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Drop waiting calls; stop running ones and wait for them."""
         self.stop(StopLevel.FAST)
         self._executor.shutdown(cancel_futures=True)

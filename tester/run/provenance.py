@@ -29,17 +29,9 @@ from tester.machine.devices import DeviceList
 from tester.run.kept import object_key
 from tester.run.kind_lookup import recipe_part, run_parts, served_kind
 from tester.run.set_up import GoodRun
+from tester.store.journal_records import StoredParameter
 from tester.store.recorder import Recorder
-from tester.store.records import (
-    ACCEPTED_RISK,
-    EXTENSION,
-    LOOSE_KEYS,
-    Calibration,
-    RunInfo,
-    SessionInfo,
-    StoredMaterial,
-    StoredParameter,
-)
+from tester.store.records import ACCEPTED_RISK, EXTENSION, LOOSE_KEYS, Calibration, RunInfo, SessionInfo, StoredMaterial
 
 LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pyserial", "python-can", "pyyaml")
 """Distributions whose versions are stored with a run."""

@@ -54,9 +54,10 @@ from tester.run.resumed_run import prepare
 from tester.run.run_materials import KeptFile, kept_files, write_materials
 from tester.run.set_up import last_good_run
 from tester.run.workers import Sight, side_by_side
+from tester.store.record_file import DATABASE
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import MANIFEST, WENT_THROUGH, cut_off
-from tester.store.run_reader import DATABASE, RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")

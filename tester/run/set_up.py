@@ -14,8 +14,8 @@ from drivers.drive_settings import plan
 from tester.base.source import load_tree
 from tester.inputs.rig import Rig
 from tester.run.kept import IDENTITY, KEPT, object_key
+from tester.store.journal_records import StoredParameter
 from tester.store.record_schema import StoreError
-from tester.store.records import StoredParameter
 from tester.store.run_folders import WENT_THROUGH, run_folders
 from tester.store.run_reader import RunReader
 

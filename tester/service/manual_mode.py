@@ -16,10 +16,11 @@ from tester.run.kind_lookup import recipe_part
 from tester.run.latch import MANUAL_RUNS, made_on
 from tester.run.part_run import Unsampled
 from tester.run.provenance import accepted_risks
+from tester.store.record_file import DATABASE
 from tester.store.record_schema import StoreError
 from tester.store.records import RunInfo
 from tester.store.run_folders import run_folders
-from tester.store.run_reader import DATABASE, RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 
 

@@ -43,9 +43,10 @@ from tester.service.service_link import Order
 from tester.service.state_publisher import Desk
 from tester.service.state_view import RunView
 from tester.service.values import PlanTrack
+from tester.store.record_file import DATABASE
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import RunStatus, find_run, run_status, under_way
-from tester.store.run_reader import DATABASE, RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")

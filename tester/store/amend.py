@@ -9,9 +9,11 @@ from pathlib import Path
 
 from tester.base.trouble import in_words
 from tester.store.chain import Chain
+from tester.store.journal_records import StoredExclusion
+from tester.store.record_file import DATABASE
 from tester.store.record_schema import StoreError, migrate
-from tester.store.records import StoredExclusion, StoredRepeat
-from tester.store.run_reader import DATABASE
+from tester.store.records import StoredRepeat
+from tester.store.sql import columns_in, insert, update
 
 
 @contextmanager
@@ -42,15 +44,9 @@ def amended(folder: Path) -> Generator[sqlite3.Connection]:
 
 def acknowledge_trips(folder: Path, trips: Iterable[int], by: str, utc: str) -> None:
     """Store who has acknowledged trips (by number) of a finished run. Raises StoreError."""
-    sql = "UPDATE trip SET acknowledged_utc = ?, acknowledged_by = ? WHERE id = ?"
     with amended(folder) as database:
-        database.executemany(sql, [(utc, by, trip) for trip in trips])
-
-
-_ADD = """
-INSERT INTO exclusion (condition, repeat, attempt, excluded, reason, operator, utc, software_version, manifest_before)
-VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)
-"""
+        for trip in trips:
+            database.execute(*update("trip", {"acknowledged_utc": utc, "acknowledged_by": by}, {"id": trip}))
 
 
 def standing(exclusions: Iterable[StoredExclusion]) -> dict[tuple[int, int, int], StoredExclusion]:
@@ -70,10 +66,8 @@ def add_exclusion(folder: Path, exclusion: StoredExclusion) -> None:
 
     A record of an older schema is migrated to the present one. Raises StoreError.
     """
-    who = (exclusion.operator, exclusion.utc, exclusion.software_version)
-    values = (*exclusion.target, exclusion.excluded, exclusion.reason, *who)
     with amended(folder) as database:
-        database.execute(_ADD, (*values, exclusion.manifest_before))
+        database.execute(*insert("exclusion", columns_in(exclusion) | {"id": None}))
 
 
 def problems(exclusions: Iterable[StoredExclusion], repeats: Iterable[StoredRepeat]) -> list[str]:
@@ -84,7 +78,7 @@ def problems(exclusions: Iterable[StoredExclusion], repeats: Iterable[StoredRepe
     for exclusion in listed:
         if exclusion.target not in committed:
             which = f"condition {exclusion.condition}, repeat {exclusion.repeat}, attempt {exclusion.attempt}"
-            faults.append(f"exclusion {exclusion.id} speaks of {which}, which is not committed")
+            faults.append(f"exclusion {exclusion.id} names {which}, which is not committed")
     return faults
 
 

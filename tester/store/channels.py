@@ -9,7 +9,8 @@ from dataclasses import asdict
 from typing import Any
 
 from tester.base.quantities import Channel, Figure, Quantities, Roles, Screen
-from tester.store.sql import Value, insert
+from tester.store.chain import Cell
+from tester.store.sql import columns_in, insert
 
 COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "whole", "shown_name", "shown_unit",
            "scale", "role", "block", "screen")  # fmt: skip
@@ -22,7 +23,7 @@ _ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING = _ROLES = (
 )  # fmt: skip
 
 
-def channel_rows(quantities: Quantities) -> list[dict[str, Value]]:
+def channel_rows(quantities: Quantities) -> list[dict[str, Cell]]:
     """Return a row of the table ``channel`` for each channel, in order."""
     roles = quantities.roles
     by_role = {
@@ -33,25 +34,17 @@ def channel_rows(quantities: Quantities) -> list[dict[str, Value]]:
         _TEMPERATURE: roles.temperature,
         _SLIDING: roles.sliding,
     }
-    return [
-        {
+    rows: list[dict[str, Cell]] = []
+    for position, quantity in enumerate(quantities):
+        row: dict[str, Cell] = columns_in(quantity) | {
             "position": position,
-            "name": quantity.name,
-            "unit": quantity.unit,
-            "label": quantity.label,
-            "source": quantity.source,
-            "mean": quantity.mean,
-            "decimals": quantity.decimals,
-            "whole": int(quantity.whole),
             "shown_name": quantity.column,
-            "shown_unit": quantity.shown_unit,
-            "scale": quantity.scale,
             "role": " ".join(role for role, name in by_role.items() if name == quantity.name),
             "block": roles.block if quantity.name == roles.turn else None,
             "screen": "" if quantity.screen is None else json.dumps(asdict(quantity.screen)),
         }
-        for position, quantity in enumerate(quantities)
-    ]
+        rows.append({name: row[name] for name in COLUMNS})
+    return rows
 
 
 def quantities_of(rows: Iterable[Mapping[str, object]]) -> Quantities:

@@ -112,6 +112,37 @@ def write_text(path: Path, text: str) -> None:
     write_whole(path, fill)
 
 
+RESERVE = ".reserve.part"
+"""Suffix of a reserving file; no manifest lists such files."""
+
+
+class Reserve:
+    """Reserves disk space until it is needed."""
+
+    def __init__(self, path: Path, size: int) -> None:
+        """Reserve ``size`` bytes beside the file ``path``; where there is less space, reserve none."""
+        self._path = path.with_name(path.name + RESERVE)
+        try:
+            with self._path.open("wb") as file:
+                if hasattr(os, "posix_fallocate"):
+                    os.posix_fallocate(file.fileno(), 0, size)
+                else:
+                    file.write(bytes(size))
+        except OSError:
+            self.give_up()
+
+    def give_up(self) -> None:
+        """Release the space."""
+        with suppress(OSError):
+            self._path.unlink(missing_ok=True)
+
+
+def file_identity(path: Path) -> tuple[int, int]:
+    """Return device and inode of a file; raises OSError."""
+    status = path.stat()
+    return status.st_dev, status.st_ino
+
+
 def sync_folder(folder: Path) -> None:
     """Sync the names in a folder: files made, replaced or deleted there. Does nothing where folders cannot be
     synced."""

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict
 from math import inf, isfinite
 from typing import Any, cast
 
 from tester.analysis.kelvin import KnownSlope
 from tester.analysis.terms import Acts, Term
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
-from tester.store.sql import Statement, Value, insert
+from tester.store.chain import Cell
+from tester.store.sql import Statement, columns_in, insert
 
 _COLUMNS = {"column": "column_name", "default": "default_value"}
 """Fields of an axis whose names are reserved words of SQL."""
@@ -19,7 +19,7 @@ _COLUMNS = {"column": "column_name", "default": "default_value"}
 def axis_rows(axes: Axes) -> Iterator[Statement]:
     """Yield the statements that add the axes to a new record: a row of ``axis`` and a column of ``condition`` each."""
     for position, (axis, data) in enumerate(zip(axes, axes.as_data(), strict=True)):
-        row = {_COLUMNS.get(name, name): cast("Value", value) for name, value in data.items()}
+        row = {_COLUMNS.get(name, name): cast("Cell", value) for name, value in data.items()}
         yield insert("axis", {"position": position} | row | {"choices": "\n".join(axis.choices)})
         yield f"ALTER TABLE condition ADD COLUMN {axis.field} {'TEXT' if axis.choices else 'REAL'}", ()
 
@@ -31,9 +31,9 @@ def axes_of(rows: Iterable[Mapping[str, object]]) -> Axes:
     return axes_from(row | {"choices": str(row["choices"]).splitlines()} for row in axes_data)
 
 
-def setpoint_columns(setpoint: Setpoint) -> dict[str, Value]:
+def setpoint_columns(setpoint: Setpoint) -> dict[str, Cell]:
     """Return a setpoint as columns of ``condition``."""
-    columns: dict[str, Value] = {axis.field: setpoint.value(axis.name) for axis in setpoint.axes}
+    columns: dict[str, Cell] = {axis.field: setpoint.value(axis.name) for axis in setpoint.axes}
     return {"compound": setpoint.compound} | columns
 
 
@@ -49,10 +49,10 @@ def setpoint_of(row: Mapping[str, object], axes: Axes) -> Setpoint:
 def budget_rows(terms: Iterable[Term], known: Iterable[KnownSlope]) -> Iterator[Statement]:
     """Yield the statements that store them."""
     for position, term in enumerate(terms):
-        row: dict[str, Value] = asdict(term) | {"acts": term.acts.value, "df": term.df if isfinite(term.df) else None}
-        yield insert("budget_term", {"position": position} | row)
+        acts: dict[str, Cell] = {"acts": term.acts.value, "df": term.df if isfinite(term.df) else None}
+        yield insert("budget_term", {"position": position} | columns_in(term) | acts)
     for position, slope in enumerate(known):
-        yield insert("known_slope", {"position": position} | asdict(slope))
+        yield insert("known_slope", {"position": position} | columns_in(slope))
 
 
 def term_of(row: Mapping[str, object]) -> Term:

@@ -1,91 +1,64 @@
 """Puts the records of a run's parts into the run's own: one run whose times follow one another.
 
 A part is recorded by itself, from time 0 and with keys from 1. This module copies it into the run's database behind the
-parts before it: times increase by their rig seconds, keys by those assigned so far. ``TABLES`` defines the meaning of
-the columns; columns that only hold values need no entry.
+parts before it: times (``record_schema.TIMES``) increase by their rig seconds, keys (``TABLES``) by those assigned so
+far. Other columns only hold values.
 """
 
 from __future__ import annotations
 
 import sqlite3
 import zlib
-from collections.abc import Iterator
-from contextlib import closing
-from dataclasses import dataclass, fields
+from collections.abc import Generator, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 
 from tester.analysis.results import Judgement
-from tester.base.quantities import KEY, TIME, Quantities
-from tester.store.chain import Chain
-from tester.store.channels import recorded_channels
-from tester.store.record_schema import NotBegunError, StoreError, migrate
-from tester.store.run_reader import DATABASE, RunReader
-from tester.store.sample_blocks import unpack_array
-
-Cell = str | int | float | bytes | None
+from tester.base.quantities import KEY, TIME
+from tester.store.chain import Cell, Chain
+from tester.store.record_file import DATABASE
+from tester.store.record_schema import TIMES, StoreError, migrate
+from tester.store.run_reader import RunReader
+from tester.store.sample_blocks import LEVEL, unpack_array
+from tester.store.sql import column_names, update
 
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """Meaning of a table's columns: rig times, and keys.
+    """Columns with keys. ``key`` counts through the run (None: the part's own keys hold in the run), ``repeat`` refers
+    to a repeat's key."""
 
-    ``key`` counts through the run (None: the part's own keys hold in the run), ``repeat`` refers to a repeat's key.
-    """
-
-    times: tuple[str, ...] = ()
     key: str | None = None
     repeat: str | None = None
 
 
 TABLES: dict[str, Merged] = {
-    "piece": Merged(times=("installed_s", "updated_s", "ground_s")),
-    "repeat": Merged(times=("begun_s", "started_s", "ended_s"), key="id"),
-    "burst": Merged(times=("started_s", "ended_s"), repeat="repeat_id"),
-    "sample_block": Merged(times=("first_s", "last_s"), key="id", repeat="repeat_id"),
-    "event": Merged(times=("t_s",), key="sequence"),
-    "prompt": Merged(times=("asked_s", "answered_s"), key="id"),
-    "tare": Merged(times=("t_s",), key="id", repeat="repeat_id"),
-    "wear_check": Merged(times=("t_s", "reference_s"), key="id"),
-    "soak": Merged(times=("t_s",), key="id"),
-    "trip": Merged(times=("t_s", "acknowledged_s"), key="id"),
-    "bus_statistic": Merged(times=("t_s",), key="id"),
-    "device_parameter": Merged(times=("t_s",), key="id"),
+    "piece": Merged(),
+    "repeat": Merged(key="id"),
+    "burst": Merged(repeat="repeat_id"),
+    "sample_block": Merged(key="id", repeat="repeat_id"),
+    "event": Merged(key="sequence"),
+    "prompt": Merged(key="id"),
+    "tare": Merged(key="id", repeat="repeat_id"),
+    "wear_check": Merged(key="id"),
+    "soak": Merged(key="id"),
+    "trip": Merged(key="id"),
+    "bus_statistic": Merged(key="id"),
+    "device_parameter": Merged(key="id"),
     "truth": Merged(key="id"),
     "travel": Merged(key="id", repeat="repeat_id"),
 }
-"""Tables that a run in progress fills, in the order in which they refer to each other."""
+"""Tables that a run in progress fills, in the order in which they refer to each other. ``condition`` is updated; the
+others are the whole run's, and parts do not fill them."""
 
-HEADER = frozenset(
-    {
-        "run",
-        "axis",
-        "metadata",
-        "version",
-        "specimen",
-        "condition",
-        "channel",
-        "session",
-        "change",
-        "calibration",
-        "budget_term",
-        "known_slope",
-        "material",
-        "exclusion",
-        "chain",
-    }
-)
-"""Tables of the whole run, which parts do not fill. ``condition`` is updated."""
-
-LEFT = ("status", "reason", "warming_k_s", "holdable_band_k", *(field.name for field in fields(Judgement)))
-"""Final state of a condition; ``started_s`` and ``ended_s`` are times."""
+LEFT = (*TIMES["condition"], "status", "reason", "warming_k_s", "holdable_band_k", *column_names(Judgement))
+"""Final state of a condition."""
 
 _DIGITS = 6
 """Rig times lie on a grid of microseconds (tester.machine.tickers); a sum of two is rounded to it."""
-_LEVEL = 1
-"""Compression level, as in tester.store.sample_blocks."""
 
 
 class Merge:
@@ -103,7 +76,8 @@ class Merge:
             # The deletion of a rollback journal is synced as well: a journal that came back would undo the merge.
             self._connection.execute("PRAGMA synchronous = EXTRA")
             migrate(self._connection)
-            self._channels = _channels(self._connection)
+            with RunReader(folder) as reader:
+                self._channels = reader.quantities()
             self._chain = Chain(self._connection)
             with self._transaction():
                 for table in reversed(TABLES):
@@ -117,9 +91,7 @@ class Merge:
         """Return the merge."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Close the file."""
         self._connection.close()
 
@@ -140,9 +112,9 @@ class Merge:
 
     def finish(self, status: str, reason: str, ended_utc: str) -> None:
         """Store the end of the whole run."""
-        sql = "UPDATE run SET status = ?, reason = ?, rig_seconds = ?, ended_utc = ?"
+        end = {"status": status, "reason": reason, "rig_seconds": self.rig_seconds, "ended_utc": ended_utc}
         with self._transaction():
-            self._connection.execute(sql, (status, reason, self.rig_seconds, ended_utc))
+            self._connection.execute(*update("run", end, {}))
 
     # -- rows -------------------------------------------------------------------------------------------------
 
@@ -150,7 +122,7 @@ class Merge:
         kind = TABLES[table]
         rows = source.execute(f"SELECT * FROM {table} ORDER BY rowid")
         names = [column[0] for column in rows.description]
-        times = [names.index(name) for name in kind.times]
+        times = [names.index(name) for name in TIMES.get(table, ())]
         key = names.index(kind.key) if kind.key is not None else -1
         repeat = names.index(kind.repeat) if kind.repeat is not None else -1
         data = names.index("data") if table == "sample_block" else -1
@@ -172,11 +144,9 @@ class Merge:
         self._connection.executemany(f"INSERT INTO {table} ({', '.join(names)}) VALUES ({marks})", moved())
 
     def _update_conditions(self, source: sqlite3.Connection) -> None:
-        left = ", ".join(f"{name} = ?" for name in LEFT)
-        sql = f"UPDATE condition SET started_s = ?, ended_s = ?, {left} WHERE condition = ?"
-        columns = f"started_s, ended_s, {', '.join(LEFT)}, condition"
-        for started, ended, *rest in source.execute(f"SELECT {columns} FROM condition"):
-            self._connection.execute(sql, (self._moved(started), self._moved(ended), *rest))
+        for condition, started, ended, *rest in source.execute(f"SELECT condition, {', '.join(LEFT)} FROM condition"):
+            left = dict(zip(LEFT, (self._moved(started), self._moved(ended), *rest), strict=True))
+            self._connection.execute(*update("condition", left, {"condition": condition}))
 
     def _block(self, data: Cell, base: int) -> Cell:
         """Return a block of samples with later times and higher keys."""
@@ -189,7 +159,7 @@ class Merge:
         table[time_at] = np.round(table[time_at] + self.rig_seconds, _DIGITS)
         keys = table[self._channels.index(KEY)]
         keys += base * (keys > 0.0)
-        return zlib.compress(table.astype("<f8").tobytes(), _LEVEL)
+        return zlib.compress(table.astype("<f8").tobytes(), LEVEL)
 
     def _moved(self, time_s: Cell) -> Cell:
         return self._later(time_s, self.rig_seconds) if isinstance(time_s, int | float) else time_s
@@ -201,40 +171,18 @@ class Merge:
     def _last(self, table: str) -> int:
         return self._connection.execute(f"SELECT coalesce(max({TABLES[table].key}), 0) FROM {table}").fetchone()[0]
 
-    def _transaction(self) -> _MergeTransaction:
-        return _MergeTransaction(self._connection, self._chain)
-
-
-def _channels(connection: sqlite3.Connection) -> Quantities:
-    try:
-        channels = recorded_channels(connection)
-    except ValueError as error:
-        raise StoreError(str(error)) from error
-    if channels is None:
-        raise NotBegunError("the run was not begun")
-    return channels
-
-
-class _MergeTransaction:
-    """Commits everything or nothing, chained."""
-
-    def __init__(self, connection: sqlite3.Connection, chain: Chain) -> None:
-        self._connection = connection
-        self._chain = chain
-
-    def __enter__(self) -> None:
-        self._connection.execute("BEGIN IMMEDIATE")
-
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    @contextmanager
+    def _transaction(self) -> Generator[None]:
+        """Commit everything that the block does, chained, or nothing."""
+        connection = self._connection
+        connection.execute("BEGIN IMMEDIATE")
         try:
-            if kind is None:
-                self._chain.seal()
-                self._connection.execute("COMMIT")
+            yield
+            self._chain.seal()
+            connection.execute("COMMIT")
         finally:
-            if self._connection.in_transaction:
-                self._connection.execute("ROLLBACK")
+            if connection.in_transaction:
+                connection.execute("ROLLBACK")
 
 
 def _raised(key: Cell, base: int) -> Cell:

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from tester.base.lock import RUN_LOCK, Holder, user_of
 from tester.base.words import listed_some
+from tester.store.record_file import DATABASE
 from tester.store.record_schema import StoreError
-from tester.store.run_reader import DATABASE, RunReader
+from tester.store.run_reader import RunReader
 
 RUNS = Path("runs")
 """Default folder of runs, under the working directory."""

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 BLOCK_ROWS = 512
 """Most rows in a block: about 5 s in slip."""
 
-_LEVEL = 1
+LEVEL = 1
+"""Compression level of zlib."""
 
 
 def pack(rows: Sequence[Sequence[float]], columns: int) -> bytes:
@@ -32,7 +33,7 @@ def pack(rows: Sequence[Sequence[float]], columns: int) -> bytes:
     if any(len(row) != columns for row in rows):
         raise ValueError(f"a sample does not have {columns} values")
     layout = Struct(f"<{len(rows)}d")
-    return zlib.compress(b"".join([layout.pack(*column) for column in zip(*rows, strict=True)]), _LEVEL)
+    return zlib.compress(b"".join([layout.pack(*column) for column in zip(*rows, strict=True)]), LEVEL)
 
 
 def unpack(data: bytes, rows: int, columns: int) -> list[array[float]]:

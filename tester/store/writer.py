@@ -16,7 +16,6 @@ waits for the COMMIT of a repeat, so that results do not depend on the disk's sp
 
 from __future__ import annotations
 
-import os
 import sqlite3
 from collections import deque
 from collections.abc import Callable, Iterable
@@ -30,11 +29,11 @@ from tester.base.quantities import KEY, TIME, Quantities
 from tester.base.trouble import in_words
 from tester.store.chain import Chain
 from tester.store.channels import add_channels, recorded_channels
-from tester.store.disk import sync_folder
+from tester.store.disk import Reserve, file_identity, sync_folder
 from tester.store.record_schema import StoreError, migrate, version_of
 from tester.store.recorder import NullRecorder, Recorder, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
-from tester.store.sql import Batch, Judged, Ticket
+from tester.store.sql import Batch, Judged, Ticket, insert
 
 COMMIT_EVERY_S = 0.7
 """Longest wait of a sample for the start of its commit, by the wall clock: a second less the time of a slow disk and a
@@ -49,9 +48,6 @@ RETRY_S = 1.0
 RESERVE_BYTES = 4_000_000
 """Space reserved for the end of a run: a cool-down of 45 min at two samples a second takes 0.3 MB, a full queue (65536
 samples of 40 to 60 bytes) up to 4 MB."""
-RESERVE = ".reserve.part"
-"""Suffix of the reserving file; no manifest lists such files."""
-
 LOSSLESS_LIMIT = 8192
 """Most items in the queue before the simulation waits; also the most samples in one transaction."""
 
@@ -61,32 +57,6 @@ _WRITE_ERRORS = (sqlite3.Error, OSError, ValueError, OverflowError, TypeError, I
 
 class RecordGoneError(OSError):
     """The open file no longer lies under its name: further writes would be lost with it."""
-
-
-class _Reserve:
-    """Reserves disk space until it is needed."""
-
-    def __init__(self, path: Path, size: int) -> None:
-        """Reserve ``size`` bytes in ``path``; where there is less space, reserve none."""
-        self._path = path
-        try:
-            with path.open("wb") as file:
-                if hasattr(os, "posix_fallocate"):
-                    os.posix_fallocate(file.fileno(), 0, size)
-                else:
-                    file.write(bytes(size))
-        except OSError:
-            self.give_up()
-
-    def give_up(self) -> None:
-        """Release the space."""
-        with suppress(OSError):
-            self._path.unlink(missing_ok=True)
-
-
-def _identity(path: Path) -> tuple[int, int]:
-    status = path.stat()
-    return status.st_dev, status.st_ino
 
 
 def _averaged(quantities: Quantities) -> tuple[str, ...]:
@@ -165,8 +135,8 @@ class RunWriter(Recorder):
         self._width = len(quantities.names)
         self._key_at, self._time_at = quantities.index(KEY), quantities.index(TIME)
         self._connection, self._chain = _open(path, quantities)
-        self._file = _identity(path)
-        self._reserve = _Reserve(path.with_name(path.name + RESERVE), reserve) if reserve else None
+        self._file = file_identity(path)
+        self._reserve = Reserve(path, reserve) if reserve else None
         self._continue_counting()
         self._committed_at = clock()
         self._thread = None if synchronous else Thread(target=self._run, name="recorder", daemon=True)
@@ -347,7 +317,7 @@ class RunWriter(Recorder):
         """Raise RecordGoneError where the file was removed, moved or exchanged: writes to it would be lost
         unnoticed."""
         try:
-            there = _identity(self._path) == self._file
+            there = file_identity(self._path) == self._file
         except FileNotFoundError:
             there = False
         if not there:
@@ -360,10 +330,9 @@ class RunWriter(Recorder):
             if end == len(rows) or end - first == BLOCK_ROWS or rows[end][key_at] != rows[first][key_at]:
                 block = rows[first:end]
                 data = pack(block, self._width)
-                self._connection.execute(
-                    "INSERT INTO sample_block (repeat_id, rows, first_s, last_s, data) VALUES (?, ?, ?, ?, ?)",
-                    (int(block[0][key_at]), len(block), block[0][time_at], block[-1][time_at], data),
-                )
+                times = {"first_s": block[0][time_at], "last_s": block[-1][time_at]}
+                columns = {"repeat_id": int(block[0][key_at]), "rows": len(block), **times, "data": data}
+                self._connection.execute(*insert("sample_block", columns))
                 first = end
 
     def _fail(self, error: Exception) -> None:

@@ -14,7 +14,7 @@ from tester.results.conditions_table import ConditionRow, axis_keys, conditions_
 from tester.results.measured_tables import repeats_table
 from tester.results.run_results import RunResults, results_of
 from tester.results.tally import flag_words, tally_of
-from tester.store.records import StoredExclusion
+from tester.store.journal_records import StoredExclusion
 from tester.store.run_folders import find_run
 from tester.store.run_reader import RunReader
 from tester.tui.plot import OTHER, SERIES, Bin, Point

@@ -14,9 +14,10 @@ from tester.base.trouble import TroubleError
 from tester.base.words import finite
 from tester.results.run_results import results_of
 from tester.results.table_rows import Measured
+from tester.store.record_file import DATABASE
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import RunStatus, run_folders, under_way
-from tester.store.run_reader import DATABASE, RunReader
+from tester.store.run_reader import RunReader
 
 _MADE_BY = "1"
 """Increase it when the same record yields other entries than before: then all are made anew."""

@@ -12,7 +12,7 @@ from tester.doctor.examination import Examination
 from tester.doctor.open_wires import SimulatedWires
 from tester.kinds import load_rig
 from tester.run.set_up import DeviceParameter, differences, stored
-from tester.store.records import StoredParameter
+from tester.store.journal_records import StoredParameter
 from tests.tester.doctor.fake_computer import FakeComputer
 
 RIG = load_rig("sim")

@@ -12,8 +12,9 @@ import pytest
 from tester.cli.main import invoke
 from tester.results.run_results import results_of
 from tester.run.session import Session, SessionOptions
+from tester.store.record_file import DATABASE
 from tester.store.resumable import resume_point
-from tester.store.run_reader import DATABASE, RunReader
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tester.tui.playback import load
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.store.disk import RESERVE
 from tester.store.run_reader import RunReader
-from tester.store.writer import RESERVE, RunWriter
+from tester.store.writer import RunWriter
 from tests.tester.store.build import CONDITIONS, RUN, SPECIMENS, Clock, result, utc
 
 DISK_BYTES = 2_000_000

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sqlite3
-import sys
 from dataclasses import replace
 from hashlib import sha256
 from math import isnan
@@ -13,7 +12,6 @@ import numpy as np
 import pytest
 
 from tester.analysis.results import ConditionStatus, RepeatStatus
-from tester.base.plugins import MissingExtraError
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.record_schema import StoreError
 from tester.store.records import PieceInfo
@@ -244,22 +242,3 @@ def test_a_record_says_its_own_channels(tmp_path: Path) -> None:
         found = reader.quantities()
     assert found.channels == QUANTITIES.channels
     assert found.roles == QUANTITIES.roles
-
-
-def test_samples_come_as_an_arrow_table(tmp_path: Path) -> None:
-    from tester.store.arrow import sample_table
-
-    with RunReader(small_run(tmp_path / "run")) as reader:
-        table = sample_table(reader, 1, 2)
-        assert table.num_rows == 5 and table.column_names == list(QUANTITIES.names)
-
-
-def test_without_pyarrow_a_table_names_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from tester.store.arrow import sample_table
-
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with (
-        RunReader(small_run(tmp_path / "run")) as reader,
-        pytest.raises(MissingExtraError, match=r"pip install .friction-tester\[parquet\]"),
-    ):
-        sample_table(reader)
