@@ -23,7 +23,7 @@ from bench.lateness import percentile
 from tester.base import clock
 from tester.machine.tickers import collector_at_rest
 from tester.service.address import UnixAddress
-from tester.service.child_socket import INHERITS
+from tester.service.child_process import INHERITS
 from tester.service.client import Client, NoServiceError
 from tester.service.commands import RunRecipe, Stop
 from tester.service.gateway_link import GatewayLink, LinkConfig

@@ -12,11 +12,11 @@ from bench.figures import Figure, at_least
 from bench.live import SLIDING_RECIPE, live_run
 from bench.stopwatch import cpu_seconds_of
 from recipes import find
-from tester.machine.context import Progress
-from tester.machine.prompts import Prompts
 from tester.machine.run import Outcome
 from tester.machine.tickers import collector_at_rest
-from tester.run.session import Session, SessionOptions
+from tester.run.reporter import ReportScreen
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 
 COMPOUND_LIMIT = 800.0
 """Asked of one compound of Table 2, rig s per CPU s; 1,500 is the stretch."""
@@ -24,32 +24,10 @@ FLAT_LIMIT = 300.0
 """Asked of the flat 100 Hz tick while sliding, rig s per CPU s."""
 
 
-class QuietScreen:
-    """A session's screen for nobody: prompts are answered with yes."""
+class QuietScreen(ReportScreen):
+    """A session's screen that shows nothing: prompts are answered with yes."""
 
     answer_yes = True
-    can_ask = False
-
-    def begin(self, name: str) -> None:
-        """Show nothing."""
-
-    def show(self, now_s: float, run: Progress, share: float) -> None:
-        """Show nothing."""
-
-    def attend(self, prompts: Prompts) -> None:
-        """Ask nobody."""
-
-    def end(self) -> None:
-        """Take nothing away."""
-
-    def message(self, text: str) -> None:
-        """Say nothing."""
-
-    def emit(self, record: dict[str, object]) -> None:
-        """Write nothing."""
-
-    def result(self, line: str) -> None:
-        """Write nothing."""
 
 
 def measure(effort: Effort) -> list[Figure]:

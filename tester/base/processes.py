@@ -10,8 +10,8 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Generator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Generator, Iterable
+from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
 from typing import Final, TypeAlias
 
@@ -36,13 +36,17 @@ def asking_to_end() -> list[int]:
 
 
 @contextmanager
-def handled(handler: Handler) -> Generator[None]:
-    """Call a handler for signals that ask this process to end, and ignore those that suspend it, within the block.
+def caught(
+    handler: Handler | signal.Handlers, numbers: Iterable[int], ignored: Iterable[int] = ()
+) -> Generator[None]:
+    """Call a handler for signals, by number (0: none), and ignore others, within the block.
 
-    Main thread only.
+    Only the main thread receives signals: in another one the block runs without a handler.
     """
-    before = {number: signal.signal(number, handler) for number in asking_to_end()}
-    before |= {number: signal.signal(number, signal.SIG_IGN) for number in SUSPENDING}
+    before: dict[int, Handler | signal.Handlers | int | None] = {}
+    if threading.current_thread() is threading.main_thread():
+        before = {number: signal.signal(number, handler) for number in numbers if number}
+        before |= {number: signal.signal(number, signal.SIG_IGN) for number in ignored if number}
     try:
         yield
     finally:
@@ -50,12 +54,14 @@ def handled(handler: Handler) -> Generator[None]:
             signal.signal(number, previous)
 
 
-@contextmanager
-def stopped_by_signals(stop: Callable[..., object]) -> Generator[None]:
-    """Call ``stop(fast=...)`` for signals that ask this process to end, within the block: fast from the second one on.
-
-    Does nothing outside the main thread, which alone receives signals.
+def handled(handler: Handler) -> AbstractContextManager[None]:
+    """Return a block that calls a handler for signals that ask this process to end, and ignores those that suspend it.
     """
+    return caught(handler, asking_to_end(), SUSPENDING)
+
+
+def stopped_by_signals(stop: Callable[..., object]) -> AbstractContextManager[None]:
+    """Return a block that calls ``stop(fast=...)`` for signals that ask this process to end: fast from the second on."""
     signals = 0
 
     def on_signal(_number: int, _frame: FrameType | None) -> None:
@@ -63,20 +69,20 @@ def stopped_by_signals(stop: Callable[..., object]) -> Generator[None]:
         signals += 1
         stop(fast=signals > 1)
 
-    with handled(on_signal) if threading.current_thread() is threading.main_thread() else nullcontext():
-        yield
+    return handled(on_signal)
+
+
+def not_inherited() -> AbstractContextManager[None]:
+    """Return a block in which a started process ignores Ctrl+C and a hang-up: both reach its parent."""
+    return caught(signal.SIG_IGN, [number for number in asking_to_end() if number != signal.SIGTERM])
 
 
 @contextmanager
-def not_inherited() -> Generator[None]:
-    """Let a process started in the block ignore Ctrl+C and a hang-up: both reach its parent (main thread)."""
-    numbers = [number for number in asking_to_end() if number != signal.SIGTERM]
-    before = {number: signal.signal(number, signal.SIG_IGN) for number in numbers}
-    try:
-        yield
-    finally:
-        for number, previous in before.items():
-            signal.signal(number, previous)
+def end_asked() -> Generator[Callable[[], bool]]:
+    """Yield a function that returns whether TERM or INT has asked this process to end since the block began."""
+    asked = threading.Event()
+    with caught(lambda _number, _frame: asked.set(), (signal.SIGINT, signal.SIGTERM)):
+        yield asked.is_set
 
 
 def leave_to_parent() -> None:

@@ -22,6 +22,7 @@ from tester.cli.ending import ending_lines
 from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import DONE, Prompt, Prompts, Question
 from tester.machine.time_left import RunPosition
+from tester.run.reporter import ReportScreen
 
 ASKED = f'type "{DONE}" and Enter when it is done'
 MOST_TYPED = 200
@@ -93,7 +94,7 @@ class Outlet:
             os.close(nothing)
 
 
-class Console:
+class Console(ReportScreen):
     """Standard output is data (JSON lines, the run's folder), standard error is for people."""
 
     always: tuple[Meaning, ...] = (STOP, FAST_STOP, HOLD)
@@ -103,6 +104,7 @@ class Console:
         """``answer_yes``: prompts are answered without asking."""
         self.as_json = as_json
         self.answer_yes = answer_yes
+        self.can_ask = _is_terminal(sys.stdin)
         self._out, self._err = Outlet(sys.stdout), Outlet(sys.stderr)
         self._terminal = RichConsole(file=cast("TextIO", self._err))
         self._progress: Progress | None = None
@@ -114,18 +116,13 @@ class Console:
         self._titles: dict[int, str] = {}
         self._keys = keys_of(sys.stdin)
 
-    @property
-    def can_ask(self) -> bool:
-        """A person is there to answer."""
-        return _is_terminal(sys.stdin)
-
     # -- during the run ---------------------------------------------------------------------------------------
 
     def begin(self, name: str) -> None:
         """Show that a run has begun."""
         self.emit({"event": "begin", "run": name})
         self._keys.begin()
-        if _is_terminal(sys.stdin):
+        if self.can_ask:
             self.message(HELP)
         if self._terminal.is_terminal:
             self._progress = Progress(

@@ -32,8 +32,8 @@ def record(folder: Path, can: str, bitrate: int, master: int, lines: tuple[str, 
     tests/drivers/recorded.py. Ends with exit code 1 where nothing was heard.
     """
     from drivers.ports import BusLost
+    from tester.base.processes import end_asked
     from tester.run.recording import RecordOptions, record
-    from tester.run.sim_process import EndAsked
 
     interface, colon, channel = can.partition(":")
     if can and not (interface and colon and channel):
@@ -44,7 +44,7 @@ def record(folder: Path, can: str, bitrate: int, master: int, lines: tuple[str, 
         folder, seconds, (interface, channel) if can else None, bitrate, master, tuple(_tapped(line) for line in lines)
     )
     try:
-        with EndAsked() as asked:
+        with end_asked() as asked:
             found = record(options, asked)
     except BusLost as error:
         click.echo(str(error), err=True)

@@ -79,7 +79,8 @@ def run(
         # Loading what the run needs takes a moment: report the beginning before that.
         click.echo(f"{recipe} on rig {rig.name}", err=True)
     from tester.cli.console import Console
-    from tester.run.session import Session, SessionOptions
+    from tester.run.session import Session
+    from tester.run.session_options import SessionOptions
 
     options = SessionOptions(
         recipe, *rig, out=out, seed=seed, lapse=speed, bus_log=bus_log, operator=operator, jobs=jobs, faults=faults
@@ -134,7 +135,8 @@ def resume(
     The wheel is heated again first. Prints the run's folder as the last line; a run that is complete stays as it is.
     """
     from tester.cli.console import Console
-    from tester.run.session import Session, SessionOptions
+    from tester.run.session import Session
+    from tester.run.session_options import SessionOptions
 
     folder = run_folder(run)
     options = SessionOptions(accept_risk=accept_risk, lapse=speed, bus_log=bus_log, operator=operator)

@@ -14,12 +14,14 @@ from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition
 from tester.results.run_results import results_of
-from tester.run.session import Session, SessionOptions
+from tester.run.reporter import ReportScreen
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 
 
-class PersonScreen:
-    """Shows a run to the person who commissions (tester.run.reporter.ReportScreen)."""
+class PersonScreen(ReportScreen):
+    """Shows a run to the person who commissions."""
 
     def __init__(self, person: Person, *, answer_yes: bool) -> None:
         """``answer_yes``: the simulated person does what each prompt asks."""
@@ -46,18 +48,9 @@ class PersonScreen:
         """Return the person's commands."""
         return self.person.commands()
 
-    def end(self) -> None:
-        """Do nothing: there is no progress display."""
-
     def message(self, text: str) -> None:
         """Show the message."""
         self.person.message(f"  {text}")
-
-    def emit(self, record: dict[str, object]) -> None:
-        """Do nothing: no program reads records here."""
-
-    def result(self, line: str) -> None:
-        """Do nothing: the results contain the folder."""
 
 
 def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str, text: str) -> Mapping[str, Any]:

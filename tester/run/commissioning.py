@@ -20,9 +20,9 @@ from tester.machine.rig_ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.run.commission_run import run_recipe
 from tester.run.endings import CannotStartError
-from tester.run.part_run import connect_ports
 from tester.run.preconditions import hold_rig
-from tester.run.session import SessionOptions
+from tester.run.rig_wires import connect_ports
+from tester.run.session_options import SessionOptions
 
 
 @dataclass(frozen=True, slots=True)

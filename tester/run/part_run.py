@@ -5,18 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from drivers.ports import BusLost
 from tester.base import clock
 from tester.base.clock import Pace
 from tester.base.trouble import in_words
-from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Outcome, Run
-from tester.machine.run_parts import NoAttendant, Part
+from tester.machine.run_parts import Part
 from tester.machine.tickers import Ticked, TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
 from tester.machine.time_left import TimeLeft
 from tester.run.bus_log import BusLog
@@ -25,6 +24,7 @@ from tester.run.folder import Begin, Job, Work
 from tester.run.kept import record_kept
 from tester.run.kind_lookup import run_parts
 from tester.run.provenance import record_parameters, record_statistics
+from tester.run.rig_wires import connect_ports
 from tester.run.set_up import GoodRun
 from tester.run.simulated import Witnessed, truth_of
 from tester.store.record_file import DATABASE
@@ -245,30 +245,3 @@ def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked,
 def _die() -> None:
     """End this process as a kill does: at once, with nothing closed or flushed."""
     os._exit(KILLED)
-
-
-def connect_ports(
-    rig: Rig,
-    seed: int,
-    log: BusLog | None,
-    *,
-    faulty: bool = False,
-    recipe: Path | None = None,
-    surface: str = "",
-) -> tuple[Ports, SimRig | None, Any]:
-    """Open the wires to the rig: simulated in this process (with a faulty bus if ``faulty``), or real.
-
-    ``recipe`` and ``surface`` as in ``simulated_ports``. Returns the wires, the simulated rig, and the hands at the rig
-    (tester.machine.run_parts).
-    """
-    if rig.can.interface == "sim":
-        from tester.run.simulated import simulated_ports
-
-        if faulty:
-            from sim.faults.can import FaultyCanWire
-
-            return simulated_ports(rig, seed, log, FaultyCanWire, recipe=recipe, surface=surface)
-        return simulated_ports(rig, seed, log, recipe=recipe, surface=surface)
-    from tester.run.hardware import hardware_ports
-
-    return hardware_ports(rig, log), None, NoAttendant()

@@ -11,11 +11,10 @@ import os
 import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from multiprocessing.queues import SimpleQueue
 from multiprocessing.sharedctypes import Synchronized
-from threading import Thread, current_thread, main_thread
+from threading import Thread
 from typing import ParamSpec, TypeVar
 
 from tester.base.processes import leave_to_parent, not_inherited
@@ -32,7 +31,7 @@ class WorkerPool:
     def __init__(self, jobs: int) -> None:
         """Start nothing yet: a process starts with the first call that needs it."""
         context = multiprocessing.get_context("spawn")
-        with _unheard():  # the first of these starts the tracker process for shared memory
+        with not_inherited():  # the first of these starts the tracker process for shared memory
             self._level: Synchronized[int] = context.Value("i", StopLevel.NONE)
             self._reports: SimpleQueue[object] = context.SimpleQueue()
         self._executor = ProcessPoolExecutor(jobs, context, _enlist, (self._level, self._reports))
@@ -53,7 +52,7 @@ class WorkerPool:
     def submit(self, work: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> Future[R]:
         """Run a call in a worker: a function of a module, with plain data as arguments."""
         # A starting worker has no handlers yet: it inherits that signals are ignored.
-        with _unheard():
+        with not_inherited():
             return self._executor.submit(work, *args, **kwargs)
 
     def stop(self, level: StopLevel) -> None:
@@ -64,11 +63,6 @@ class WorkerPool:
         """Yield the workers' reports since the last call."""
         while not self._reports.empty():
             yield self._reports.get()
-
-
-def _unheard() -> AbstractContextManager[None]:
-    """Return a block that starts processes immune to Ctrl+C and hang-up, if this thread controls signals."""
-    return not_inherited() if current_thread() is main_thread() else nullcontext()
 
 
 @dataclass(slots=True)

@@ -4,63 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Protocol, runtime_checkable
+from typing import ParamSpec
 
 from tester.base.trouble import in_words
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition
 
+P = ParamSpec("P")
 
-class ReportScreen(Protocol):
-    """Shows a run to people. A method raises OSError if its screen, pipe or file is gone."""
 
-    answer_yes: bool
+class ReportScreen:
+    """Shows a run to people; this one shows nothing. A method raises OSError if its screen, pipe or file is gone."""
 
-    @property
-    def can_ask(self) -> bool:
-        """Whether a person can answer prompts."""
-        ...
+    answer_yes: bool = False
+    """Whether prompts are answered without asking."""
+    can_ask: bool = False
+    """Whether a person can answer prompts."""
 
     def begin(self, name: str) -> None:
         """Show that a run has begun."""
-        ...
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Show where the run is, or one of its parts when they run side by side."""
-        ...
 
     def attend(self, prompts: Prompts) -> None:
         """Ask and answer prompts without blocking."""
-        ...
+
+    def commands(self) -> list[str]:
+        """Return a person's commands since the last call, out of those in ``tester.base.keys``."""
+        return []
 
     def end(self) -> None:
         """Remove the progress display."""
-        ...
 
     def message(self, text: str) -> None:
         """Show a message."""
-        ...
 
     def emit(self, record: dict[str, object]) -> None:
         """Write a record for programs."""
-        ...
 
     def result(self, line: str) -> None:
         """Write the run's folder."""
-        ...
 
 
-@runtime_checkable
-class Commanding(Protocol):
-    """A screen at which a person can give commands to the run."""
-
-    def commands(self) -> list[str]:
-        """Return the commands since the last call, out of those in ``tester.base.keys``."""
-        ...
-
-
-class LastingScreen:
+class LastingScreen(ReportScreen):
     """A screen whose failure does not break the run.
 
     After its first error it shows and asks nothing more, and calls ``lost`` with the cause. It still tries messages and
@@ -72,64 +60,41 @@ class LastingScreen:
         self._screen = screen
         self._lost = lost
         self.answer_yes = screen.answer_yes
+        self.can_ask = screen.can_ask
         self.gone = False
 
-    @property
-    def can_ask(self) -> bool:
-        return self._screen.can_ask
-
     def begin(self, name: str) -> None:
-        try:
-            self._screen.begin(name)
-        except OSError as error:
-            self._lose(error)
+        self._try(self._screen.begin, name)
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        if self.gone:
-            return
-        try:
-            self._screen.show(now_s, run, at)
-        except OSError as error:
-            self._lose(error)
+        if not self.gone:
+            self._try(self._screen.show, now_s, run, at)
 
     def attend(self, prompts: Prompts) -> None:
-        if self.gone:
-            return
-        try:
-            self._screen.attend(prompts)
-        except OSError as error:
-            self._lose(error)
+        if not self.gone:
+            self._try(self._screen.attend, prompts)
 
     def commands(self) -> list[str]:
-        if self.gone or not isinstance(self._screen, Commanding):
-            return []
-        try:
-            return self._screen.commands()
-        except OSError as error:
-            self._lose(error)
-            return []
+        pressed: list[str] = []
+        if not self.gone:
+            self._try(lambda: pressed.extend(self._screen.commands()))
+        return pressed
 
     def end(self) -> None:
-        try:
-            self._screen.end()
-        except OSError as error:
-            self._lose(error)
+        self._try(self._screen.end)
 
     def message(self, text: str) -> None:
-        try:
-            self._screen.message(text)
-        except OSError as error:
-            self._lose(error)
+        self._try(self._screen.message, text)
 
     def emit(self, record: dict[str, object]) -> None:
-        try:
-            self._screen.emit(record)
-        except OSError as error:
-            self._lose(error)
+        self._try(self._screen.emit, record)
 
     def result(self, line: str) -> None:
+        self._try(self._screen.result, line)
+
+    def _try(self, show: Callable[P, None], *args: P.args, **kwargs: P.kwargs) -> None:
         try:
-            self._screen.result(line)
+            show(*args, **kwargs)
         except OSError as error:
             self._lose(error)
 

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable, Generator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
-from threading import current_thread, main_thread
 from types import FrameType
 from typing import TypeVar
 
@@ -16,7 +13,6 @@ from tester.base.clock import utc_now
 from tester.base.lock import ExclusiveUse, user
 from tester.base.processes import EXIT_INVALID, EXIT_USAGE, HANG_UP, QUIT, handled
 from tester.base.trouble import in_words
-from tester.base.words import plain_text
 from tester.inputs.recipe.loader import LoadedRecipe
 from tester.inputs.rig import Rig
 from tester.inputs.rig.rig_files import risks_of
@@ -52,6 +48,7 @@ from tester.run.provenance import accepted_risks, recipe_source, rig_source, run
 from tester.run.reporter import LastingScreen, ReportScreen
 from tester.run.resumed_run import prepare
 from tester.run.run_materials import KeptFile, kept_files, write_materials
+from tester.run.session_options import SessionOptions, check_faults, only_plain, refusal
 from tester.run.set_up import last_good_run
 from tester.run.workers import Sight, side_by_side
 from tester.store.record_file import DATABASE
@@ -61,37 +58,6 @@ from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")
-
-
-@dataclass(frozen=True, slots=True)
-class SessionOptions:
-    """Options of the command line."""
-
-    recipe: str = ""
-    rig: str = "sim"
-    overrides: tuple[str, ...] = ()
-    accept_risk: str = ""
-    """Reason for accepting safety keys that are looser than they should be; "" = they are refused."""
-    out: Path = Path("runs")
-    seed: int = 0
-    lapse: float | None = None
-    bus_log: Path | None = None
-    operator: str = ""
-    jobs: int = 1
-    """Number of processes that run independent parts side by side (simulated rig only)."""
-    samples: bool = True
-    """Whether samples are stored."""
-    faults: tuple[str, ...] = ()
-    """Lines of a fault script (sim.faults.language), in addition to the rig file's."""
-
-
-def only_plain(**texts: str) -> None:
-    """Raise CannotStartError, naming the text, if a person's text is more than one line of printable characters."""
-    try:
-        for where, text in texts.items():
-            plain_text(text, where)
-    except ValueError as error:
-        raise CannotStartError(str(error), EXIT_USAGE) from error
 
 
 class Session:
@@ -126,10 +92,9 @@ class Session:
         work, rig, recipe = preparation.work, preparation.work.rig, preparation.recipe
         faults = rig.faults + options.faults
         if faults:
-            _check_faults(faults, rig)
-        refusal = self._refusal(work.rig)
-        if refusal:
-            self.screen.message(refusal)
+            check_faults(faults, rig)
+        if refused := refusal(options, rig, self.screen):
+            self.screen.message(refused)
             return EXIT_USAGE
         self._foretell(rig)
         options.out.mkdir(parents=True, exist_ok=True)
@@ -177,9 +142,8 @@ class Session:
             resumed = self.aside(lambda: prepare(folder, reason, self.options.operator, self.options.accept_risk))
             if isinstance(resumed, str):
                 raise CannotStartError(resumed, EXIT_INVALID)
-            refusal = self._refusal(resumed.rig)
-            if refusal:
-                self.screen.message(refusal)
+            if refused := refusal(self.options, resumed.rig, self.screen):
+                self.screen.message(refused)
                 return EXIT_USAGE
             self._foretell(resumed.rig)
             enough_room(folder, resumed.plan, resumed.rig)
@@ -247,21 +211,6 @@ class Session:
 
     # -- parts ------------------------------------------------------------------------------------------------
 
-    def _refusal(self, rig: Rig) -> str:
-        """Return why the options do not fit the rig or the recipe, "" if they do."""
-        jobs = self.options.jobs
-        if jobs > 1 and not rig.simulated:
-            return f"--jobs {jobs}: only a simulated rig can run several parts at a time, and this rig is real"
-        if self.screen.answer_yes and not (self.screen.can_ask or counts_as_simulated(rig)):
-            return "--yes: this is no interactive terminal, and only a person can answer the prompts of a real rig"
-        if self.screen.answer_yes:
-            return ""
-        if jobs > 1:
-            return f"--jobs {jobs}: prompts of several parts at a time cannot be answered; use --yes, or one job"
-        if not self.screen.can_ask:
-            return "the recipe has prompts, and this is no interactive terminal: use --yes"
-        return ""
-
     def _foretell(self, rig: Rig) -> None:
         """Show warnings about a rig before it starts. Raises CannotStartError."""
         for text in told_before(rig, date.fromisoformat(utc_now()[:10])):
@@ -308,7 +257,7 @@ class Session:
         for risk in risks_of(work.rig):
             self.screen.message(f"accepted risk ({self.options.accept_risk}): {risk}")
         self._acknowledge(job.folder, work.rig)
-        with self._signals():
+        with handled(self._on_signal):
             self.screen.begin(work.plan.name)
             try:
                 if len(work.parts) == 1:
@@ -352,15 +301,6 @@ class Session:
 
     # -- signals ----------------------------------------------------------------------------------------------
 
-    @contextmanager
-    def _signals(self) -> Generator[None]:
-        """Stop on INT, TERM and HUP while the block lasts; only the main thread receives signals."""
-        if current_thread() is not main_thread():
-            yield
-            return
-        with handled(self._on_signal):
-            yield
-
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         """Stop in a controlled way on TERM, HUP and a first INT, fast on a second INT and on QUIT."""
         if number == QUIT:
@@ -379,32 +319,25 @@ class Session:
 
         Conditions that the run did not reach are not listed; the screen's result counts them.
         """
+        say, missing, failed = self.screen.message, list[str](), ""
         try:
             lost, advice = self.aside(lambda: _tables(folder))
         except (OSError, StoreError) as error:
-            return self._without_tables(folder, ending, in_words(error))
-        missing = [row.describe() for row in lost]
-        for line in advice:
-            self.screen.message(line)
-        if ending.reason:
-            self.screen.message(f"{ending.outcome.value}: {ending.reason}")
+            then = f"; `tester resume {folder}` tries again" if (folder / DATABASE).is_file() else ""
+            failed = f"the tables cannot be written: {in_words(error)}{then}"
+        else:
+            missing = [row.describe() for row in lost]
+            for line in advice:
+                say(line)
+        if ending.reason or failed:
+            say(f"{ending.outcome.value}: {ending.reason}" if ending.reason else ending.outcome.value)
+        if ending.failed:
+            say(f"not everything could be recorded: {ending.failed}")
+        if failed:
+            say(failed)
         code = ending.exit_code(interrupted_once=self.interrupts == 1, missing=bool(missing))
-        if ending.failed:
-            self.screen.message(f"not everything could be recorded: {ending.failed}")
+        code = EXIT_CODES[Outcome.FAILED] if failed else code
         self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": missing})
-        self.screen.result(str(folder))
-        return code
-
-
-    def _without_tables(self, folder: Path, ending: RunEnding, why: str) -> int:
-        """Report the end of a run whose tables cannot be written, and return the exit code."""
-        self.screen.message(f"{ending.outcome.value}: {ending.reason}" if ending.reason else ending.outcome.value)
-        if ending.failed:
-            self.screen.message(f"not everything could be recorded: {ending.failed}")
-        then = f"; `tester resume {folder}` tries again" if (folder / DATABASE).is_file() else ""
-        self.screen.message(f"the tables cannot be written: {why}{then}")
-        code = EXIT_CODES[Outcome.FAILED]
-        self.screen.emit({"event": "end", "outcome": ending.outcome.value, "exit": code, "missing": []})
         self.screen.result(str(folder))
         return code
 
@@ -415,16 +348,3 @@ def _tables(folder: Path) -> tuple[list[TableRow], list[str]]:
     advice = [row.advise() for row in [*(row for row in lost if row.tried), *doubtful(folder)]]
     with RunReader(folder) as reader:
         return lost, [*advice, *results_of(reader).wear_lines()]
-
-
-def _check_faults(texts: tuple[str, ...], rig: Rig) -> None:
-    """Raise CannotStartError for an invalid fault script or a real rig."""
-    if rig.can.interface != "sim":
-        raise CannotStartError("faults happen only on a rig that is simulated in this process", EXIT_USAGE)
-    from sim import machines
-    from sim.faults import FaultTextError
-
-    try:
-        machines.find(run_parts(rig).plant).language().parse_script(texts)
-    except FaultTextError as error:
-        raise CannotStartError(str(error), EXIT_USAGE) from error

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import os
-import signal
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from types import FrameType, TracebackType
 
 from sim import machines
 from sim.faults.can import FaultyCanWire
@@ -19,7 +17,7 @@ from sim.servers.server import RigServer
 from sim.servers.tcp_doors import GATEWAY, SOCKETCAND
 from sim.servers.text_doors import CommandDoor, StandardInput
 from tester.base import clock
-from tester.base.processes import RealTimePriority
+from tester.base.processes import RealTimePriority, end_asked
 from tester.base.words import listed
 from tester.inputs.rig import Rig
 from tester.inputs.rig.config import OneRig
@@ -153,7 +151,7 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
         for text in config.faults:
             for line in console.command(f"fault {text}", rig.now_s):
                 say(line)
-        asked = stack.enter_context(EndAsked())
+        asked = stack.enter_context(end_asked())
         if options.write_rig is not None:
             write_atomically(options.write_rig, _reached(config, server).text)
             places.append(f"rig file {options.write_rig}")
@@ -211,33 +209,6 @@ def _reached(config: Rig, server: RigServer) -> Rig:
     spoken = sorted({can.speaks, *(place.speaks for place in server.line_places.values())})
     how = "TCP" if spoken == sorted((SOCKETCAND, GATEWAY)) else listed(spoken)
     return reached(config, (can.speaks, can.at), lines, how)
-
-
-class EndAsked:
-    """Catches TERM and INT, and reports whether either has arrived."""
-
-    def __init__(self) -> None:
-        """Begin without a request."""
-        self._asked = False
-
-    def __call__(self) -> bool:
-        """Return whether this process has been asked to end."""
-        return self._asked
-
-    def __enter__(self) -> EndAsked:
-        """Install the signal handlers."""
-        self._restore = {number: signal.signal(number, self._on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        """Restore the earlier handlers."""
-        for number, handler in self._restore.items():
-            signal.signal(number, handler)
-
-    def _on_signal(self, _number: int, _frame: FrameType | None) -> None:
-        self._asked = True
 
 
 def write_atomically(path: Path, text: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Protocol, runtime_checkable
 
 from drivers.canopen.sensor_node import SensorNode
 from drivers.servo import ServoDrive
@@ -11,16 +10,6 @@ from tester.inputs.rig import Rig
 from tester.machine.devices import DeviceList
 from tester.machine.modbus_health import FieldDevice
 from tester.service.state_view import BusView, DeviceView
-
-
-@runtime_checkable
-class LoadedWire(Protocol):
-    """A simulated bus, which knows its load."""
-
-    @property
-    def load(self) -> float:
-        """Return the share of the last second in which the bus was busy, 0..1."""
-        ...
 
 
 class BusWatch:
@@ -75,8 +64,8 @@ class BusWatch:
 
     def bus_views(self) -> tuple[BusView, ...]:
         """Return the buses."""
-        can = self.devices.can
-        load = 100.0 * can.load if isinstance(can, LoadedWire) else None
+        busy = getattr(self.devices.can, "load", None)  # a share; only a simulated bus knows it
+        load = 100.0 * busy if isinstance(busy, float) else None
         errors = sum(drive.malformed for drive in self.devices.drives) + sum(self._emergencies.values())
         views = [BusView("can", "can", load, errors, f"{self.rig.can.bitrate // 1000} kbit/s")]
         for (name, config), (_, link) in zip(self.rig.lines.items(), self.devices.lines, strict=True):

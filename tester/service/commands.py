@@ -15,24 +15,42 @@ VERSION = 2
 MAX_MESSAGE = 400_000
 """Longest message that the service accepts, bytes: the largest recipe, escaped."""
 
-_STRICT = ConfigDict(extra="forbid")
-"""Refuse commands with an unknown key: a misspelt option must not be ignored."""
-
 _PLAIN = AfterValidator(partial(plain_text, where=""))
 Name = Annotated[str, Field(max_length=200), _PLAIN]
 PathText = Annotated[str, Field(max_length=4096), _PLAIN]
 Note = Annotated[str, Field(max_length=2000), _PLAIN]
 RecipeText = Annotated[str, Field(max_length=262_144)]
+Speed = Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)]
+
+
+class StrictMessage:
+    """A message in which an unknown key is refused: a misspelt option must not be ignored."""
+
+    __slots__ = ()
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid")
 
 
 @dataclass(frozen=True, slots=True)
-class Join:
+class RecipeCommand(StrictMessage):
+    """A message about a recipe.
+
+    ``recipe``: a file on the service's machine or the name of a shipped recipe; or ``text``, the recipe itself, which
+    ``recipe`` then names. ``rig``: "" = the service's.
+    """
+
+    recipe: PathText
+    text: RecipeText = ""
+    rig: PathText = ""
+    overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Join(StrictMessage):
     """The first message of a client. ``control``: it asks for control, if no client has it.
 
     ``service`` and ``since``: the service and the event it saw last; it gets every later event.
     """
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     name: Name
     version: int = VERSION
     control: bool = False
@@ -42,7 +60,7 @@ class Join:
 
 
 @dataclass(frozen=True, slots=True)
-class RunRecipe:
+class RunRecipe(RecipeCommand):
     """Start a run. Result: ``{"run": name, "folder": path}``.
 
     ``recipe``: a file on the service's machine or the name of a shipped recipe; or ``text``, the recipe itself, which
@@ -50,13 +68,8 @@ class RunRecipe:
     simulated rigs only. ``yes``: answer prompts without asking. ``experiment``: free fields, stored.
     """
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    recipe: PathText
-    text: RecipeText = ""
-    rig: PathText = ""
-    overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    speed: Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)] | None = 1.0
+    speed: Speed | None = 1.0
     yes: bool = False
     operator: Name = ""
     notes: Note = ""
@@ -64,155 +77,131 @@ class RunRecipe:
 
 
 @dataclass(frozen=True, slots=True)
-class ResumeRun:
+class ResumeRun(StrictMessage):
     """Resume an interrupted run at its first uncommitted repeat. Result as of ``run``."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     run: PathText
-    speed: Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)] | None = 1.0
+    speed: Speed | None = 1.0
     yes: bool = False
     reason: Note = ""
     command: Literal["resume"] = "resume"
 
 
 @dataclass(frozen=True, slots=True)
-class Hold:
+class Hold(StrictMessage):
     """HOLD: lift, set slip to zero, keep heating; the current repeat is void and is repeated."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["hold"] = "hold"
 
 
 @dataclass(frozen=True, slots=True)
-class Release:
+class Release(StrictMessage):
     """End HOLD and continue."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["release"] = "release"
 
 
 @dataclass(frozen=True, slots=True)
-class Acknowledge:
+class Acknowledge(StrictMessage):
     """Acknowledge one alarm, or all (``number`` 0), including a latched trip once its cause is gone. Nothing moves."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     number: Annotated[int, Field(ge=0)] = 0
     command: Literal["ack"] = "ack"
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class Stop(StrictMessage):
     """STOP: a controlled stop, or a fast one. Any client may send it; it is never refused, and idempotent."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     fast: bool = False
     command: Literal["stop"] = "stop"
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class Answer(StrictMessage):
     """Answer the prompt with this number; the answer is recorded. "no" leaves the prompt waiting."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     number: int
     answer: Literal["yes", "no"] = "yes"
     command: Literal["answer"] = "answer"
 
 
 @dataclass(frozen=True, slots=True)
-class Arm:
+class Arm(StrictMessage):
     """Arm manual mode (connects the rig first), or disarm it. It disarms by itself 60 s after the last step."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     on: bool = True
     command: Literal["arm"] = "arm"
 
 
 @dataclass(frozen=True, slots=True)
-class Attend:
+class Attend(StrictMessage):
     """A sign of life from the screen that moves the rig by hand: a second without one ends manual mode."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["attend"] = "attend"
 
 
 @dataclass(frozen=True, slots=True)
-class Jog:
+class Jog(StrictMessage):
     """Move an axis by one bounded step, up or down, for a key press. More than five a second are refused.
 
     ``axis``: a name in the machine's table (``hello``).
     """
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     axis: Name
     direction: Literal[-1, 1]
     command: Literal["jog"] = "jog"
 
 
 @dataclass(frozen=True, slots=True)
-class Tare:
+class Tare(StrictMessage):
     """Zero the load cell in manual mode; refused in contact or in motion."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["tare"] = "tare"
 
 
 @dataclass(frozen=True, slots=True)
-class TakeControl:
+class TakeControl(StrictMessage):
     """Take control (``take``; ``force``: even from another client), or give it back."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     take: bool = True
     force: bool = False
     command: Literal["control"] = "control"
 
 
 @dataclass(frozen=True, slots=True)
-class WatchFrames:
+class WatchFrames(StrictMessage):
     """Start or stop ``frames`` messages to this client."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     on: bool = True
     command: Literal["frames"] = "frames"
 
 
 @dataclass(frozen=True, slots=True)
-class CheckRecipe:
+class CheckRecipe(RecipeCommand):
     """Check a recipe against the rig. Result: ``{"problems": [{"line", "column", "message"}]}``, empty = valid."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    recipe: PathText
-    text: RecipeText = ""
-    rig: PathText = ""
-    overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
     command: Literal["check"] = "check"
 
 
 @dataclass(frozen=True, slots=True)
-class ShowPlan:
+class ShowPlan(RecipeCommand):
     """Plan a recipe. Result: the output of `tester plan --json`."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
-    recipe: PathText
-    text: RecipeText = ""
-    rig: PathText = ""
-    overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
     command: Literal["plan"] = "plan"
 
 
 @dataclass(frozen=True, slots=True)
-class ListRecipes:
+class ListRecipes(StrictMessage):
     """List the shipped recipes and those beside the service. Result: ``{"recipes": [{"name", "path"}]}``."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["recipes"] = "recipes"
 
 
 @dataclass(frozen=True, slots=True)
-class ListRuns:
+class ListRuns(StrictMessage):
     """List the stored runs. Result: ``{"runs": [...]}``, each as `tester runs --json` prints it."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     command: Literal["runs"] = "runs"
 
 
@@ -224,10 +213,9 @@ Action: TypeAlias = Annotated[RigAction | TakeControl | WatchFrames | Attend | Q
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class Command(StrictMessage):
     """A command: ``id`` is the client's own number and comes back with the answer."""
 
-    __pydantic_config__: ClassVar[ConfigDict] = _STRICT
     id: int
     action: Action
     type: Literal["command"] = field(default="command")

@@ -19,7 +19,7 @@ from tester import __version__
 from tester.base import clock
 from tester.base.screen import MachineView
 from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
-from tester.service.child_socket import spawn
+from tester.service.child_process import spawn
 from tester.service.gateway_process import SETTINGS, GatewaySettings
 from tester.service.protocol import EVENTS_KEPT, TREND_ROWS, Accepted, Event, Frames, Refused, encode
 from tester.service.service_link import LinkLost, Order, OwnerEnd, Presence

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import signal
 import socket
-import sys
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +11,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from tester.service.address import TcpAddress, UnixAddress, write_card
-from tester.service.child_socket import link_of
+from tester.service.child_process import link_to_owner
 from tester.service.gateway import Gateway
 from tester.service.hook import Hook
 from tester.service.listening import CLOSE_S, listening
@@ -78,11 +75,5 @@ async def serve_link(link: socket.socket) -> None:
 
 
 if __name__ == "__main__":
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)  # it ends with its owner, after the rig's standstill
-    if hasattr(signal, "SIGHUP"):
-        signal.signal(signal.SIGHUP, signal.SIG_IGN)
     sparse_logger("asyncio")
-    if hasattr(os, "nice"):
-        os.nice(NICE)
-    asyncio.run(serve_link(link_of(sys.argv[1])))
+    asyncio.run(serve_link(link_to_owner(NICE)))

@@ -9,13 +9,10 @@ from __future__ import annotations
 
 import gc
 import io
-import os
 import pickle
 import select
-import signal
 import socket
 import struct
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -25,7 +22,7 @@ from recipes import UnknownRecipe
 from tester.base.source import InvalidSource
 from tester.run.endings import CannotStartError
 from tester.run.preconditions import Prepared, prepared
-from tester.service.child_socket import link_of, spawn
+from tester.service.child_process import link_to_owner, spawn
 
 STEPS_AT_ONCE = 200
 """Steps in a piece: some milliseconds of the owner's time."""
@@ -169,8 +166,4 @@ def plan_for(link: socket.socket) -> None:
 
 
 if __name__ == "__main__":
-    for _number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(_number, signal.SIG_IGN)  # its owner ends it
-    if hasattr(os, "nice"):
-        os.nice(NICE)
-    plan_for(link_of(sys.argv[1]))
+    plan_for(link_to_owner(NICE))

@@ -10,16 +10,15 @@ from typing import Final, TypeVar, cast
 
 from tester.base import clock
 from tester.inputs.recipe.time_estimate import Estimate
-from tester.machine.context import Progress as RunProgress
-from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.tickers import TickStatistics
-from tester.machine.time_left import RunPosition
 from tester.run.endings import CannotStartError, StopLevel
 from tester.run.folder import Begin, Job, Work, earlier_of, parts_time
 from tester.run.kind_lookup import recipe_part, served_kind
 from tester.run.preconditions import Prepared
-from tester.run.session import Session, SessionOptions
+from tester.run.reporter import ReportScreen
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.service.planning import Task, planned
 from tester.service.state_publisher import Desk
 from tester.service.state_view import RunView, TickView
@@ -167,8 +166,8 @@ class Punctuality:
         return TickView(0.0, self._worst_s, statistics.overruns, max(self._now_s, self._before_s))
 
 
-class RunScreen:
-    """Forwards a session's output to the desk."""
+class RunScreen(ReportScreen):
+    """Forwards a session's output to the desk, which reads the run itself; clients answer prompts by command."""
 
     can_ask = True
 
@@ -185,12 +184,6 @@ class RunScreen:
         """Store the recipe's name."""
         self.name = name
 
-    def show(self, now_s: float, run: RunProgress, at: RunPosition) -> None:
-        """Do nothing: the desk reads the run itself."""
-
-    def attend(self, prompts: Prompts) -> None:
-        """Do nothing: clients answer by command."""
-
     def end(self) -> None:
         """Publish the last state before the tables are written; nothing ticks from now on."""
         self.desk.show()
@@ -206,6 +199,3 @@ class RunScreen:
         missing = record.get("missing")
         if record.get("event") == "end" and isinstance(missing, list):
             self.missing = [str(name) for name in cast("list[object]", missing)]
-
-    def result(self, line: str) -> None:
-        """Do nothing: clients know the folder."""

@@ -9,7 +9,6 @@ from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
-from types import FrameType
 from typing import TypeVar
 
 from drivers.ports import BusLost
@@ -17,7 +16,7 @@ from recipes import UnknownRecipe
 from tester.base import clock
 from tester.base.clock import Pace
 from tester.base.lock import ExclusiveUse
-from tester.base.processes import HANG_UP, QUIT, SUSPENDING
+from tester.base.processes import HANG_UP, QUIT, SUSPENDING, caught
 from tester.base.source import InvalidSource
 from tester.base.trouble import in_words
 from tester.machine.manual import NAME, ManualExecutor
@@ -26,9 +25,10 @@ from tester.machine.tickers import TickedWorld, TickStatistics, collector_at_res
 from tester.run.endings import CannotStartError
 from tester.run.folder import part_time
 from tester.run.kind_lookup import load_rig, run_parts
-from tester.run.part_run import closed_early, connect_ports, left_safe
+from tester.run.part_run import closed_early, left_safe
 from tester.run.preconditions import hold_rig
-from tester.run.session import SessionOptions
+from tester.run.rig_wires import connect_ports
+from tester.run.session_options import SessionOptions
 from tester.service.command_handler import Orders
 from tester.service.commands import (
     Arm,
@@ -94,7 +94,8 @@ class Service:
     def serve(self) -> None:
         """Serve until the process gets TERM or INT, then bring the rig to a standstill."""
         desk = self.desk
-        with Signals(self.end):
+        asking = (signal.SIGINT, signal.SIGTERM, QUIT)
+        with caught(lambda _number, _frame: self.end(), asking, (HANG_UP, *SUSPENDING)):
             desk.latch_again()  # before the first order
             desk.interrupted = self._aside(lambda: tuple(interrupted_runs(self.options.runs)))
             self._look_back()
@@ -284,32 +285,6 @@ class Service:
         if world is not None:
             return run_simulated(run, world, lapse=MANUAL_LAPSE, poll=poll)
         return run_real_time(run, None, poll=poll, statistics=TickStatistics(), pace=pace)
-
-
-class Signals:
-    """While the block lasts, TERM, INT and QUIT end the service; HUP and suspend signals are ignored."""
-
-    def __init__(self, end: Callable[[], None]) -> None:
-        """``end`` is called on a signal."""
-        self._end = end
-        self._before: dict[int, signal.Handlers | Callable[[int, FrameType | None], object] | int | None] = {}
-
-    def __enter__(self) -> None:
-        """Install the handlers."""
-        for number in (int(signal.SIGINT), int(signal.SIGTERM), QUIT):
-            if number:
-                self._before[number] = signal.signal(number, self._on_signal)
-        for number in (HANG_UP, *SUSPENDING):
-            if number:
-                self._before[number] = signal.signal(number, signal.SIG_IGN)
-
-    def __exit__(self, *_: object) -> None:
-        """Restore the earlier handlers."""
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-
-    def _on_signal(self, number: int, frame: FrameType | None) -> None:
-        self._end()
 
 
 def interrupted_runs(runs: Path) -> Iterator[str]:

@@ -15,9 +15,7 @@ from __future__ import annotations
 import hmac
 import os
 import selectors
-import signal
 import socket
-import sys
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -26,7 +24,7 @@ from pydantic import TypeAdapter
 
 from tester.base import clock
 from tester.service.address import peer_of, peer_text, unlink_socket, with_peer
-from tester.service.child_socket import link_of
+from tester.service.child_process import link_to_owner
 
 MOST_CALLERS = 256
 """Most connections at a time. Beyond that, the process with the most connections loses its oldest."""
@@ -269,8 +267,4 @@ def main(link: socket.socket) -> None:
 
 
 if __name__ == "__main__":
-    for _number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(_number, signal.SIG_IGN)  # it ends with its owner, after the rig's standstill
-    if hasattr(signal, "SIGHUP"):
-        signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    main(link_of(sys.argv[1]))
+    main(link_to_owner())

@@ -16,7 +16,7 @@ from threading import Lock, Thread
 
 from tester.base import clock
 from tester.service.address import Address, TcpAddress, stop_path
-from tester.service.child_socket import spawn
+from tester.service.child_process import spawn
 from tester.service.stop_door import SETTINGS, DoorSettings
 
 AGAIN_S = 1.0

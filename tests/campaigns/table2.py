@@ -27,7 +27,8 @@ import recipes
 from tester.base.axes import condition_words
 from tester.results.run_results import results_of
 from tester.results.table_rows import TableRow
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal
 from tests.campaigns.compiled.worker import Silent

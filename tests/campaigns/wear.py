@@ -19,7 +19,8 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from tester.analysis.wear_rate import condition_wear, wear_rate
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
 

@@ -11,14 +11,15 @@ from tester.analysis.results import WITH_CARE, ConditionStatus
 from tester.base.axes import Setpoint
 from tester.base.trouble import in_words
 from tester.machine.context import Progress
-from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition
 from tester.results.conditions_table import ConditionRow, conditions_table, recipe_rows, sweep_columns
 from tester.results.run_results import results_of
 from tester.results.table_cells import Cell
 from tester.run.pool import stop_level
+from tester.run.reporter import ReportScreen
 from tester.run.run_materials import KeptFile, write_materials
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 
 NAN = float("nan")
@@ -107,7 +108,7 @@ def run_case(task: SweepTask) -> CaseResult:
         session = screen.session = Session(options, screen)
         code = session.run()
         if session.folder is None or session.ending is None:
-            return CaseResult(task.case, task.point, task.seed, NOT_RUN, " ".join(screen.said), code)
+            return CaseResult(task.case, task.point, task.seed, NOT_RUN, " ".join(screen.messages), code)
         ending = session.ending
         with RunReader(session.folder) as reader:
             results = results_of(reader)
@@ -125,22 +126,18 @@ def not_run(task: SweepTask, error: BaseException) -> CaseResult:
     return CaseResult(task.case, task.point, task.seed, NOT_RUN, reason, 1)
 
 
-def _row(one: ConditionRow) -> RowResult:
-    return RowResult(one.info.row, one.info.setpoint, {column.key: column.cell(one) for column in sweep_columns()})
+def _row(row: ConditionRow) -> RowResult:
+    return RowResult(row.info.row, row.info.setpoint, {column.key: column.cell(row) for column in sweep_columns()})
 
 
-class Unseen:
+class Unseen(ReportScreen):
     """A screen without output; it forwards the pool's stop to the session."""
 
     answer_yes = True
-    can_ask = False
 
     def __init__(self) -> None:
         self.session: Session | None = None
-        self.said: list[str] = []
-
-    def begin(self, name: str) -> None:
-        """Show nothing."""
+        self.messages: list[str] = []
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
         """Forward a stop of the sweep."""
@@ -148,18 +145,6 @@ class Unseen:
         if level and self.session is not None:
             self.session.stop(level)
 
-    def attend(self, prompts: Prompts) -> None:
-        """Do nothing: prompts are answered automatically."""
-
-    def end(self) -> None:
-        """Do nothing."""
-
     def message(self, text: str) -> None:
         """Keep the message, in case the run does not begin."""
-        self.said.append(text)
-
-    def emit(self, record: dict[str, object]) -> None:
-        """Write nothing."""
-
-    def result(self, line: str) -> None:
-        """Write nothing."""
+        self.messages.append(text)

@@ -14,7 +14,8 @@ from tempfile import TemporaryDirectory
 
 from tester.analysis.reference import CounterfaceDrift
 from tester.results.run_results import results_of
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.belt.sets import LOSS, OVER_M
 from tests.campaigns.compiled.worker import Silent

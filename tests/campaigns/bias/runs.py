@@ -20,7 +20,8 @@ from typing import Final, NamedTuple
 
 from tester.results.run_results import results_of
 from tester.results.table_rows import Measured
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.sweep.case import Unseen
 from tester.store.run_reader import RunReader
 from tests.campaigns.budget.twin import WRONG_BELIEFS

@@ -22,7 +22,8 @@ from tempfile import TemporaryDirectory
 
 from tester.analysis.difference import difference
 from tester.results.run_results import results_of
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.sweep.case import Unseen
 from tester.store.run_reader import RunReader
 

@@ -16,11 +16,10 @@ from tempfile import TemporaryDirectory
 from typing import TypedDict
 
 import tester.kinds.wheel_on_belt.control.step
-from tester.machine.context import Progress
-from tester.machine.prompts import Prompts
-from tester.machine.time_left import RunPosition
 from tester.run.endings import CannotStartError
-from tester.run.session import Session, SessionOptions
+from tester.run.reporter import ReportScreen
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 
 TABLES = ("appendix", "conditions", "repeats")
@@ -36,36 +35,17 @@ class Case(TypedDict):
     faults: list[str]
 
 
-class Silent:
-    """A session's screen for nobody."""
+class Silent(ReportScreen):
+    """A session's screen that shows nothing."""
 
     answer_yes = True
-    can_ask = False
 
     def __init__(self) -> None:
         self.messages: list[str] = []
 
-    def begin(self, name: str) -> None:
-        """Show nothing."""
-
-    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Show nothing."""
-
-    def attend(self, prompts: Prompts) -> None:
-        """Ask nobody."""
-
-    def end(self) -> None:
-        """Take nothing away."""
-
     def message(self, text: str) -> None:
-        """Keep what is said."""
+        """Keep the message."""
         self.messages.append(text)
-
-    def emit(self, record: dict[str, object]) -> None:
-        """Write nothing."""
-
-    def result(self, line: str) -> None:
-        """Write nothing."""
 
 
 def digest(data: str) -> str:

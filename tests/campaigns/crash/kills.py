@@ -24,7 +24,8 @@ from tester.cli.console import Console
 from tester.machine.tickers import collector_at_rest
 from tester.results.verify import verify
 from tester.run.merge_parts import recover
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.record_schema import StoreError
 from tester.store.resumable import resume_point
 from tester.store.run_reader import RunReader

@@ -11,7 +11,8 @@ from typing import Final
 
 from tester.analysis.flags import CHANGED, STICK_SLIP, THERMOMETER
 from tester.results.run_results import results_of
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
 from tests.campaigns.doubts.cases import STEP_PERCENT, Case

@@ -16,7 +16,8 @@ from typing import Final, NamedTuple
 from tester.analysis.fit.fit_law import FitError, by_group
 from tester.analysis.fit.joint import fit_group
 from tester.kinds.specimen_on_track.fit.fits import FITS
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.sweep.case import Unseen
 from tests.campaigns.fit.silence import RESAMPLES, Figure
 

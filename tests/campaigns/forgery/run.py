@@ -10,7 +10,8 @@ from tester.cli.console import Console
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.exclude import Word, record_word
 from tester.results.run_files import write_all
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.writer import RunWriter
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.sweep.case import Unseen
 
 

@@ -19,7 +19,8 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from tester.results.run_results import results_of
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
 

@@ -15,7 +15,8 @@ from tester.machine.time_left import RunPosition
 from tester.run.endings import StopLevel
 from tester.run.folder import Work, earlier_of, parts_time
 from tester.run.kind_lookup import served_kind
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.service.state_view import ProgressView
 from tester.service.values import PlanTrack
 from tester.store.run_reader import RunReader

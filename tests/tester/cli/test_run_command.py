@@ -9,7 +9,7 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.run import session
-from tester.run.session import SessionOptions
+from tester.run.session_options import SessionOptions
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 
 SETS = [argument for override in QUIET for argument in ("--set", override)]

@@ -14,7 +14,7 @@ from tester.doctor.finding import Severity
 from tester.doctor.open_wires import HardwareWires
 from tester.doctor.probe_table import examined
 from tests.tester.doctor.fake_computer import FakeComputer
-from tests.tester.run.test_hardware import Machine
+from tests.tester.run.test_rig_wires import Machine
 
 pytestmark = pytest.mark.campaign
 """Some 30 s of wall time: python -m pytest -m campaign -n 0 tests/tester/doctor/test_real_time.py."""

@@ -15,7 +15,8 @@ from tester.analysis.directions import is_reversed
 from tester.analysis.results import RepeatStatus
 from tester.cli.main import invoke
 from tester.results.run_results import results_of
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tests.tester.kinds.wheel_on_belt.bench import SHORT

@@ -11,7 +11,8 @@ from tester.analysis.terms import Acts
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.run.endings import CannotStartError
 from tester.run.kind_lookup import load_rig, recipe_part, run_parts
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.run.test_session import Screen
 

@@ -23,7 +23,8 @@ from tester.machine.tickers import TickedWorld
 from tester.run import part_run
 from tester.run.folder import PARTS
 from tester.run.merge_parts import recover
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.simulated import simulated_ports
 from tester.store import record_schema
 from tester.store.record_schema import VERSION

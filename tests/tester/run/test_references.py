@@ -11,7 +11,8 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.results.run_results import results_of
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.store.record_file import DATABASE
 from tester.store.resumable import resume_point
 from tester.store.run_reader import RunReader

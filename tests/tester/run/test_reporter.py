@@ -7,10 +7,10 @@ import pytest
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition
-from tester.run.reporter import LastingScreen
+from tester.run.reporter import LastingScreen, ReportScreen
 
 
-class Failing:
+class Failing(ReportScreen):
     """A screen whose named methods find nobody; notes what it was asked to do."""
 
     answer_yes = False

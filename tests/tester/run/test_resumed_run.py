@@ -13,7 +13,8 @@ from tester.analysis.results import RepeatStatus
 from tester.cli.main import invoke
 from tester.kinds import load_rig
 from tester.run.provenance import git_revision, rig_source
-from tester.run.session import CannotStartError, Session, SessionOptions
+from tester.run.session import CannotStartError, Session
+from tester.run.session_options import SessionOptions
 from tester.store.resumable import resume_point
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter

@@ -18,7 +18,8 @@ from tester.report.materials_section import materials_sections
 from tester.report.record_section import MachineWords, read_record
 from tester.results.verify import verify
 from tester.run.run_materials import KeptFile, kept_files, put_back, used_materials
-from tester.run.session import CannotStartError, Session, SessionOptions
+from tester.run.session import CannotStartError, Session
+from tester.run.session_options import SessionOptions
 from tester.store.records import StoredMaterial
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter

@@ -23,7 +23,6 @@ from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.past_runs import heating_data
 from tester.machine.context import Progress
-from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.tickers import TickedWorld
 from tester.machine.time_left import RunPosition
@@ -31,7 +30,9 @@ from tester.run import folder as folder_module
 from tester.run import part_run
 from tester.run.bus_log import BusLog
 from tester.run.folder import make_folder
-from tester.run.session import Session, SessionOptions
+from tester.run.reporter import ReportScreen
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.simulated import simulated_ports
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
@@ -41,7 +42,7 @@ from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, rec
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
 
-class Screen:
+class Screen(ReportScreen):
     """Keeps what it is told."""
 
     def __init__(self, *, answer_yes: bool = True) -> None:
@@ -50,19 +51,8 @@ class Screen:
         self.records: list[dict[str, object]] = []
         self.results: list[str] = []
 
-    can_ask = False
-
     def begin(self, name: str) -> None:
         self.messages.append(f"begin {name}")
-
-    def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        pass
-
-    def attend(self, prompts: Prompts) -> None:
-        pass
-
-    def end(self) -> None:
-        pass
 
     def message(self, text: str) -> None:
         self.messages.append(text)

@@ -11,7 +11,8 @@ from tester.kinds import load_rig
 from tester.machine.run import Outcome
 from tester.run.part_run import RunNotes
 from tester.run.provenance import read_back
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.set_up import NAMED, DeviceParameter, GoodRun, last_good_run, stored
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT, Simulation
 from tests.tester.run.test_session import Screen, run

@@ -15,7 +15,8 @@ from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor
 from sim.physics.friction import coefficient
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.run.sweep.case import Unseen
 from tester.store.run_reader import RunReader
 from tests.test_names import names_in

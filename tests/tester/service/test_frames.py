@@ -28,7 +28,7 @@ from tester.machine.prompts import Prompts
 from tester.machine.run_parts import NoAttendant
 from tester.run.bus_log import BusLog
 from tester.run.folder import part_time
-from tester.run.hardware import hardware_ports
+from tester.run.rig_wires import hardware_ports
 from tester.service.protocol import Frame
 from tester.service.values import PlanTrack
 from tester.service.watch import RunWatch

@@ -11,7 +11,8 @@ import pytest
 
 from sim.machines.wheel_on_belt.rig import WheelRig
 from tester.base.lock import RUN_LOCK, ExclusiveUse
-from tester.run.session import Session, SessionOptions
+from tester.run.session import Session
+from tester.run.session_options import SessionOptions
 from tester.service.alarms import Cause
 from tester.service.commands import (
     Acknowledge,

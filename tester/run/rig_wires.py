@@ -1,8 +1,10 @@
-"""Opens the wires to a real rig: a CAN adapter and Modbus lines, all stamped by the run's one clock."""
+"""Opens the wires to a rig: simulated in this process, or a CAN adapter and Modbus lines stamped by one clock."""
 
 from __future__ import annotations
 
 from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from drivers.ports import LinePort
 from drivers.transports.can_bus import open_can
@@ -11,11 +13,39 @@ from drivers.transports.tcp_line import TcpLine, open_tcp_line
 from tester.base.clock import UrgentPace
 from tester.base.processes import RealTimePriority
 from tester.inputs.rig import LineConfig, Rig
+from tester.machine.attendant import NoAttendant
 from tester.machine.rig_ports import Ports
 from tester.run.bus_log import BusLog
 
+if TYPE_CHECKING:
+    from sim.rig import SimRig
+
 CATCH_UP_S = 0.002
 """Time to read the frames of a late scan, s [A]: the CAN thread takes some 0.1 ms a frame, and 20 may be waiting."""
+
+
+def connect_ports(
+    rig: Rig,
+    seed: int,
+    log: BusLog | None,
+    *,
+    faulty: bool = False,
+    recipe: Path | None = None,
+    surface: str = "",
+) -> tuple[Ports, SimRig | None, Any]:
+    """Open the wires to the rig: simulated in this process (with a faulty bus if ``faulty``), or real.
+
+    ``recipe`` and ``surface`` as in ``simulated_ports``. Returns the wires, the simulated rig, and the hands at the rig
+    (tester.machine.run_parts).
+    """
+    if rig.can.interface == "sim":
+        from sim.faults.can import FaultyCanWire
+        from sim.wires.can_wire import CanWire
+        from tester.run.simulated import simulated_ports
+
+        wire = FaultyCanWire if faulty else CanWire
+        return simulated_ports(rig, seed, log, wire, recipe=recipe, surface=surface)
+    return hardware_ports(rig, log), None, NoAttendant()
 
 
 def hardware_ports(rig: Rig, log: BusLog | None) -> Ports:

@@ -19,7 +19,7 @@ from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.tickers import TickStatistics, run_real_time
 from tester.run.bus_log import BusLog
-from tester.run.hardware import hardware_ports
+from tester.run.rig_wires import hardware_ports
 from tester.run.sim_process import reached_over_tcp
 from tester.run.simulated import simulated_ports
 

@@ -1,4 +1,4 @@
-"""A child process and a socket to it: inherited where the system allows it, else over loopback with a secret.
+"""A child process of the service and a socket to it: inherited where the system allows it, else over loopback.
 
 POSIX hands the child one end of a socket pair. On Windows (not tried) the child connects back and sends a secret first.
 """
@@ -8,11 +8,13 @@ from __future__ import annotations
 import hmac
 import os
 import secrets
+import signal
 import socket
 import subprocess
+import sys
 from collections.abc import Sequence
 
-from tester.base.processes import module_command
+from tester.base.processes import HANG_UP, module_command
 
 INHERITS = os.name == "posix"
 BACK_S = 20.0
@@ -48,9 +50,18 @@ def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes
             ours.close()
 
 
-def link_of(text: str) -> socket.socket:
-    """Return the child's end from the first argument, which ``spawn`` made. Raises OSError."""
-    kind, _, number = text.partition(":")
+def link_to_owner(nice: int = 0) -> socket.socket:
+    """Return the child's end from the first argument, which ``spawn`` made. Raises OSError.
+
+    From now on the process ignores signals: it ends with its owner, after the rig's standstill. ``nice`` lowers its
+    priority.
+    """
+    for asking in (signal.SIGINT, signal.SIGTERM, HANG_UP):
+        if asking:
+            signal.signal(asking, signal.SIG_IGN)
+    if nice and hasattr(os, "nice"):
+        os.nice(nice)
+    kind, _, number = sys.argv[1].partition(":")
     if kind == "fd":
         return socket.socket(fileno=int(number))
     back = socket.create_connection(("127.0.0.1", int(number)), timeout=BACK_S)
