@@ -61,7 +61,8 @@ def handled(handler: Handler) -> AbstractContextManager[None]:
 
 
 def stopped_by_signals(stop: Callable[..., object]) -> AbstractContextManager[None]:
-    """Return a block that calls ``stop(fast=...)`` for signals that ask this process to end: fast from the second on."""
+    """Return a block that calls ``stop(fast=...)`` for signals that ask this process to end, fast from the second one on.
+    """
     signals = 0
 
     def on_signal(_number: int, _frame: FrameType | None) -> None:

@@ -1,13 +1,17 @@
-"""Pydantic errors in the words of the file: the place, the expected value, the key that was probably meant."""
+"""Sections of files that people write: strict, described for editors, their errors in the words of the file.
+
+An error names its place, the expected value, and the key that was probably meant.
+"""
 
 from __future__ import annotations
 
 import difflib
+import json
 from collections.abc import Iterator, Mapping
 from itertools import islice
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, cast, get_args
 
-from pydantic import BaseModel
+from pydantic import BaseModel, ConfigDict
 
 from tester.base.source import MAX_PROBLEMS, Location, Problem, Tree, Value
 from tester.base.units import Quantity, expected, shown
@@ -16,6 +20,47 @@ if TYPE_CHECKING:
     from pydantic import ValidationError
     from pydantic.fields import FieldInfo
     from pydantic_core import ErrorDetails
+
+class Section(BaseModel, frozen=True):
+    """A section of a file: no key beyond its fields, whose docstrings editors show."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, use_attribute_docstrings=True)
+
+
+def editor_schema(model: type[BaseModel]) -> dict[str, object]:
+    """Return the JSON Schema (2020-12) of a file, for editors."""
+    schema: dict[str, object] = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    schema.update(cast("dict[str, object]", _for_editors(model.model_json_schema(by_alias=True))))
+    return schema
+
+
+def editor_text(model: type[BaseModel]) -> str:
+    """Return the JSON Schema as the text of a file, such as ``recipes/recipe.schema.json``."""
+    return json.dumps(editor_schema(model), indent=2, ensure_ascii=False) + "\n"
+
+
+def _for_editors(node: object) -> object:
+    """Drop entries that mislead an editor: generated titles, null for "left out", defaults without their unit."""
+    if isinstance(node, list):
+        return [_for_editors(item) for item in cast("list[object]", node)]
+    if not isinstance(node, dict):
+        return node
+    entries = cast("dict[str, object]", node)
+    tidy = {
+        key: _for_editors(value)
+        for key, value in entries.items()
+        if not (key == "title" and isinstance(value, str))
+        and not (key == "default" and not isinstance(value, str | int))
+    }
+    choices = tidy.get("anyOf")
+    if isinstance(choices, list):
+        kept = [item for item in cast("list[object]", choices) if item != {"type": "null"}]
+        if len(kept) == 1 and isinstance(kept[0], dict):
+            del tidy["anyOf"]
+            return {**cast("dict[str, object]", kept[0]), **tidy}
+        tidy["anyOf"] = kept
+    return tidy
+
 
 NEARLY, SOMEWHAT = 0.75, 0.6
 """Least similarity of a key to the one it is taken for (difflib), before and after the comparison of words."""

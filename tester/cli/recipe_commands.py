@@ -94,7 +94,7 @@ def _materials(used: UsedMaterials) -> Iterator[str]:
 def schema(what: str) -> None:
     """Print the JSON Schema of recipes, or of compounds or surfaces, for editors and other programs."""
     if what != "recipe":
-        from tester.base.section import editor_text
+        from tester.base.validation import editor_text
         from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 
         click.echo(editor_text(CompoundModel if what == "compound" else SurfaceModel), nl=False)

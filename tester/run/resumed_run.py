@@ -7,7 +7,7 @@ purpose: hashes find both, and each is reported with the remedy.
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,11 +17,11 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.rig import Rig
 from tester.machine.result_keeping import condition_records
+from tester.run.folder import write_sources
 from tester.run.kind_lookup import checked_recipe, load_rig, load_rig_text, recipe_part
 from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info
 from tester.run.run_materials import KeptFile, kept_files, put_back, used_materials, write_materials
-from tester.store.disk import write_text
-from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, StoredCondition, StoredRun, risk_text
+from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, SessionInfo, StoredCondition, StoredRun, risk_text
 from tester.store.resumable import ResumePoint, resume_point
 from tester.store.run_reader import RunReader
 from tester.store.sql import calibration_sha256, text_sha256
@@ -57,6 +57,11 @@ class Found:
     where: tuple[str, ...]
     """The files that differ, a line each."""
 
+    @property
+    def subjects(self) -> list[str]:
+        """Return what has changed: recipe, rig, calibration."""
+        return [change.subject for change in self.changes]
+
 
 def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> Resumed | str:
     """Return the run in a folder, ready to resume, or the reason for refusing.
@@ -69,8 +74,8 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
         run, stored, point = reader.run(), reader.conditions(), resume_point(reader)
     found = _found(folder, run, point.session, reason)
     if found.changes and not reason:
-        subjects = ", ".join(dict.fromkeys(change.subject for change in found.changes))
-        return f"{subjects} changed since the run began ({'; '.join(found.where)}): --reason TEXT resumes all the same"
+        subjects, where = ", ".join(found.subjects), "; ".join(found.where)
+        return f"{subjects} changed since the run began ({where}): --reason TEXT resumes all the same"
     risks = accepted_risks(found.rig, accept_risk)
     if risks and not accept_risk:
         return f"{risks[LOOSE_KEYS]}: --accept-risk REASON resumes all the same"
@@ -88,27 +93,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
     begun = {s.info.condition for s in stored if _begun(s)}
     to_come = [c for c in conditions if c.condition not in begun]
     session = session_info(point.session, point.origin_s, operator)
-
-    def begin(writer: RunWriter) -> None:
-        writer.begin_session(session)
-        writer.resume_run(found.changes)
-        for change in found.changes:
-            if change.subject == "recipe":
-                writer.replace_recipe(found.recipe_text, to_come, found.recipe_source)
-        if any(change.subject != "recipe" for change in found.changes):
-            writer.replace_rig(found.rig.text, calibration_of(found.rig), point.session, found.rig_source)
-        if added:
-            write_materials(folder, added)
-            writer.add_materials([file.stored for file in added])
-        if found.changes:
-            write_text(folder / "recipe.yaml", found.recipe_text)
-            write_text(folder / "rig.yaml", found.rig.text)
-        writer.add_metadata(risks)
-        if risks:
-            writer.event(0.0, "risk", risk_text(risks), "warning")
-        writer.event(0.0, "resume", f"stretch {session.session} of the run{': ' + reason if reason else ''}")
-
-    if any(change.subject == "calibration" for change in found.changes):
+    if "calibration" in found.subjects:
         # A new scale or zero makes the old reference meaningless.
         point = replace(point, reference_tare=None)
     return Resumed(
@@ -116,14 +101,45 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
         plan=part.remaining(plan, point.stand),
         seed=run.info.seed or 0,
         point=point,
-        begin=begin,
+        begin=_beginning(folder, session, found, to_come, added, risks, reason),
         summary=_summary(folder, point, len(conditions), restored),
     )
 
 
+def _beginning(
+    folder: Path,
+    session: SessionInfo,
+    found: Found,
+    to_come: Sequence[ConditionInfo],
+    added: Sequence[KeptFile],
+    risks: Mapping[str, str],
+    reason: str,
+) -> Callable[[RunWriter], None]:
+    """Return the function that records the resumption, and writes changed texts and added materials to the folder."""
+
+    def begin(writer: RunWriter) -> None:
+        writer.begin_session(session)
+        writer.resume_run(found.changes)
+        if "recipe" in found.subjects:
+            writer.replace_recipe(found.recipe_text, to_come, found.recipe_source)
+        if {"rig", "calibration"} & set(found.subjects):
+            writer.replace_rig(found.rig.text, calibration_of(found.rig), session.session, found.rig_source)
+        if added:
+            write_materials(folder, added)
+            writer.add_materials([file.stored for file in added])
+        if found.changes:
+            write_sources(folder, found.recipe_text, found.rig)
+        writer.add_metadata(risks)
+        if risks:
+            writer.event(0.0, "risk", risk_text(risks), "warning")
+        writer.event(0.0, "resume", f"stretch {session.session} of the run{': ' + reason if reason else ''}")
+
+    return begin
+
+
 def _added_materials(folder: Path, run: StoredRun, recipe: Recipe, found: Found) -> tuple[KeptFile, ...]:
     """Return the files that only the changed recipe names; recorded files stay as they are."""
-    if not any(change.subject == "recipe" for change in found.changes):
+    if "recipe" not in found.subjects:
         return ()
     recorded = run.info.materials
     source = Path(found.recipe_source) if found.recipe_source else folder / "recipe.yaml"

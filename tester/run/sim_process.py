@@ -141,25 +141,33 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
         stack.callback(server.close)
         server.life = life
         server.observer = _Observers(server, rig_clock, console, state_log, say, show)
-        places = [f"CAN {server.can.place}"] + [f"{name} {place}" for name, place in server.line_places.items()]
-        if options.control is not None:
-            door = CommandDoor(listen(options.doors.host, options.control), console.command)
-            server.add(door)
-            places.append(str(door.place))
-        if options.typed:
-            server.add(StandardInput(console.command, say))
         for text in config.faults:
             for line in console.command(f"fault {text}", rig.now_s):
                 say(line)
         asked = stack.enter_context(end_asked())
-        if options.write_rig is not None:
-            write_atomically(options.write_rig, _reached(config, server).text)
-            places.append(f"rig file {options.write_rig}")
+        places = _opened(options, config, server, console, say)
         say("ready: " + ", ".join(places))
         stack.callback(RealTimePriority().close)
         with collector_at_rest():
             server.serve(rig_clock, lambda: asked() or console.ended)
         return server.latest_s / rig_clock.speed
+
+
+def _opened(
+    options: SimOptions, config: Rig, server: RigServer, console: SimConsole, say: Callable[[str], None]
+) -> list[str]:
+    """Open the doors for commands and write the rig file, as far as wanted; return all places, in words."""
+    places = [f"CAN {server.can.place}"] + [f"{name} {place}" for name, place in server.line_places.items()]
+    if options.control is not None:
+        door = CommandDoor(listen(options.doors.host, options.control), console.command)
+        server.add(door)
+        places.append(str(door.place))
+    if options.typed:
+        server.add(StandardInput(console.command, say))
+    if options.write_rig is not None:
+        write_atomically(options.write_rig, _reached(config, server).text)
+        places.append(f"rig file {options.write_rig}")
+    return places
 
 
 class _Observers:

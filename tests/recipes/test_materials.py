@@ -15,7 +15,7 @@ from sim.physics import laws
 from sim.physics.laws import LawSetting
 from sim.physics.persson import PerssonLaw
 from sim.physics.track import RUBBERS
-from tester.base.section import editor_text
+from tester.base.validation import editor_text
 from tester.inputs.materials.library import Library
 from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 

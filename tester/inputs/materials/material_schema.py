@@ -11,8 +11,8 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
-from tester.base.section import Section
 from tester.base.units import Quantity
+from tester.base.validation import Section
 
 Text: TypeAlias = Annotated[str, Field(min_length=1, max_length=200)]
 Note: TypeAlias = Annotated[str, Field(min_length=1, max_length=2000)]

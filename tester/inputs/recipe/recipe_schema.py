@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
 from tester.base.axes import Axes, Axis
-from tester.base.section import Section, editor_text
 from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
+from tester.base.validation import Section, editor_text
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
