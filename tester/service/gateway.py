@@ -9,15 +9,13 @@ only the mode.
 from __future__ import annotations
 
 import asyncio
-import re
 import socket
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import cast
 
-from pydantic_core import from_json, to_json
+from pydantic_core import to_json
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
@@ -37,9 +35,9 @@ from tester.service.commands import (
     TakeControl,
     WatchFrames,
 )
+from tester.service.guests import Guest, Guests
 from tester.service.hook import Hook
-from tester.service.manners import MOST_CLIENTS, Bucket, Strangers
-from tester.service.outbox import Outbox
+from tester.service.manners import MOST_CLIENTS, Strangers
 from tester.service.protocol import (
     EVENTS_KEPT,
     TREND_ROWS,
@@ -49,11 +47,12 @@ from tester.service.protocol import (
     Refused,
     encode,
     foreign_join,
+    id_in,
     stop_in,
     to_server,
 )
 from tester.service.queries import Queries, QueryError
-from tester.service.service_link import GatewayEnd, Order, Presence
+from tester.service.service_link import GatewayEnd, Order
 
 EVENTS_AT_FIRST = 200
 """Events in the ``hello`` to a client that has seen none."""
@@ -75,30 +74,6 @@ NOT_JOINED = "a client that has not joined"
 """Name in the record of a client that has not joined."""
 GREETED_WITHIN_S = 30.0
 """The owner sends its first state within this time, s."""
-AT_REST = frozenset({"OFFLINE", "INTERRUPTED"})
-"""Modes without a run and without manual mode."""
-_MODE = re.compile(rb'\{"mode":"([^"]*)"')
-"""Start of an encoded state."""
-
-
-@dataclass(slots=True, eq=False)
-class Guest:
-    """One client: its connection, its number and its pending messages."""
-
-    connection: ServerConnection
-    number: int
-    name: str
-    peer: str
-    """Its user or address, as the operating system reports it."""
-    asked: bool = False
-    """It asked for control in its ``join``."""
-    outbox: Outbox = field(default_factory=Outbox)
-    frames: bool = False
-    leaving: asyncio.Task[None] | None = None
-    """Closes the connection of a client that fell behind."""
-    bucket: Bucket = field(default_factory=Bucket)
-    questions: int = 0
-    """How many of its questions are being answered."""
 
 
 class Gateway:
@@ -114,14 +89,8 @@ class Gateway:
         self.software = software
         self.queries = queries
         self.hook = hook
-        self.guests: dict[int, Guest] = {}
-        self.controller = 0
-        self._signs = 0
+        self.guests = Guests(self.owner)
         self._ended = False
-        self._lender = 0
-        """The client that had control before another borrowed it on an idle rig; it gets control back."""
-        self._mode = ""
-        """The rig's mode in the newest state."""
         self._next = 1
         self._state = b""
         self._plan = b"null"
@@ -138,7 +107,7 @@ class Gateway:
         kind, rest = line[:1], line[1:]
         if kind == b"s":
             self._state, _, row = rest.partition(b"\t")
-            self._mode = _mode_of(self._state)
+            self.guests.take_state(self._state)
             self._rows.append(row)
             self._greeted.set()
             message = b'{"state":' + self._state + b',"row":' + row + b',"type":"snapshot"}'
@@ -211,8 +180,7 @@ class Gateway:
         guest = Guest(connection, self._next, joined.name, peer, joined.control)
         self._next += 1
         guest.outbox.reply(self._hello(joined, guest))
-        self.guests[guest.number] = guest
-        self._tell_presence()
+        self.guests.join(guest)
         sending = asyncio.create_task(self._send(guest))
         try:
             async for text in connection:
@@ -222,12 +190,8 @@ class Gateway:
         except ConnectionClosed:
             pass  # a client may disappear: that is no error of the service
         finally:
-            del self.guests[guest.number]
             sending.cancel()
-            if self.controller == guest.number:
-                self.controller = self._lender if self._lender in self.guests else 0
-                self._lender = 0
-            self._tell_presence()
+            self.guests.leave(guest)
 
     async def _joined(self, connection: ServerConnection, peer: str) -> Join:
         async with asyncio.timeout(JOIN_WITHIN_S):
@@ -263,8 +227,8 @@ class Gateway:
         return True
 
     def _hello(self, joined: Join, guest: Guest) -> bytes:
-        if joined.control and not self.controller:
-            self.controller = guest.number
+        if joined.control and not self.guests.controller:
+            self.guests.controller = guest.number
         known = joined.service == self.service
         events = list(self._events)
         first = events[0][0] if events else 1
@@ -278,7 +242,7 @@ class Gateway:
                 b'{"version":%d,' % VERSION,
                 b'"service":' + to_json(self.service) + b',"software":' + to_json(self.software),
                 b',"client":%d,' % guest.number,
-                b'"control":' + (b"true" if self.controller == guest.number else b"false"),
+                b'"control":' + (b"true" if self.guests.controller == guest.number else b"false"),
                 b',"machine":' + self._machine + b',"state":' + self._state + b',"plan":' + self._plan,
                 b',"events":[' + b",".join(sent) + b'],"complete":' + (b"true" if complete else b"false"),
                 b',"trend":[' + b",".join(self._rows) + b'],"type":"hello"}',
@@ -302,6 +266,10 @@ class Gateway:
         guest.outbox.reply(message)
         self._keep(guest)
 
+    def _answer(self, guest: Guest, number: int, refusal: str = "") -> None:
+        """Answer a command: refused, with the reason, or accepted."""
+        self._reply(guest, encode(Refused(number, refusal) if refusal else Accepted(number)))
+
     def _keep(self, guest: Guest) -> None:
         """Disconnect a client that does not read its messages; keep any other."""
         if guest.outbox.behind and not guest.leaving:
@@ -316,7 +284,7 @@ class Gateway:
         except BadMessageError as error:
             stop = stop_in(text)  # STOP counts, even in an otherwise invalid message
             if stop is None:
-                self._reply(guest, encode(Refused(_id_of(text), str(error))))
+                self._answer(guest, id_in(text), str(error))
                 return
             message = stop
         if isinstance(message, Join):
@@ -326,13 +294,14 @@ class Gateway:
         if gone and not isinstance(action, Stop):
             return
         if isinstance(action, TakeControl):
-            self._control(guest, message.id, action)
+            self._answer(guest, message.id, self.guests.change(guest, action))
         elif isinstance(action, WatchFrames):
             guest.frames = action.on
-            self._tell_presence()
-            self._reply(guest, encode(Accepted(message.id)))
+            self.guests.tell()
+            self._answer(guest, message.id)
         elif isinstance(action, Attend):
-            self._attend(guest, message.id)
+            self.guests.sign(guest)
+            self._answer(guest, message.id)
         elif isinstance(action, CheckRecipe | ShowPlan | ListRecipes | ListRuns):
             self._ask(guest, message.id, action)
         else:
@@ -340,58 +309,21 @@ class Gateway:
 
     def _order(self, guest: Guest, number: int, action: RigAction) -> None:
         """Forward a command to the rig's owner if this client may give it. Every client may send STOP."""
-        if not isinstance(action, Stop) and self.controller != guest.number and not self._borrows(guest):
-            holder = self.guests.get(self.controller)
-            who = f"{holder.name} has control" if holder is not None else "no client has control: take it first"
-            self._reply(guest, encode(Refused(number, who)))
+        if not isinstance(action, Stop) and (refusal := self.guests.refusal(guest)):
+            self._answer(guest, number, refusal)
             return
-        self._mode = ""  # unknown until the next state: the order may change it
+        self.guests.forget_mode()
         order = Order(guest.number, guest.name, number, action, guest.peer)
         if isinstance(action, Stop):
             if (replaced := self.owner.stop(order)) is not None:
-                self._reply(guest, encode(Accepted(replaced.id)))
+                self._answer(guest, replaced.id)
         elif not self.owner.order(order):
-            self._reply(guest, encode(Refused(number, "too many commands at once: wait for their answers")))
-
-    def _borrows(self, guest: Guest) -> bool:
-        """Lend control to a client that asked for it in its ``join``, while it stays connected; return whether it got
-        control.
-
-        Only on an idle rig (no run, no manual mode), where a command cannot disturb the present controller.
-        """
-        if not guest.asked or self._mode not in AT_REST:
-            return False
-        self._lender = self._lender or self.controller
-        self.controller = guest.number
-        self._tell_presence()
-        return True
-
-    def _control(self, guest: Guest, number: int, action: TakeControl) -> None:
-        self._lender = 0
-        holder = self.guests.get(self.controller)
-        if not action.take:
-            if self.controller == guest.number:
-                self.controller = 0
-        elif holder is not None and holder is not guest and not action.force:
-            self._reply(guest, encode(Refused(number, f"{holder.name} has control")))
-            return
-        else:
-            self.controller = guest.number
-        self._tell_presence()
-        self._reply(guest, encode(Accepted(number)))
-
-    def _attend(self, guest: Guest, number: int) -> None:
-        """Forward a sign of life from the controller; ignore those of other clients."""
-        if self.controller == guest.number:
-            self._signs += 1
-            self._tell_presence()
-        self._reply(guest, encode(Accepted(number)))
+            self._answer(guest, number, "too many commands at once: wait for their answers")
 
     def _ask(self, guest: Guest, number: int, question: Query) -> None:
         """Start answering a question, unless the client has too many already."""
         if guest.questions >= QUESTIONS:
-            reason = f"{QUESTIONS} questions are being worked out already: wait for their answers"
-            self._reply(guest, encode(Refused(number, reason)))
+            self._answer(guest, number, f"{QUESTIONS} questions are being worked out already: wait for their answers")
             return
         guest.questions += 1
         self.queries.start(self._query(guest, number, question))
@@ -400,34 +332,8 @@ class Gateway:
         try:
             result = await self.queries.answer(question)
         except QueryError as error:
-            self._reply(guest, encode(Refused(number, str(error))))
+            self._answer(guest, number, str(error))
         else:
             self._reply(guest, encode(Accepted(number, result)))
         finally:
             guest.questions -= 1
-
-    def _tell_presence(self) -> None:
-        holder = self.guests.get(self.controller)
-        frames = any(guest.frames for guest in self.guests.values())
-        viewers = len(self.guests) - (holder is not None)
-        name = holder.name if holder is not None else ""
-        peer = holder.peer if holder is not None else ""
-        self.owner.presence(Presence(name, self.controller, viewers, frames, self._signs, peer))
-
-
-def _mode_of(state: bytes) -> str:
-    """Return the mode in an encoded state."""
-    match = _MODE.match(state)
-    return match.group(1).decode() if match is not None else ""
-
-
-def _id_of(text: str | bytes) -> int:
-    """Return the id of an otherwise invalid command, so that its refusal reaches the sender; 0 without an id."""
-    try:
-        match from_json(text):
-            case {"id": int(number)}:
-                return number
-            case _:
-                return 0
-    except ValueError:
-        return 0

@@ -9,7 +9,7 @@ import socket
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from http import HTTPStatus
-from typing import cast
+from typing import Any, cast
 
 from websockets.asyncio.server import Server, ServerConnection, serve, unix_serve
 from websockets.http11 import Request, Response
@@ -62,24 +62,26 @@ async def listening(gateway: Gateway, address: Address, uid: int | None = None) 
         before = os.umask(0o177)
         try:
             door = Door(os.getuid() if uid is None else uid, "")
-            server = await unix_serve(
-                gateway.serve, str(address.path), process_request=door, origins=[None], compression=None,
-                max_size=MAX_MESSAGE, write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
-                create_connection=_counted(gateway), logger=sparse_logger(LOG),
-            )  # fmt: skip
+            server = await unix_serve(gateway.serve, str(address.path), process_request=door, **_settings(gateway))
         finally:
             os.umask(before)
         async with server:
             yield address
         unlink_socket(address.path)
         return
-    server = await serve(
-        gateway.serve, address.host, address.port, process_request=Door(None, address.token), origins=[None],
-        compression=None, max_size=MAX_MESSAGE, write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
-        create_connection=_counted(gateway), logger=sparse_logger(LOG),
-    )  # fmt: skip
+    door = Door(None, address.token)
+    server = await serve(gateway.serve, address.host, address.port, process_request=door, **_settings(gateway))
     async with server:
         yield TcpAddress(address.host, _port(server), address.token, address.stop_port)
+
+
+def _settings(gateway: Gateway) -> dict[str, Any]:
+    """Return the settings of either server."""
+    return {
+        "origins": [None], "compression": None, "max_size": MAX_MESSAGE, "write_limit": BACKLOG_BYTES,
+        "close_timeout": CLOSE_S, "server_header": None, "create_connection": _counted(gateway),
+        "logger": sparse_logger(LOG),
+    }  # fmt: skip
 
 
 def _counted(gateway: Gateway) -> type[ServerConnection]:

@@ -179,6 +179,15 @@ def stop_in(text: str | bytes) -> Command | None:
             return None
 
 
+def id_in(text: str | bytes) -> int:
+    """Return the id of an otherwise invalid command, so that its refusal reaches the sender; 0 without an id."""
+    match _json(text):
+        case {"id": int(number)}:
+            return number
+        case _:
+            return 0
+
+
 def foreign_join(text: str | bytes) -> str:
     """Return why a client of another version is refused, and what to do; "" for any other message.
 
