@@ -12,11 +12,6 @@ def monotonic() -> float:
     return time.monotonic()
 
 
-def cpu_seconds() -> float:
-    """Return the CPU seconds this process has used."""
-    return time.process_time()
-
-
 def sleep_until(deadline_s: float) -> float:
     """Sleep until the monotonic ``deadline_s``; return how late it woke, in s (0 when the deadline had passed by less).
 

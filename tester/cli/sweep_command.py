@@ -67,9 +67,16 @@ def sweep(
     The folder holds every run (runs.csv), its conditions (conditions.csv), their spread over the seeds beside the
     uncertainty the runs state (summary.csv), and durations and wheels (totals.csv). Ctrl+C keeps what is there.
     """
-    from tester.run.sweep.executors import NoClusterError, dask, local
     from tester.run.sweep.grid import GridError, axes_of
-    from tester.run.sweep.sweep import NotSimulatedError, SweepOptions, carry_out, prepare_sweep
+    from tester.run.sweep.sweep import (
+        NoClusterError,
+        NotSimulatedError,
+        SweepOptions,
+        carry_out,
+        dask,
+        local,
+        prepare_sweep,
+    )
 
     if jobs is not None and address is not None:
         raise click.UsageError("--jobs is for processes of this machine, --dask for a cluster: one of them")

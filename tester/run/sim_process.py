@@ -27,9 +27,6 @@ from tester.run.kind_lookup import load_rig, run_parts
 from tester.run.sim_console import RigClock, SimConsole, SpoiledLife
 from tester.run.simulated import simulated_ports
 
-BUS = "vcan0"
-"""Name that a client of the TCP door opens; the door takes any."""
-
 
 def reached(rig: OneRig, can: tuple[str, str], lines: Mapping[str, tuple[str, bool]], how: str) -> OneRig:
     """Return ``rig`` as a machine, its bus at ``can`` (python-can's interface and channel), its lines at ``lines``.
@@ -48,17 +45,6 @@ def reached(rig: OneRig, can: tuple[str, str], lines: Mapping[str, tuple[str, bo
             for name, line in rig.lines.items()
         },
     )
-
-
-def reached_over_tcp(rig: OneRig, can: tuple[str, int], lines: Mapping[str, tuple[str, int]]) -> OneRig:
-    """Return ``rig`` as a machine whose bus is at ``can`` (host, port; socketcand) and whose Modbus lines are at
-    ``lines`` (Modbus TCP)."""
-    places = {name: (_text(address), True) for name, address in lines.items()}
-    return reached(rig, ("socketcand", f"{BUS}@{_text(can)}"), places, "TCP")
-
-
-def _text(address: tuple[str, int]) -> str:
-    return f"{address[0]}:{address[1]}"
 
 
 SHOWN_EVERY_S = 1.0

@@ -55,7 +55,6 @@ class GatewayLink:
     sign_s: float = float("-inf")
     """Time of the controller's newest sign of life (tester.base.clock.monotonic)."""
     sequence: int = 0
-    restarts: int = 0
     lane: StopLane = field(default_factory=StopLane)
     """STOP's own lane, past the gateway."""
     _end: OwnerEnd | None = None
@@ -244,6 +243,5 @@ class GatewayLink:
             return
         if self._process is not None and self._process.poll() is None:
             return
-        self.restarts += 1
         self._again_s = clock.monotonic() + AGAIN_S
         self._open_gateway()

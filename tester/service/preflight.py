@@ -17,6 +17,8 @@ from tester.base.screen import Check
 from tester.inputs.rig import CalibrationConfig, Rig
 from tester.machine.served import History, Left, ServedKind
 from tester.results.run_results import results_of
+from tester.run.latch import made_on
+from tester.service.disk_watch import disk_check
 from tester.service.state_view import Alarm, DiskView
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import RunStatus, run_folders
@@ -49,6 +51,22 @@ def past_of(runs: Path, kind: ServedKind) -> Past | None:
     return None
 
 
+NEWEST_RUNS = 50
+"""Number of newest runs searched for one on this rig that mounted something [A]."""
+
+
+def left_on_rig(runs: Path, rig: Rig, kind: ServedKind) -> Left | None:
+    """Return what the newest run on a rig left on it; None if unknown."""
+    for folder in list(run_folders(runs))[: -NEWEST_RUNS - 1 : -1]:
+        with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
+            if not made_on(rig, reader):
+                continue
+            left = kind.left(reader, folder.name)
+            if left.known:
+                return left if left.usable(rig) else None
+    return None
+
+
 def known_checks(
     rig: Rig,
     disk: DiskView,
@@ -70,13 +88,6 @@ def known_checks(
         calibration_check(rig.certificates(), now_utc, simulated=rig.simulated),
         *(history.checks(rig, past.left if past is not None else None, now_utc) if history is not None else ()),
     )
-
-
-def disk_check(disk: DiskView) -> Check:
-    """Return whether there is room to record a run."""
-    if disk.free is None:
-        return Check("disk space", None, "the disk does not report its free space")
-    return Check("disk space", not disk.low, f"{disk.free / 1e9:.1f} GB free")
 
 
 def alarms_check(alarms: Iterable[Alarm]) -> Check:

@@ -1,21 +1,28 @@
-"""A run in the service: the same session as `tester run`, with clients in place of a terminal."""
+"""A run in the service: the session of `tester run`, with clients in place of a terminal. Records of manual mode."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
+from pathlib import Path
 from types import FrameType
 from typing import Final, TypeVar, cast
 
 from tester.base import clock
 from tester.inputs.recipe.time_estimate import Estimate
+from tester.inputs.rig import Rig
+from tester.inputs.rig.further_sensors import quantities_on
+from tester.machine.manual import NAME
 from tester.machine.run import Run
 from tester.machine.tickers import TickStatistics
 from tester.run.endings import CannotStartError, StopLevel
-from tester.run.folder import Begin, Job, Work, earlier_of, parts_time
+from tester.run.folder import Begin, Job, Work, earlier_of, make_folder, parts_time
 from tester.run.kind_lookup import recipe_part, served_kind
+from tester.run.latch import MANUAL_RUNS
+from tester.run.part_run import Unsampled
 from tester.run.preconditions import Prepared
+from tester.run.provenance import accepted_risks
 from tester.run.reporter import ReportScreen
 from tester.run.session import Session
 from tester.run.session_options import SessionOptions
@@ -24,6 +31,9 @@ from tester.service.state_publisher import Desk
 from tester.service.state_view import RunView, TickView
 from tester.service.values import PlanTrack
 from tester.store.disk import expected_bytes
+from tester.store.record_file import DATABASE
+from tester.store.records import RunInfo
+from tester.store.writer import RunWriter
 
 LOOK_S: Final = 0.02
 """Period at which the owner serves its clients, s, as between two ticks."""
@@ -142,6 +152,22 @@ class ServiceSession(Session):
         if self.run_ is not None:
             self.run_.stays_latched = False  # no client will be there to acknowledge
         super()._on_signal(number, _frame)
+
+
+def open_record(runs: Path, rig: Rig, operator: str, accept_risk: str = "") -> RunWriter:
+    """Return the journal of one stay in manual mode: a record of its own, without samples, in ``runs/.manual``.
+
+    It is not a run: it holds commands, modes, trips and tares, and no list of runs shows it. Raises OSError,
+    sqlite3.Error, StoreError.
+    """
+    folder = make_folder(runs / MANUAL_RUNS, NAME)
+    writer = Unsampled(folder / DATABASE, quantities_on(rig), clock=clock.monotonic, utc=clock.utc_now)
+    started_utc = clock.utc_now()
+    part = recipe_part(rig)
+    info = RunInfo(folder.name, NAME, "", rig.text, started_utc, rig.simulated, part.kind, part.axes, operator=operator,
+                   metadata=accepted_risks(rig, accept_risk))  # fmt: skip
+    writer.begin_run(info, [], [])
+    return writer
 
 
 @dataclass(slots=True)

@@ -36,9 +36,8 @@ from tester.service.commands import (
     RunRecipe,
 )
 from tester.service.gateway_link import GatewayLink
-from tester.service.manual_mode import left_on_rig, open_record
-from tester.service.preflight import past_of
-from tester.service.running import RunScreen, ServiceSession, aside
+from tester.service.preflight import left_on_rig, past_of
+from tester.service.running import RunScreen, ServiceSession, aside, open_record
 from tester.service.service_link import Order
 from tester.service.state_publisher import Desk
 from tester.service.state_view import RunView

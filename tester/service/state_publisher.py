@@ -10,6 +10,7 @@ from tester.base import clock
 from tester.base.screen import Value
 from tester.base.trouble import in_words
 from tester.inputs.rig import Rig
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.manual import ManualExecutor
 from tester.machine.run import Outcome, Run
 from tester.machine.served import History, ServedKind
@@ -17,43 +18,26 @@ from tester.run.kind_lookup import served_kind
 from tester.run.latch import acknowledge, open_trips
 from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
+from tester.service.disk_watch import DiskWatch
 from tester.service.gateway_link import GatewayLink
 from tester.service.preflight import Past, known_checks
 from tester.service.protocol import SNAPSHOT_S
 from tester.service.service_link import Order
-from tester.service.state_view import DiskView, ManualView, ProgressView, RunView, StateView, TickView
+from tester.service.state_view import ManualView, ProgressView, RunView, StateView, TickView
 from tester.service.values import PlanTrack, trend_row, unknown_values
 from tester.service.watch import RunWatch, risk_of
-from tester.store.disk import MARGIN, FreeRoom
 from tester.store.record_schema import StoreError
 
 UNWATCHED_S = 1.0
 """Period of states without any client, s: the gateway's trend continues at a rate that costs nothing."""
 SOONEST_S = 0.05
 """Shortest time between two states, s: clients that send many commands cannot raise the rate."""
-DISK_EVERY_S = 10.0
-DISK_FIRST_S = 1.0
-"""How long the starting service waits for the first answer about the disk, s."""
-LOW_BYTES = 500_000_000
-"""Less than this counts as low, whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
 NOTIFIED = frozenset({"trip"})
 """Kinds of events that run the notify hook; hold, prompt, finished and disk come from elsewhere."""
 
 
-def nobody_obeys(order: Order) -> None:
-    """Default handler: ignore an order."""
-
-
-def nothing_stops(name: str, fast: bool) -> None:
-    """Default handler: ignore STOP."""
-
-
-def ignore_control_change() -> None:
-    """Default handler: ignore a change of controller."""
-
-
-def nothing_rests(fast: bool) -> None:
-    """Default handler: no later part of the run needs stopping."""
+def do_nothing(*_: object) -> None:
+    """Default handler: ignore it."""
 
 
 @dataclass(slots=True)
@@ -67,11 +51,11 @@ class Desk:
     gateway: GatewayLink
     rig: Rig
     runs: Path
-    obey: Callable[[Order], None] = field(default=nobody_obeys)
-    stop: Callable[[str, bool], None] = field(default=nothing_stops)
+    obey: Callable[[Order], None] = field(default=do_nothing)
+    stop: Callable[[str, bool], None] = field(default=do_nothing)
     """Called on STOP with the client's name and whether the stop is fast."""
-    lost_control: Callable[[], None] = field(default=ignore_control_change)
-    stop_rest: Callable[[bool], None] = field(default=nothing_rests)
+    lost_control: Callable[[], None] = field(default=do_nothing)
+    stop_rest: Callable[[bool], None] = field(default=do_nothing)
     """Called on STOP (fast or not) to stop the parts of the run that have not begun."""
     watch: RunWatch | None = None
     hand: ManualExecutor | None = None
@@ -98,9 +82,7 @@ class Desk:
     _revision: int = 0
     """Revision of the list of steps that clients have."""
     _controller: int = 0
-    _low: bool = False
-    _disk_due_s: float = float("-inf")
-    _room: FreeRoom = field(init=False)
+    _disk: DiskWatch = field(init=False)
     _unknown: tuple[Value, ...] = ()
     _alone: str = ""
     _risk: str = ""
@@ -110,14 +92,12 @@ class Desk:
 
     def __post_init__(self) -> None:
         """Begin without alarms."""
-        self.alarms = AlarmList(clock.utc_now, self._alarm_changed)
+        self.alarms = AlarmList(clock.utc_now, self.tell)
         self.kind = served_kind(self.rig)
         self.gateway.machine(self.kind.machine)
-        self._unknown = unknown_values(self.rig)
+        self._unknown = unknown_values(quantities_on(self.rig), self.rig)
         self._alone = self.kind.alone(self.rig)
-        self._room = FreeRoom(self.runs)
-        self._look_at_disk()
-        self._room.wait(DISK_FIRST_S)
+        self._disk = DiskWatch(self.runs, self.alarms, self.notify)
         self._risk = risk_of(self.rig)
 
     # -- runs -------------------------------------------------------------------------------------------------
@@ -154,7 +134,7 @@ class Desk:
                 self.alarms.clear(name)
         self.watch = self.hand = None
         self.gateway.machine(self.kind.machine)
-        self.stop_rest = nothing_rests
+        self.stop_rest = do_nothing
         self.run = view
         self._due_s = float("-inf")
 
@@ -221,9 +201,6 @@ class Desk:
         """Run the user's hook."""
         run = self.run
         self.gateway.notify(event, text, run.name if run else "", run.folder if run else "")
-
-    def _alarm_changed(self, kind: str, text: str, severity: str) -> None:
-        self.tell(kind, text, severity)
 
     # -- between two ticks ------------------------------------------------------------------------------------
 
@@ -302,41 +279,39 @@ class Desk:
         """Return the whole state."""
         watch, gateway, now = self.watch, self.gateway, self.now_s
         mode, text, since_s = self._situation()
-        disk = self._disk_view()
-        rig = watch.rig if watch is not None else self.rig
-        lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
-        known = known_checks(
-            self.rig, disk, self.alarms.listed(), self.past, self.latched, clock.utc_now(), self.history
-        )
-        from_rig = watch.preflight() if watch is not None else ()
-        names = {check.name for check in from_rig}
-        return StateView(
+        disk, alarms = self._disk.view(now, self.needed), self.alarms.listed()
+        checks = known_checks(self.rig, disk, alarms, self.past, self.latched, clock.utc_now(), self.history)
+        state = StateView(
             mode=mode,
             mode_text=text,
             mode_since_s=since_s,
             t_s=now,
             wall_s=gateway.wall_s,
             utc=clock.utc_now(),
-            rig=rig.name,
-            simulated=rig.simulated,
+            rig=self.rig.name,
+            simulated=self.rig.simulated,
             run=self.run,
-            progress=watch.progress(now, lapse) if watch is not None else ProgressView(),
-            values=watch.values.values() if watch is not None else self._unknown,
-            gates=watch.gates() if watch is not None else (),
-            soak=watch.soak(now) if watch is not None else None,
-            alarms=self.alarms.listed(),
-            prompt=watch.prompt() if watch is not None else None,
+            progress=ProgressView(),
+            values=self._unknown,
+            gates=(),
+            soak=None,
+            alarms=alarms,
+            prompt=None,
             manual=self._manual_view(),
-            devices=watch.buses.device_views(now) if watch is not None else (),
-            buses=watch.buses.bus_views() if watch is not None else (),
+            devices=(),
+            buses=(),
             disk=disk,
             tick=self._tick_view(),
             clients=gateway.clients,
             interrupted=self.interrupted,
-            preflight=(*(check for check in known if check.name not in names), *from_rig),
-            alone=watch.alone if watch is not None else self._alone,
-            risk=watch.risk if watch is not None else self._risk,
+            preflight=checks,
+            alone=self._alone,
+            risk=self._risk,
         )
+        if watch is None:
+            return state
+        lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
+        return watch.shown_in(state, lapse)
 
     def _situation(self) -> tuple[str, str, float]:
         """Return mode, reason, and seconds in this mode; run the hook when a hold begins."""
@@ -365,28 +340,6 @@ class Desk:
         if self.watch is None:
             return TickView(0.0, 0.0, 0)
         return replace(self.tick, rate_hz=round(1.0 / self.watch.run.engine.period_s, 1))
-
-    def _look_at_disk(self) -> None:
-        self._disk_due_s = clock.monotonic() + DISK_EVERY_S
-        self._room.look()
-
-    def _disk_view(self) -> DiskView:
-        if clock.monotonic() >= self._disk_due_s:
-            self._look_at_disk()
-        silent = Cause("disk silent", 2, f"{self.runs} does not report its free space",
-                       "a run that cannot be recorded is stopped")  # fmt: skip
-        self.alarms.set(self._room.hangs, silent, self.now_s)
-        free, least = self._room.free, max(LOW_BYTES, MARGIN * self.needed)
-        if free is None:
-            return DiskView(None, self.needed, self._low)
-        was_low, self._low = self._low, free < least
-        text = f"{free / 1e6:.0f} MB free"
-        cause = Cause("disk nearly full", 2, text, "a run that cannot be recorded is stopped", "ack", free / 1e6,
-                      least / 1e6, "MB")  # fmt: skip
-        self.alarms.set(self._low, cause, self.now_s)
-        if self._low and not was_low:
-            self.notify("disk", text)
-        return DiskView(free, self.needed, self._low)
 
     def _row(self, view: StateView) -> tuple[float | None, ...]:
         by_key = {value.key: value for value in view.values}

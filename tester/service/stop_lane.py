@@ -42,7 +42,6 @@ class StopLane:
         """Open nothing yet."""
         self.ticking = False
         """A rig is under control: only control's own thread may confirm STOP."""
-        self.restarts = 0
         self.port = 0
         ours, theirs = socket.socketpair()
         self.bell, self._rope = ours, theirs
@@ -86,7 +85,6 @@ class StopLane:
         if self._process is not None and self._process.poll() is None:
             self._process.kill()
             return
-        self.restarts += 1
         settings = self._settings
         again = DoorSettings(settings.path, self.port, settings.token)
         with suppress(OSError):

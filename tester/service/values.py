@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from math import hypot, inf, isfinite
 
 from tester.base.axes import ListWords
@@ -24,35 +24,20 @@ CONTACT_N = 20.0
 NOTHING_WANTED = Wanted(None)
 
 
-@dataclass(frozen=True, slots=True)
-class Spec:
-    """The fixed properties of a value on a rig."""
-
-    key: str
-    label: str
-    unit: str
-    device: str
-    """Device that delivers the value."""
-    low: float | None
-    high: float | None
-    scale_low: float
-    scale_high: float
-    decimals: int
-    watched: bool
-    """An alarm reports missing updates of this value."""
-
-    def value(
-        self, now: float | None, wanted: Wanted = NOTHING_WANTED, age_s: float | None = None, quality: Quality = "none"
-    ) -> Value:
-        """Return this value with its present number, setpoint, age and quality."""
-        setpoint, band = known(wanted.setpoint), wanted.band
-        band_low = band_high = None
-        if setpoint is not None and band is not None:
-            band_low, band_high = known(setpoint - band), known(setpoint + band)
-        return Value(
-            self.key, self.label, self.unit, known(now), setpoint, self.low, self.high, band_low, band_high,
-            self.scale_low, self.scale_high, self.decimals, age_s, quality,
-        )  # fmt: skip
+def measured(
+    unknown: Value,
+    now: float | None,
+    wanted: Wanted = NOTHING_WANTED,
+    age_s: float | None = None,
+    quality: Quality = "none",
+) -> Value:
+    """Return a value, unknown so far, with its present number, setpoint, age and quality."""
+    setpoint, band = known(wanted.setpoint), wanted.band
+    band_low = band_high = None
+    if setpoint is not None and band is not None:
+        band_low, band_high = known(setpoint - band), known(setpoint + band)
+    bands = {"band_low": band_low, "band_high": band_high}
+    return replace(unknown, value=known(now), setpoint=setpoint, age_s=age_s, quality=quality, **bands)
 
 
 def screen_of(channel: Channel) -> Screen:
@@ -61,30 +46,25 @@ def screen_of(channel: Channel) -> Screen:
     return channel.screen
 
 
-def spec_of(channel: Channel, rig: object) -> Spec:
-    """Return a channel's name, limits and bar range on a rig."""
+def unknown_value(channel: Channel, rig: object) -> Value:
+    """Return a channel's name, limits and bar range on a rig, without a number."""
     screen = screen_of(channel)
     high = screen.limit.of(rig) if screen.limit is not None else None
     low = -high if high is not None and screen.both else None
-    return Spec(
-        screen.key, channel.label, channel.read_as, screen.device, low, high, screen.low.of(rig), screen.high.of(rig),
-        channel.decimals, screen.watched,
+    return Value(
+        screen.key, channel.label, channel.read_as, None, None, low, high, None, None, screen.low.of(rig),
+        screen.high.of(rig), channel.decimals, None, "none",
     )  # fmt: skip
 
 
-def specs(quantities: Quantities, rig: Rig) -> tuple[Spec, ...]:
-    """Return the values of a rig, the most important first."""
-    return tuple(spec_of(channel, rig) for channel in quantities.shown)
+def unknown_values(quantities: Quantities, rig: Rig) -> tuple[Value, ...]:
+    """Return the values of a rig without their numbers, the most important first."""
+    return tuple(unknown_value(channel, rig) for channel in quantities.shown)
 
 
 def known(value: float | None) -> float | None:
     """Return a value if it is a finite number, else None."""
     return value if value is not None and isfinite(value) else None
-
-
-def unknown_values(rig: Rig) -> tuple[Value, ...]:
-    """Return the values of a rig that is not connected."""
-    return tuple(spec.value(None) for spec in specs(quantities_on(rig), rig))
 
 
 class ValueView:
@@ -96,7 +76,7 @@ class ValueView:
         self.panel = panel
         rig, devices = engine.ctx.rig, engine.devices
         quantities = quantities_on(rig)
-        self.specs = specs(quantities, rig)
+        self.unknown = unknown_values(quantities, rig)
         self._quantities = quantities
         recorded = quantities.recorded[: -len(LAST) - len(quantities.further)]
         self._read_off = {channel.name: values_at([channel.source]) for channel in recorded}
@@ -111,12 +91,13 @@ class ValueView:
         quality = {device: self._quality(news, now) for device, news in all_news.items()}
         nothing: tuple[float | None, Quality] = (None, "none")
         return tuple(
-            spec.value(
+            measured(
+                unknown,
                 channel.scaled(self._read(channel.name)) if channel.source else friction(self._quantities, self._read),
-                wanted.get(spec.key, NOTHING_WANTED),
-                *quality.get(spec.device, nothing),
+                wanted.get(unknown.key, NOTHING_WANTED),
+                *quality.get(screen_of(channel).device, nothing),
             )
-            for spec, channel in zip(self.specs, self._quantities.shown, strict=True)
+            for unknown, channel in zip(self.unknown, self._quantities.shown, strict=True)
         )
 
     def _read(self, name: str) -> float:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from math import isfinite
 from typing import Any
 
 from drivers.ports import CanPort, LinePort, Unwatch
 from tester.base import clock
-from tester.base.screen import Check, Gate, SoakView, Value
+from tester.base.screen import Check, Value
 from tester.inputs.rig import Rig
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.inputs.rig.rig_files import risks_of
 from tester.machine.connect import Stage
 from tester.machine.run import Run
@@ -20,8 +22,8 @@ from tester.machine.state import ControlState, Mode
 from tester.service.alarms import AlarmList, Cause
 from tester.service.buses import BusWatch
 from tester.service.protocol import Frame, Frames
-from tester.service.state_view import ProgressView, PromptView
-from tester.service.values import PlanTrack, ValueView
+from tester.service.state_view import ProgressView, PromptView, StateView
+from tester.service.values import PlanTrack, ValueView, screen_of
 
 MOST = 200
 """Frames in a message; five axes at 100 Hz make about 1,500 a second, more than anyone can read."""
@@ -112,7 +114,8 @@ class RunWatch:
         self.acknowledged = False
         """A trip has occurred and is acknowledged."""
         self._asked_utc: dict[int, str] = {}
-        self._fresh = frozenset(spec.key for spec in self.values.specs if spec.watched)
+        shown = map(screen_of, quantities_on(self.rig).shown)
+        self._fresh = frozenset(screen.key for screen in shown if screen.watched)
         """Keys of the values that must be updated."""
 
     # -- views ------------------------------------------------------------------------------------------------
@@ -133,6 +136,26 @@ class RunWatch:
         """Whether a trip or a fast stop waits for its acknowledgement."""
         return self.run.engine.control.state.mode is Mode.LATCHED
 
+    def shown_in(self, state: StateView, lapse: float | None) -> StateView:
+        """Return the state with this run in it; ``lapse`` as in ``progress``. The rig's own checks replace others."""
+        now, checks = state.t_s, self.preflight()
+        names = {check.name for check in checks}
+        return replace(
+            state,
+            rig=self.rig.name,
+            simulated=self.rig.simulated,
+            progress=self.progress(now, lapse),
+            values=self.values.values(),
+            gates=self.panel.gates(),
+            soak=self.panel.soak(now),
+            prompt=self.prompt(),
+            devices=self.buses.device_views(now),
+            buses=self.buses.bus_views(),
+            preflight=(*(check for check in state.preflight if check.name not in names), *checks),
+            alone=self.alone,
+            risk=self.risk,
+        )
+
     def progress(self, now: float, lapse: float | None) -> ProgressView:
         """Return where the run is; ``lapse``: rig seconds per second, None if unknown."""
         p, at = self.run.engine.ctx.progress, self.track.standing()
@@ -140,14 +163,6 @@ class RunWatch:
         return ProgressView(at.step, at.steps, p.title, p.phase, at.over, at.conditions, p.repeat, p.repeats,
                             p.revolutions, p.revolutions_wanted, p.burst, at.share, now, at.left_s, at.step_left_s,
                             finish)  # fmt: skip
-
-    def gates(self) -> tuple[Gate, ...]:
-        """Return the gates as of the last scan."""
-        return self.panel.gates()
-
-    def soak(self, now: float) -> SoakView | None:
-        """Return the soak under way, None without one."""
-        return self.panel.soak(now)
 
     def prompt(self) -> PromptView | None:
         """Return the waiting question."""

@@ -25,7 +25,7 @@ from tester.service.state_view import (
     StateView,
     TickView,
 )
-from tester.service.values import NOTHING_WANTED, Spec, friction, screen_of, specs, trend_row
+from tester.service.values import NOTHING_WANTED, friction, measured, screen_of, trend_row, unknown_values
 from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
 from tester.store.run_reader import RunReader
 from tester.tui.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
@@ -51,7 +51,8 @@ class Playback:
     rig_name: str
     machine: MachineView
     quantities: Quantities
-    specs: tuple[Spec, ...]
+    specs: tuple[Value, ...]
+    """Its values, without their numbers."""
     samples: dict[str, array[float]]
     conditions: tuple[StoredCondition, ...]
     repeats: tuple[StoredRepeat, ...]
@@ -120,12 +121,12 @@ class Playback:
 
     def _values(self, at_s: float, index: int, info: ConditionInfo | None) -> tuple[Value, ...]:
         if index < 0:
-            return tuple(spec.value(None) for spec in self.specs)
+            return self.specs
         row = {name: column[index] for name, column in self.samples.items()}
         age_s = at_s - row["time_s"]
         return tuple(
-            spec.value(self._measured(channel, row), self._wanted(channel, row, info), age_s,
-                       "good" if age_s <= OLD_S else "stale")
+            measured(spec, self._measured(channel, row), self._wanted(channel, row, info), age_s,
+                     "good" if age_s <= OLD_S else "stale")
             for spec, channel in zip(self.specs, self.quantities.shown, strict=True)
         )  # fmt: skip
 
@@ -150,7 +151,7 @@ class Playback:
         """Return a row of the trend; unrecorded setpoints are left empty."""
         row = {name: column[index] for name, column in self.samples.items()}
         values = {
-            spec.key: spec.value(self._measured(channel, row), self._wanted(channel, row, None))
+            spec.key: measured(spec, self._measured(channel, row), self._wanted(channel, row, None))
             for spec, channel in zip(self.specs, self.quantities.shown, strict=True)
         }
         return (row["time_s"], row["time_s"], *trend_row(self.quantities, values))
@@ -177,7 +178,7 @@ def load(folder: Path) -> Playback:
         )
         repeats = tuple(reader.repeats(attempts=True))
         quantities = reader.quantities()
-        shown = specs(quantities, rig)
+        shown = unknown_values(quantities, rig)
         spacing_s = max(SPACING_S, run.rig_seconds / MOST)
         return Playback(
             run, results.status.value, rig.name, drawn_as(quantities, shown, kind.machine), quantities, shown,
@@ -187,7 +188,7 @@ def load(folder: Path) -> Playback:
         )  # fmt: skip
 
 
-def drawn_as(quantities: Quantities, shown: Sequence[Spec], kind: MachineView) -> MachineView:
+def drawn_as(quantities: Quantities, shown: Sequence[Value], kind: MachineView) -> MachineView:
     """Return how to draw a record's channels: as the kind does if its trend is the same, else by the record's own
     table.
 

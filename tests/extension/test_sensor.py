@@ -99,7 +99,8 @@ def test_a_run_records_exports_and_replays_them(folder: Path, capfd: pytest.Capt
 
 
 def test_its_values_stand_on_the_screen_with_unit_and_range() -> None:
-    unknown = {value.key: value for value in unknown_values(load_rig("my-rig.yaml"))}
+    rig = load_rig("my-rig.yaml")
+    unknown = {value.key: value for value in unknown_values(quantities_on(rig), rig)}
     assert (unknown["humidity_percent"].value, unknown["humidity_percent"].quality) == (None, "none")
     value = shown(simulation())["humidity_percent"]
     assert value.value == pytest.approx(45.5) and value.quality == "good"

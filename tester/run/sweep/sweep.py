@@ -1,24 +1,35 @@
-"""Runs a sweep from start to finish: points and seeds, runs in any process, folder, exit code."""
+"""Runs a sweep from start to finish: points and seeds, runs in processes here or on a cluster, folder, exit code."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol, TypeAlias
 
 from recipes import find
 from tester.base.axes import Axes
+from tester.base.plugins import needs
 from tester.base.processes import EXIT_DONE, EXIT_INCOMPLETE, EXIT_INTERRUPTED
-from tester.base.trouble import MisuseError
+from tester.base.trouble import MisuseError, in_words
 from tester.run.folder import make_folder
 from tester.run.kind_lookup import checked_recipe, load_rig, served_kind
+from tester.run.pool import WorkerPool
 from tester.run.run_materials import kept_files, used_materials
 from tester.run.sweep.case import CaseResult, SweepTask, not_run, run_case
-from tester.run.sweep.executors import Submit
 from tester.run.sweep.grid import SweepAxis, overrides_of, points_of
 from tester.run.sweep.sweep_files import SweepFiles, write_sources
+
+
+class NoClusterError(MisuseError):
+    """The cluster is not usable; the message gives the reason."""
+
+
+Submit: TypeAlias = Callable[[Callable[[SweepTask], CaseResult], SweepTask], Future[CaseResult]]
+"""Runs a task somewhere, and returns the future of its result."""
 
 
 class Audience(Protocol):
@@ -123,3 +134,31 @@ def _results(tasks: Sequence[SweepTask], submit: Submit) -> Iterator[CaseResult]
     for future in as_completed(futures):
         error = future.exception()
         yield future.result() if error is None else not_run(futures[future], error)
+
+
+@contextmanager
+def local(jobs: int) -> Generator[Submit]:
+    """Use up to ``jobs`` processes of this machine; leaving the block ends the runs under way."""
+    with WorkerPool(jobs) as pool:
+        yield lambda work, task: pool.submit(work, task)
+
+
+@contextmanager
+def dask(address: str) -> Generator[Submit]:
+    """Use the cluster whose scheduler is at ``address``, e.g. ``tcp://host:8786``; its workers need this package.
+
+    Leaving early drops waiting tasks; a task that a worker has begun runs there to its end. Raises NoClusterError.
+    """
+    try:
+        distributed: Any = import_module("distributed")  # it has no types, and may not be installed
+    except ImportError as error:
+        raise NoClusterError(f"{needs(f'--dask {address}', 'Dask', 'cluster')} ({error})") from error
+    try:
+        client = distributed.Client(address, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise NoClusterError(f"--dask {address}: no scheduler answers there: {in_words(error)}") from error
+    try:
+        # Not pure: equal tasks run again. No retries: a lost worker counts as a result.
+        yield client.get_executor(pure=False, retries=0).submit
+    finally:
+        client.close()

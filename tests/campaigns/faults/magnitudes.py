@@ -13,11 +13,11 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from time import process_time
 
 from sim.faults import Parametric
 from sim.machines.wheel_on_belt.faults import PARAMETRIC
 from sim.machines.wheel_on_belt.faults.catalogue import ASSEMBLY
-from tester.base.clock import cpu_seconds
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import FIRST, KnownRatio
 from tester.kinds.wheel_on_belt.run.past_runs import known_from, ratios_of
 from tests.campaigns.faults.judge import Case, Judge
@@ -160,7 +160,7 @@ def attempt(row: Parametric, value: float, corner: str, place: tuple[str, str]) 
 def tried(stage: Stage, moment: Moment, order: Order) -> Trial:
     """Let a fault begin on this stage."""
     row, value = PARAMETRIC[order.phrase], order.value
-    began_s, said = cpu_seconds(), len(stage.ledger.journal)
+    began_s, said = process_time(), len(stage.ledger.journal)
     stage.observer.forget()
     case = Case(moment.recipe, moment.tick, moment.place, (row.text(value),))
     watched_s = _WATCHED_S[kind_of_place(row.kind.phrase)]
@@ -170,7 +170,7 @@ def tried(stage: Stage, moment: Moment, order: Order) -> Trial:
     seen = stage.observer
     return Trial(
         value, stage.trip or stage.run.reason or ended, tuple(verdict.failures), seen.most_n, seen.most_hub_c,
-        seen.most_contact_c, seen.most_power_w, seen.most_standing_j, cpu_seconds() - began_s,
+        seen.most_contact_c, seen.most_power_w, seen.most_standing_j, process_time() - began_s,
     )  # fmt: skip
 
 

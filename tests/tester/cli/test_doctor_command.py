@@ -14,7 +14,7 @@ from tester.base.lock import FOLDER_VARIABLE, ExclusiveUse
 from tester.cli.main import invoke
 from tester.kinds import load_rig
 from tester.run.preconditions import buses_of
-from tester.run.sim_process import reached_over_tcp
+from tests.tester.run.reached import reached_over_tcp
 
 QUICK = ("--quick", "--seconds", "1")
 

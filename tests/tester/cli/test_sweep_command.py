@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.run.sweep import executors
+from tester.run.sweep import sweep
 from tester.run.sweep.case import CaseResult, SweepTask
-from tester.run.sweep.executors import Submit
+from tester.run.sweep.sweep import Submit
 from tests.tester.run.sweep.results import result, row
 
 
@@ -40,7 +40,7 @@ def jobs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         asked.append(jobs)
         yield submit
 
-    monkeypatch.setattr(executors, "local", at_once)
+    monkeypatch.setattr(sweep, "local", at_once)
     return asked
 
 

@@ -20,8 +20,8 @@ from tester.machine.connect import Connector, Stage
 from tester.machine.tickers import TickStatistics, run_real_time
 from tester.run.bus_log import BusLog
 from tester.run.rig_wires import hardware_ports
-from tester.run.sim_process import reached_over_tcp
 from tester.run.simulated import simulated_ports
+from tests.tester.run.reached import reached_over_tcp
 
 
 class Connecting:

@@ -8,7 +8,7 @@ import pytest
 
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.run.sim_process import reached_over_tcp
+from tests.tester.run.reached import reached_over_tcp
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
 from tester.kinds.wheel_on_belt.served.manual import WheelHand
 from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.service.commands import Arm, Hold, Jog, Stop, Tare
-from tester.service.manual_mode import left_on_rig
+from tester.service.preflight import left_on_rig
 from tester.service.service_link import Presence
 from tester.service.state_view import StateView
 from tester.store.records import PieceInfo, RunInfo

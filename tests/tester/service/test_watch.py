@@ -20,7 +20,7 @@ def test_a_soak_is_shown_with_how_long_it_has_been_in_band() -> None:
     while not stage.ended and (not shown or shown[-1].in_band_s < 1.9):
         now = stage.next_s
         stage.tick()
-        if (soak := watch.soak(now)) is not None:
+        if (soak := watch.panel.soak(now)) is not None:
             shown.append(soak)
     # First the surface is brought near, which needs no time in band; then it soaks, near ambient in band at once.
     soaking = [soak for soak in shown if soak.for_s]

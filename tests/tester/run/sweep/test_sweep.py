@@ -14,9 +14,8 @@ from tester.base.source import InvalidSource
 from tester.kinds import hardware_text
 from tester.run.sweep import sweep as module
 from tester.run.sweep.case import CaseResult, SweepTask, run_case
-from tester.run.sweep.executors import local
 from tester.run.sweep.grid import axes_of
-from tester.run.sweep.sweep import NotSimulatedError, Sweep, SweepOptions, carry_out, prepare_sweep
+from tester.run.sweep.sweep import NotSimulatedError, Sweep, SweepOptions, carry_out, local, prepare_sweep
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 from tests.tester.run.sweep.results import result, row
 

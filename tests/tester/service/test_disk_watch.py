@@ -15,9 +15,9 @@ def test_a_disk_that_hangs_holds_up_no_state_and_is_an_alarm(tmp_path: Path, mon
         answer.wait()
         return 1
 
-    monkeypatch.setattr("tester.service.state_publisher.FreeRoom.__init__.__defaults__", (hang,))
-    monkeypatch.setattr("tester.service.state_publisher.DISK_FIRST_S", 0.0)
-    monkeypatch.setattr("tester.service.state_publisher.DISK_EVERY_S", 0.0)
+    monkeypatch.setattr("tester.service.disk_watch.FreeRoom.__init__.__defaults__", (hang,))
+    monkeypatch.setattr("tester.service.disk_watch.FIRST_S", 0.0)
+    monkeypatch.setattr("tester.service.disk_watch.EVERY_S", 0.0)
     monkeypatch.setattr("tester.service.state_publisher.SNAPSHOT_S", 0.0)
 
     def script(stage: Stage) -> Script:
