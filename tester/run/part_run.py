@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from drivers.ports import BusLost
 from tester.base import clock
@@ -41,29 +41,26 @@ STATE_EVERY_S = 1.0
 """Period for storing the specimen's state, s of wall time: an interruption loses at most this much."""
 
 
-class PartWatch(Protocol):
-    """Watches a part while it runs."""
+class PartWatch:
+    """Watches a part while it runs; this one only counts."""
 
-    statistics: TickStatistics
-    """Receives how punctual the ticks are, in real time."""
-    track: TimeLeft
-    """Counts the run's steps; updated before each poll."""
+    def __init__(self, track: TimeLeft) -> None:
+        """``track`` counts the run's steps; updated before each poll."""
+        self.track = track
+        self.statistics = TickStatistics()
+        """Receives how punctual the ticks are, in real time."""
 
     def begun(self, run: Run) -> None:
         """Receive the run: from now on it can be stopped."""
-        ...
 
     def say(self, text: str) -> None:
-        """Show a message about the run under way."""
-        ...
+        """Show a message about the run under way; the record has it as well."""
 
     def rested(self) -> None:
         """Note that the run is at rest: nothing ticks any more, but its record is still open."""
-        ...
 
     def poll(self, now_s: float, run: Run) -> None:
         """Look at the run, about ten times a second of wall time."""
-        ...
 
 
 class Unsampled(RunWriter):

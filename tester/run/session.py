@@ -21,7 +21,6 @@ from tester.machine.prompts import Prompts
 from tester.machine.result_keeping import condition_records
 from tester.machine.run import Outcome, Run
 from tester.machine.run_parts import Part
-from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import TimeLeft
 from tester.results.run_files import doubtful, write_all
 from tester.results.run_results import results_of
@@ -41,7 +40,7 @@ from tester.run.folder import (
 from tester.run.kind_lookup import run_parts
 from tester.run.latch import acknowledge, open_trips
 from tester.run.merge_parts import put_together, recover
-from tester.run.part_run import run_part
+from tester.run.part_run import PartWatch, run_part
 from tester.run.pool import WorkerPool
 from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, prepared, told_before
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
@@ -60,11 +59,12 @@ from tester.store.writer import RunWriter
 Got = TypeVar("Got")
 
 
-class Session:
+class Session(PartWatch):
     """Prepares, runs and closes one run."""
 
     def __init__(self, options: SessionOptions, screen: ReportScreen) -> None:
         """Read and write nothing before ``run``."""
+        super().__init__(TimeLeft([]))  # until the plan exists
         self.options = options
         self.screen = LastingScreen(screen, self._lose_screen)
         self.interrupts = 0
@@ -74,9 +74,6 @@ class Session:
         self.ending: RunEnding | None = None
         self.prompts = Prompts(automatic=screen.answer_yes)
         """Prompts of all parts in this process; each prompt has its own number."""
-        self.statistics = TickStatistics()
-        self.track = TimeLeft([])
-        """Counts the steps of the whole run, once the plan exists."""
         self._level = StopLevel.NONE
         self._pool: WorkerPool | None = None
 
@@ -184,9 +181,6 @@ class Session:
     def say(self, text: str) -> None:
         """Show a message on the screen."""
         self.screen.message(text)
-
-    def rested(self) -> None:
-        """Do nothing: the foreground takes no requests while a record is closed."""
 
     def poll(self, now_s: float, run: Run) -> None:
         """Show the run and attend to its prompts."""

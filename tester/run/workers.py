@@ -12,12 +12,11 @@ from typing import NamedTuple
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.run import Outcome, Run
-from tester.machine.tickers import TickStatistics
 from tester.machine.time_left import RunPosition, TimeLeft
 from tester.run.endings import PartEnd, StopLevel
 from tester.run.folder import Job, Work, beginning_of, part_time, read_work
 from tester.run.kind_lookup import recipe_part
-from tester.run.part_run import run_part
+from tester.run.part_run import PartWatch, run_part
 from tester.run.pool import WorkerPool, say, stop_level
 
 POLL_S = 0.1
@@ -85,23 +84,17 @@ def _work_of(job: Job) -> Work:
     return read_work(job.folder)
 
 
-class _Reporting:
+class _Reporting(PartWatch):
     """A watch that reports the part's progress to the parent, and stops the part when the parent asks."""
 
     def __init__(self, part: int, parts: int, track: TimeLeft) -> None:
-        self.part, self.parts, self.track = part, parts, track
-        self.statistics = TickStatistics()
-        self._heard = StopLevel.NONE
+        super().__init__(track)
+        self.part, self.parts = part, parts
+        self._level = StopLevel.NONE
 
     def begun(self, run: Run) -> None:
         """Obey a stop that arrived meanwhile."""
         self._obey(run)
-
-    def say(self, text: str) -> None:
-        """Do nothing: the record has the message, and only simulated rigs run several parts at a time."""
-
-    def rested(self) -> None:
-        """Do nothing: the parent takes STOP."""
 
     def poll(self, now_s: float, run: Run) -> None:
         """Report progress and obey a stop."""
@@ -111,6 +104,6 @@ class _Reporting:
 
     def _obey(self, run: Run) -> None:
         level = stop_level()
-        if level != self._heard:
-            self._heard = level
+        if level != self._level:
+            self._level = level
             level.tell(run)
