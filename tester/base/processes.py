@@ -61,7 +61,9 @@ def handled(handler: Handler) -> AbstractContextManager[None]:
 
 
 def stopped_by_signals(stop: Callable[..., object]) -> AbstractContextManager[None]:
-    """Return a block that calls ``stop(fast=...)`` for signals that ask this process to end, fast from the second one on.
+    """Return a block that calls ``stop(fast=...)`` for signals that ask this process to end.
+
+    ``fast`` from the second signal on.
     """
     signals = 0
 
