@@ -13,8 +13,8 @@ from drivers.transports.tcp_line import TcpLine, open_tcp_line
 from tester.base.clock import UrgentPace
 from tester.base.processes import RealTimePriority
 from tester.inputs.rig import LineConfig, Rig
-from tester.machine.attendant import NoAttendant
 from tester.machine.rig_ports import Ports
+from tester.machine.run_parts import NoAttendant
 from tester.run.bus_log import BusLog
 
 if TYPE_CHECKING:

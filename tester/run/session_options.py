@@ -8,7 +8,7 @@ from pathlib import Path
 from tester.base.processes import EXIT_USAGE
 from tester.base.words import plain_text
 from tester.inputs.rig import Rig
-from tester.inputs.rig.ceilings import counts_as_simulated
+from tester.inputs.rig.risks import counts_as_simulated
 from tester.run.endings import CannotStartError
 from tester.run.kind_lookup import run_parts
 from tester.run.reporter import ReportScreen
