@@ -29,6 +29,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Rest,
     WheelCondition,
     WheelPlan,
+    starts_of,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
 
@@ -80,7 +81,7 @@ class WheelEstimator(Estimator):
     def walk(self, plan: Plan) -> list[StepEstimate]:
         """Return an estimate for every step; the wheel's temperature is carried from one to the next."""
         compound = ""
-        part = (0, 0)
+        starts = self._part_starts(plan)
         body_c = self.ambient_c
         cold_rubber = False
         last: WheelCondition | None = None
@@ -106,13 +107,13 @@ class WheelEstimator(Estimator):
             if last is not None:
                 body_c = self.body.steady_c(last.setpoint.number("temperature"))
                 last = None
-            if self._begins_part(plan, place, part):
+            if place in starts:
                 body_c, before = self.ambient_c, Before(self.ambient_c)
             if cold_rubber and isinstance(step, Rest):
                 estimate = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
             else:
                 if isinstance(step, Install):
-                    compound, part = step.compound, (step.specimen, step.replicate)
+                    compound = step.compound
                 cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, PromptStep))
                 if isinstance(step, Heat):
                     before.heat(self.body.surface_c(body_c))
@@ -140,20 +141,14 @@ class WheelEstimator(Estimator):
         turn_s = self.costs.turn_m / step.setpoint.number("wheel_speed")
         return self.constants.roll_check_s + ROLL_CHECK_TURNS * turn_s
 
-    def _begins_part(self, plan: Plan, place: int, part: tuple[int, int]) -> bool:
-        """Return whether a step is the first of a further part on a rig of its own: its wheel, or a cool-down before.
-
-        ``part``: specimen and replicate before, zeros for none. A rig of its own is at ambient, with nothing to cool.
-        """
-        if not self._in_parts(plan) or part == (0, 0):
-            return False
-        step = plan.steps[place]
-        if isinstance(step, Cool) and place + 1 < len(plan.steps):
-            step = plan.steps[place + 1]
-        return isinstance(step, Install) and (step.specimen, step.replicate) != part
-
     def _in_parts(self, plan: Plan) -> bool:
         return self.parts and not (isinstance(plan, WheelPlan) and plan.references)  # that of manual mode is plain
+
+    def _part_starts(self, plan: Plan) -> set[int]:
+        """Return the positions of the steps with which further parts begin: each is on a rig of its own, at ambient."""
+        if not self._in_parts(plan):
+            return set()
+        return set(starts_of(plan.steps, lambda install: (install.specimen, install.replicate))[1:])
 
     def _until(self, before: Before, step: WheelCondition, estimate: StepEstimate) -> StepEstimate:
         """Return an estimate with the repeats that a precision takes early in a run, when few repeats are pooled."""

@@ -61,7 +61,7 @@ def reversal_problems(measure: MeasureModel, grid: GridModel, at: Location, tree
             message = f"slip_velocity: {show(slip, 'm/s')} has no direction to reverse"
             yield tree.problem(place, f"{message} (expected another slip, or {KEY}: false in this grid)")
         for wheel in speeds:
-            yield from _belt_stands(wheel, slip, place, tree)
+            yield from _belt_stands(wheel, slip, place, tree, turned=True)
     for axis in POSITIONED:
         for index, angle in enumerate(numbers(listed(grid, axis))):
             if angle != 0.0:
@@ -71,12 +71,16 @@ def reversal_problems(measure: MeasureModel, grid: GridModel, at: Location, tree
                 yield tree.problem(place, f"{message} (expected 0 {axis.recipe_unit}, or {KEY}: false in this grid)")
 
 
-def _belt_stands(wheel: float, slip: float, place: Location, tree: Tree) -> Iterator[Problem]:
-    belt = round(wheel + slip, 9)
+def _belt_stands(
+    wheel: float, slip: float, place: Location, tree: Tree, *, turned: bool = False
+) -> Iterator[Problem]:
+    """Yield that the belt would stand or run backwards at a slip, or at its reverse (``turned``)."""
+    belt = round(wheel + slip if turned else wheel - slip, 9)
     if belt < LEAST_SPEED_M_S:
-        message = f"slip_velocity: {show(slip, 'm/s')}, reversed by {KEY}, leaves {show(belt, 'm/s')} for the belt"
+        asked = f"slip_velocity: {show(slip, 'm/s')}" + (f", reversed by {KEY}," if turned else "")
+        message = f"{asked} leaves {show(belt, 'm/s')} for the belt at a wheel speed of {show(wheel, 'm/s')}"
         expected = f"(expected at least {LEAST_SPEED_M_S} m/s: a standing belt is never loaded)"
-        yield tree.problem(place, f"{message} at a wheel speed of {show(wheel, 'm/s')} {expected}")
+        yield tree.problem(place, f"{message} {expected}")
 
 
 _TILTED = "a tilted tread carries more on one side, which slides faster one way and slower the other way"
@@ -84,9 +88,10 @@ _TILTED = "a tilted tread carries more on one side, which slides faster one way 
 
 def _yawed(slips: list[tuple[int, float]], speeds: list[float], angle: float) -> str:
     for (_, slip), wheel in product(slips, speeds):
-        one, other = (hypot(wheel - belt * cos(radians(angle)), belt * sin(radians(angle)))
-                      for belt in (wheel - slip, wheel + slip))  # fmt: skip
-        return f"it slides at {show(round(one, 3), 'm/s')} one way and at {show(round(other, 3), 'm/s')} the other way"
+        ways = (hypot(wheel - belt * cos(radians(angle)), belt * sin(radians(angle)))
+                for belt in (wheel - slip, wheel + slip))  # fmt: skip
+        straight, turned = (show(round(way, 3), "m/s") for way in ways)
+        return f"it slides at {straight} one way and at {turned} the other way"
     return "it slides at another speed the other way"
 
 
@@ -110,7 +115,7 @@ class WheelPart(RecipePart):
         return wheel_settings(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-        """Yield that there is nothing to do (grinding a wheel alone is something), and what a reference has wrong."""
+        """Yield that there is nothing to do (grinding a wheel alone is something), and faults of the reference."""
         top = tree.data if isinstance(tree.data, dict) else {}
         if not top.get("grids") and top.get("pre_grind") is None:
             yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
@@ -118,26 +123,19 @@ class WheelPart(RecipePart):
             yield from reference_problems(for_wheels(recipe), tree)
 
     def sense(self, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
-        """Yield each slip at which the belt would stand or run backwards, and what cannot be reversed."""
+        """Yield each slip at which the belt would stand or run backwards, and slips that cannot be reversed."""
         yield from reversal_problems(measure, grid, at, tree)
         slips, speeds = grid.axes["slip_velocity"], grid.axes["wheel_speed"]
         for index, slip in enumerate(numbers(listed(grid, slips))):
             for wheel in numbers(values_of(speeds, measure, grid)):
-                belt = round(wheel - slip, 9)
-                if belt < LEAST_SPEED_M_S:
-                    message = (
-                        f"slip_velocity: {show(slip, 'm/s')} leaves {show(belt, 'm/s')} for the belt at a wheel speed "
-                        f"of {show(wheel, 'm/s')} (expected at least {LEAST_SPEED_M_S} m/s: "
-                        "a standing belt is never loaded)"
-                    )
-                    yield tree.problem((*at, "slip_velocity", index), message)
+                yield from _belt_stands(wheel, slip, (*at, "slip_velocity", index), tree)
 
     def limits(self, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield what is beyond the rig's limits."""
+        """Yield values beyond the rig's limits."""
         yield from limit_problems(tree, RigConfig.of(rig))
 
     def terms(self, rig: Rig) -> tuple[Term, ...]:
-        """Return what the measuring chain may be off by, the cell's calibration included."""
+        """Return the possible errors of the measuring chain, the cell's calibration included."""
         known = RigConfig.of(rig).calibration
         return terms_of(known.cell_sensitivity, known.record)
 
@@ -146,28 +144,28 @@ class WheelPart(RecipePart):
         return not rig.simulated or RigConfig.of(rig).sim.friction_model in MODEL_NAMES
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield what would wear a wheel beyond ``wheel.replace_after`` in one go."""
+        """Yield conditions that wear a wheel beyond ``wheel.replace_after`` in one go."""
         yield from wear_problems(for_wheels(recipe), tree, RigConfig.of(rig))
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> WheelEstimator:
-        """Return what tells how long steps take on a rig."""
+        """Return the estimator of a rig."""
         return WheelEstimator(RigConfig.of(rig), repeatability=repeatability)
 
     def expand(self, recipe: Recipe, rig: Rig, estimator: Estimator | None = None) -> WheelPlan:
         """Return the plan of a valid recipe on a rig; its wear rate and geometry decide the wheel changes."""
-        own = estimator if isinstance(estimator, WheelEstimator) else None
-        return expand(for_wheels(recipe), RigConfig.of(rig), own)
+        wheels = estimator if isinstance(estimator, WheelEstimator) else None
+        return expand(for_wheels(recipe), RigConfig.of(rig), wheels)
 
     def remaining(self, plan: Plan, stand: Stand) -> WheelPlan:
         """Return the plan of what is left to do after an interruption."""
         return remaining(WheelPlan.of(plan), stand)
 
     def words(self, step: Step, one: StepEstimate) -> str:
-        """Return what a step does, in a line."""
+        """Return a step in words, as a line."""
         return describe.words(step, one)
 
     def heading(self, plan: Plan, step: Step) -> str:
-        """Return what is on a wheel where it is installed."""
+        """Return a wheel's compound and predicted loss, where it is installed."""
         return describe.heading(WheelPlan.of(plan), step) if isinstance(step, Install) else ""
 
     def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
@@ -179,7 +177,7 @@ class WheelPart(RecipePart):
         return describe.plan_fields(WheelPlan.of(plan), estimate)
 
     def step_fields(self, step: Step, one: StepEstimate) -> dict[str, object]:
-        """Return what a plan's JSON says of a step that is no condition."""
+        """Return a step's fields in a plan's JSON, for a step other than a condition."""
         return describe.step_fields(step, one)
 
     def condition_fields(self, step: ConditionStep, one: StepEstimate) -> dict[str, object]:

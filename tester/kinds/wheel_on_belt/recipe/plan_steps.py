@@ -5,7 +5,7 @@ Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias
 
@@ -147,3 +147,15 @@ class WheelPlan(Plan):
         for step in self.steps:
             if isinstance(step, WheelCondition):
                 yield step
+
+
+def starts_of(steps: Sequence[Step], part: Callable[[Install], object]) -> list[int]:
+    """Return the positions at which another part of a plan begins: its first Install, or a Cool before it; first 0."""
+    starts = [0]
+    before: object = None
+    for position, step in enumerate(steps):
+        if isinstance(step, Install):
+            if before is not None and part(step) != before:
+                starts.append(position - 1 if isinstance(steps[position - 1], Cool) else position)
+            before = part(step)
+    return starts

@@ -8,7 +8,7 @@ references, everything behind the first step that is left is left as well.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from tester.inputs.recipe.plan import Mounted, PromptStep, Stand
@@ -21,6 +21,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     WheelCondition,
     WheelPlan,
     WheelStep,
+    starts_of,
 )
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel
 
@@ -28,23 +29,11 @@ from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_whe
 def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
     """Return the plan of the steps that are left; without steps where none is."""
     steps: list[WheelStep] = []
-    for segment in _segments(plan):
+    starts = starts_of(plan.steps, lambda install: install.specimen)
+    for begin, end in zip(starts, [*starts[1:], None], strict=True):
+        segment = plan.steps[begin:end]
         steps += segment if steps and plan.references else _rest_of(plan, segment, stand)
     return replace(plan, steps=tuple(steps))
-
-
-def _segments(plan: WheelPlan) -> Iterator[Sequence[WheelStep]]:
-    """Yield the steps of each specimen; a Cool before a wheel is mounted belongs to that wheel."""
-    first, specimen = 0, 0
-    for place, step in enumerate(plan.steps):
-        if not isinstance(step, Install) or step.specimen == specimen:
-            continue
-        begin = place - 1 if place and isinstance(plan.steps[place - 1], Cool) else place
-        if specimen:
-            yield plan.steps[first:begin]
-            first = begin
-        specimen = step.specimen
-    yield plan.steps[first:]
 
 
 def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> list[WheelStep]:

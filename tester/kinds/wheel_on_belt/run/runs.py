@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Final
@@ -13,7 +13,7 @@ from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tester.kinds.wheel_on_belt.procedures.on_record import record_state
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
-from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Install, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Install, WheelPlan, starts_of
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.run.past_runs import known_heat
@@ -30,7 +30,7 @@ from tester.store.resumable import ResumePoint
 
 def split(plan: Plan) -> tuple[Part, ...]:
     """Return the parts of a plan in its order; at least one."""
-    starts = _starts(plan.steps)
+    starts = starts_of(plan.steps, lambda install: (install.specimen, install.replicate))
     last_wheel = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
     if len(starts) == 1 or WheelPlan.of(plan).references:
         return (Part(1, plan, last_wheel),)
@@ -50,20 +50,6 @@ def _part_of(plan: Plan, steps: tuple[Step, ...], wheels: set[int]) -> Plan:
     """Return the plan of some of the steps, with the wear of their wheels."""
     whole = WheelPlan.of(plan)
     return replace(whole, steps=steps, wear=tuple(wear for wear in whole.wear if wear.wheel in wheels))
-
-
-def _starts(steps: Sequence[Step]) -> list[int]:
-    """Return the positions of the steps with which a specimen or a replicate begins; the first is 0."""
-    starts = [0]
-    before: tuple[int, int] | None = None
-    for position, step in enumerate(steps):
-        if not isinstance(step, Install):
-            continue
-        place = (step.specimen, step.replicate)
-        if before is not None and place != before:
-            starts.append(position - 1 if isinstance(steps[position - 1], Cool) else position)
-        before = place
-    return starts
 
 
 class WheelRuns(KindRun):
