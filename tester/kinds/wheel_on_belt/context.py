@@ -131,5 +131,5 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         return self.readings.force_z_n > CONTACT_N or self.demand.press is _LOAD
 
     def known(self) -> list[str]:
-        """Return what earlier heatings make known."""
+        """Return the history of earlier heatings."""
         return [f"heat balance: {self.view.heat_known}"]

@@ -123,7 +123,7 @@ def _numbers_of(axes: Axes) -> Callable[[tuple[AxisValue, ...]], tuple[float, ..
 
 
 def held_by(setpoint: Setpoint) -> Held:
-    """Return what a setpoint of this machine's axes holds, whatever else it has (a laboratory's own kind)."""
+    """Return the quantities of a setpoint; further axes of a laboratory's own kind are ignored."""
     slip_m_s, load_n, temperature_c, wheel_m_s, *positions = _numbers_of(setpoint.axes)(setpoint.values)
     return Held(
         setpoint.compound, slip_m_s, load_n, temperature_c, wheel_m_s, dict(zip(_NAMES, positions, strict=True))

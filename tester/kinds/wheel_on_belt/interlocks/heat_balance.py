@@ -157,7 +157,7 @@ NO_HISTORY: Final = KnownRatio()
 
 
 def known_ratio(ratios: Sequence[float], widest: float, known: float) -> KnownRatio:
-    """Return what the ratios of a rig's heatings, the oldest first, make known; ``widest``, ``known``: as in ``share``.
+    """Return the history of a rig by the ratios of its heatings, oldest first; ``widest``, ``known``: as in ``share``.
 
     The ratio is the median of the newest, but never more than that of the first ones that agree within ``known``. A
     supply that drifts by 1 % a run would shift the newest, so that each run agrees with the one before it; the first

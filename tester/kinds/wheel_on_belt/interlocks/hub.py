@@ -61,7 +61,7 @@ RUNAWAY_DELAY_S: Final = Parameter(
 
 
 def _highest_c(v: Inputs) -> float:
-    """Return what the hub may be by its setpoints, the highest of those that count, and ``runaway``, degC."""
+    """Return the limit of the hub, degC: the highest of the setpoints that count, and ``runaway``."""
     r, setpoints = v.readings, v.hub_setpoints
     # A hub that was hot takes longer to cool than the window is: without output it must not get hotter again,
     # except by a rubber that friction has made hotter than itself.
@@ -233,7 +233,7 @@ FROZEN_HUB_SHARE: Final = Parameter(
 
 
 def _still_most_k(v: Inputs) -> float:
-    """Return how much heat a standing reading may hide, K of hub: little where the hub is close to its limit."""
+    """Return the heat that a constant reading may hide, K of hub: little where the hub is close to its limit."""
     p = v.parameters
     away_k = v.limits.jacket_c - v.readings.hub_c
     return max(p[FROZEN_HUB_K], p[FROZEN_HUB_SHARE] * away_k)

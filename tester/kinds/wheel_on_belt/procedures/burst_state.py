@@ -101,7 +101,7 @@ def slides_reversed(step: WheelCondition, repeat: int) -> bool:
 
 
 def run_in_m(step: WheelCondition, repeat: int) -> float:
-    """Return how far a repeat slides before it counts, m: the first of a condition, and each that turns round."""
+    """Return how far a repeat slides before it counts, m: the first of a condition, and after each reversal."""
     turned = repeat == 1 or slides_reversed(step, repeat) is not slides_reversed(step, repeat - 1)
     return step.run_in_m if step.both_directions and turned else 0.0
 

@@ -31,7 +31,7 @@ def record_state(recorder: Recorder, ctx: Context, now_s: float) -> None:
 
 
 def travel_of(ctx: Context) -> Travel:
-    """Return how far the belt has travelled under load, and the wheel has slid."""
+    """Return the belt's travel under load and the wheel's sliding distance."""
     return Travel(ctx.belt_travel_m, ctx.wheel.sliding_m)
 
 

@@ -47,7 +47,7 @@ class Straighten:
 
 
 def soak_within_k(soak: Soak, setpoint_c: float, ambient_c: float, band_k: float) -> float:
-    """Return how near the surface must come, in K: the recipe's value, or the band near ambient."""
+    """Return the tolerance of a soak, K: the recipe's value, or the band near ambient."""
     return band_k if abs(setpoint_c - ambient_c) <= NEAR_AMBIENT_K else soak.within_k
 
 

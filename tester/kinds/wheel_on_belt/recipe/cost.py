@@ -111,7 +111,7 @@ class ConditionCosts:
         return self.loss_mm_per_nm * load_n * sliding_m
 
     def of(self, setpoint: Setpoint, how: Procedure) -> StepEstimate:
-        """Return what holding a setpoint takes when it is measured like this."""
+        """Return the estimate of a condition: a setpoint, measured with these settings."""
         procedure = (
             how.repeats, how.at_most, how.until_percent, how.window, how.temperature_band_k, how.soak, how.max_bursts,
             how.both_directions, how.run_in_m,

@@ -122,7 +122,7 @@ class WheelEstimator(Estimator):
         return result
 
     def _checks_s(self, plan: Plan, place: int, step: Step) -> float:
-        """Return what the roll checks of a step take, s.
+        """Return the time of a step's roll checks, s.
 
         A new wheel is checked as it is mounted, each condition at its beginning, and the wheel once more after its
         last condition (``WheelProcedures``).
@@ -137,7 +137,7 @@ class WheelEstimator(Estimator):
         return 0.0
 
     def _roll_check_s(self, step: WheelCondition) -> float:
-        """Return what a check of the diameter by rolling takes: its moves, and whole turns at the wheel's speed, s."""
+        """Return the time of a check of the diameter by rolling, s: its moves, and whole turns at the wheel's speed."""
         turn_s = self.costs.turn_m / step.setpoint.number("wheel_speed")
         return self.constants.roll_check_s + ROLL_CHECK_TURNS * turn_s
 
@@ -244,7 +244,7 @@ class WheelEstimator(Estimator):
         )
 
     def condition(self, step: WheelCondition) -> StepEstimate:
-        """Return what a condition takes, without the heating before it."""
+        """Return a condition's estimate, without the heating before it."""
         return self.costs.of(step.setpoint, step)
 
     def _after_person(
@@ -262,12 +262,12 @@ class WheelEstimator(Estimator):
         return estimate._replace(seconds=seconds + warmed.seconds)
 
     def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
-        """Return what a question at the wheel takes: cooling, turning, until it may be touched; its contact again."""
+        """Return the estimate of a question at the wheel: cooling while it turns, and its contact again."""
         cool, body_c = self._preparation(TOUCH, "", body_c)
         return StepEstimate(cool.seconds + self.person_s + self.constants.install_s), body_c
 
     def pre_grind(self, step: PreGrind, compound: str) -> StepEstimate:
-        """Return what grinding a new wheel takes."""
+        """Return the estimate of grinding a new wheel."""
         slip = abs(step.wheel_speed_m_s - step.belt_speed_m_s)
         power = self.costs.mu(compound, self.ambient_c, step.load_n, slip, 0.0) * step.load_n * slip
         sliding = slip * step.duration_s
@@ -280,7 +280,7 @@ class WheelEstimator(Estimator):
         )
 
     def _preparation(self, step: Step, compound: str, body_c: float) -> tuple[StepEstimate, float]:
-        """Return what a step other than a condition takes, and the wheel's mean temperature after it."""
+        """Return the estimate of a step other than a condition, and the wheel's mean temperature after it."""
         c = self.constants
         match step:
             case Install():

@@ -71,7 +71,7 @@ def change_points(losses: Sequence[Sequence[float]], first_mm: float, limit_mm: 
 
 
 def _changes(sums: list[float], start: int, room: float, fresh: float) -> int:
-    """Return how many changes the conditions from ``start`` on need if each wheel is used up, mm left ``room``."""
+    """Return the number of wheel changes from condition ``start`` on if each wheel is used up; ``room``: mm left."""
     changes = 0
     while True:
         reached = bisect_right(sums, sums[start] + room, lo=start) - 1

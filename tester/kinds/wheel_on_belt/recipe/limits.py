@@ -76,7 +76,7 @@ class _Case(NamedTuple):
 
 
 def limit_problems(tree: Tree, rig: RigConfig) -> list[Problem]:
-    """Return what is beyond the rig's limits, as far as the tree's values can be read."""
+    """Return values beyond the rig's limits, as far as the tree's values can be read."""
     return sorted(set(_Limits(tree, rig).problems()))
 
 

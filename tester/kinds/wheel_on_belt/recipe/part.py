@@ -111,7 +111,7 @@ class WheelPart(RecipePart):
     """As in the recipes of the paper's tables."""
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> WheelSettings:
-        """Return how the conditions of a grid are measured."""
+        """Return the settings of a grid's conditions."""
         return wheel_settings(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:

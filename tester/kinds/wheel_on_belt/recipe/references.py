@@ -55,7 +55,7 @@ def reference_condition(recipe: WheelRecipe) -> Condition[WheelSettings] | None:
 
 
 def reference_problems(recipe: WheelRecipe, tree: Tree) -> Iterator[Problem]:
-    """Yield what makes no sense in a recipe's reference condition, whatever the rig."""
+    """Yield faults of a recipe's reference condition that do not depend on the rig."""
     reference, measure = recipe.reference, recipe.measure
     if reference is None:
         return
@@ -156,5 +156,5 @@ class ReferenceRounds:
         return [Heat(INSERTED, to_c)]
 
     def hub_below_c(self, to_c: float) -> float:
-        """Return what the hub has to come down to before a surface can be held at a temperature, degC."""
+        """Return the hub temperature, degC, below which a surface can be held at ``to_c``."""
         return max(to_c, self._ambient_c + ABOVE_AMBIENT_K)

@@ -67,7 +67,7 @@ class _LimitsConfig:
     """At most 130 degC: above it docs/kinds/wheel-on-belt.md counts harm."""
 
     def positions(self) -> dict[str, float]:
-        """Return how far the positioned axes may go to either side, by name."""
+        """Return the limits of the positioned axes to either side, by name."""
         return {axis.name: getattr(self, axis.field) for axis in POSITIONED}
 
 

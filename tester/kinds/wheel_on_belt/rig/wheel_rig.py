@@ -248,5 +248,5 @@ class RigConfig(Rig):
         return with_torque_limit(self)
 
     def problems(self) -> Iterator[tuple[Location, str]]:
-        """Yield what does not fit together between the kind's sections, with its place."""
+        """Yield inconsistencies between the kind's sections, with their places."""
         return problems_between(self)

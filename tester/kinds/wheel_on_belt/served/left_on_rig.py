@@ -50,7 +50,7 @@ class HeatHistory:
 
 
 def left_by(reader: RunReader, name: str) -> WheelLeft:
-    """Return what a run of this name left on its rig. Raises StoreError."""
+    """Return the wheel and the zero that a run of this name left on its rig. Raises StoreError."""
     wheel = max(reader.pieces(), key=lambda piece: (piece.installed_s, piece.piece), default=None)
     return WheelLeft(name, wheel, _tare_utc(reader))
 
@@ -64,7 +64,7 @@ def _tare_utc(reader: RunReader) -> str:
 
 
 def wheel_check(left: WheelLeft | None) -> Check:
-    """Return what is known of the wheel that is on; a run begins by asking for a fresh one."""
+    """Return the known state of the wheel that is on; a run begins by asking for a fresh one."""
     wheel = left.wheel if left is not None else None
     if wheel is None or not isfinite(wheel.diameter_mm):
         return Check("wheel", None, "none on record; a fresh one comes")
@@ -74,7 +74,7 @@ def wheel_check(left: WheelLeft | None) -> Check:
 
 
 def zero_check(left: WheelLeft | None, now_utc: str) -> Check:
-    """Return how old the zero of the load cell is; a run takes one for each wheel and before each repeat."""
+    """Return the age of the load cell's zero; a run takes one for each wheel and before each repeat."""
     anew = "taken anew before motion"
     if left is None or not left.tare_utc:
         return Check(CELL_ZERO, None, anew)

@@ -29,7 +29,7 @@ PRESS = "The press stops where it is: where no spring lifts it, its load stays o
 
 
 def left_alone(rig: RigConfig) -> str:
-    """Return what drives and heating do, and by when, from the rig file's numbers."""
+    """Return the unattended behaviour of drives and heating with its times, from the rig file's numbers."""
     return drives_alone(rig, PRESS, _heating(rig))
 
 
@@ -60,7 +60,7 @@ class WheelOnBelt(ServedKind):
         return WheelPanel(engine)
 
     def alone(self, rig: Rig) -> str:
-        """Return what drives and heating do by themselves."""
+        """Return the behaviour of drives and heating without a master."""
         return left_alone(RigConfig.of(rig))
 
     def left(self, reader: RunReader, name: str) -> WheelLeft:
