@@ -37,7 +37,7 @@ from operator import mul
 from tester.analysis.blocks import Block
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN
-from tester.analysis.stability import MIN_BLOCKS, centred
+from tester.analysis.stability import ANY_LENGTH, MIN_BLOCKS, Window, centred
 from tester.base.quantities import temperatures
 
 DRIFT_LIMIT_PERCENT = 2.0
@@ -163,7 +163,7 @@ def burst_lengths(blocks: Sequence[Block]) -> list[int]:
     return lengths
 
 
-def _series(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> _Series:
+def _series(blocks: Sequence[Block], window: Window) -> _Series:
     mu = [block.mu for block in blocks]
     mean = sum(mu) / len(mu)
     times: list[float] = []
@@ -173,7 +173,7 @@ def _series(blocks: Sequence[Block], revolutions: float | None, seconds: float |
         times.append(elapsed + 0.5 * duration)
         elapsed += duration
     per_block = elapsed / len(blocks)
-    window_s = revolutions * per_block if revolutions is not None else seconds or elapsed
+    window_s = window.revolutions * per_block if window.revolutions is not None else window.seconds or elapsed
     y = [value / mean - 1.0 for value in mu]
     t = [time / window_s for time in centred(times)]
     c = centred(temperatures(block.means for block in blocks))
@@ -291,24 +291,18 @@ def _singles(series: Sequence[_Series], fit: _Fit) -> tuple[OneDrift, ...]:
 
 
 def fit_drift(
-    repeats: Sequence[Sequence[Block]],
-    revolutions: float | None = None,
-    seconds: float | None = None,
-    confidence: float = CONFIDENCE,
+    repeats: Sequence[Sequence[Block]], window: Window = ANY_LENGTH, confidence: float = CONFIDENCE
 ) -> Drift:
-    """Return the drift of repeats, each given by its valid blocks, per window of ``revolutions`` or accepted
-    ``seconds``.
+    """Return the drift of repeats, each given by its valid blocks, per window (of any length: that of each repeat).
 
-    ``confidence``: of the bound, one-sided.
-
-    Without either, the window is the length of each repeat. Repeats of fewer than six blocks or without a coefficient
+    ``confidence``: of the bound, one-sided. Repeats of fewer than six blocks or without a coefficient
     are ignored; ``repeats`` of the result then has NaN for them.
     """
     usable = [
         len(blocks) >= MIN_BLOCKS and all(isfinite(b.mu) for b in blocks) and sum(b.mu for b in blocks) > 0.0
         for blocks in repeats
     ]
-    series = [_series(blocks, revolutions, seconds) for blocks, use in zip(repeats, usable, strict=True) if use]
+    series = [_series(blocks, window) for blocks, use in zip(repeats, usable, strict=True) if use]
     if not series:
         return NOTHING
     fit = _fit(series)
@@ -326,9 +320,7 @@ def fit_drift(
     )
 
 
-def refusals(
-    repeats: Sequence[Sequence[Block]], revolutions: float | None = None, seconds: float | None = None
-) -> tuple[Drift, dict[int, OneDrift]]:
+def refusals(repeats: Sequence[Sequence[Block]], window: Window) -> tuple[Drift, dict[int, OneDrift]]:
     """Return the drift of the repeats that remain, and those refused, by position: the worst first, one at a time.
 
     ``repeats`` of the drift lists those that remain, in order.
@@ -336,7 +328,7 @@ def refusals(
     left = list(range(len(repeats)))
     refused: dict[int, OneDrift] = {}
     while left:
-        drift = fit_drift([repeats[i] for i in left], revolutions, seconds, LOOK_CONFIDENCE)
+        drift = fit_drift([repeats[i] for i in left], window, LOOK_CONFIDENCE)
         worst = max(range(len(left)), key=lambda i: drift.repeats[i].excess if drift.repeats else 0.0)
         if not drift.repeats or not drift.repeats[worst].reason:
             return drift, refused

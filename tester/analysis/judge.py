@@ -20,7 +20,7 @@ from tester.analysis.flags import CARRY_OVER, NOT_SHOWN, flags_in, joined
 from tester.analysis.left_out import REPEATABILITY, counting
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN, NOT_JUDGED, Judgement, RepeatResult, RepeatStatus
-from tester.analysis.stability import centred, seconds_of
+from tester.analysis.stability import Window, centred, seconds_of
 from tester.base.quantities import temperatures
 
 ALONE = 2
@@ -40,13 +40,12 @@ def judge(
     results: Sequence[RepeatResult],
     blocks: Sequence[Sequence[Block]],
     planned: int,
-    revolutions: float | None,
-    seconds: float | None,
+    window: Window,
 ) -> tuple[list[RepeatResult], Judgement]:
     """Return a condition's repeats as judged, and the judgement on all of them.
 
     ``results`` are its committed repeats in order, ``blocks`` the valid blocks of each (not needed of a repeat that is
-    not valid). The recipe requests ``planned`` repeats, each with a window of ``revolutions`` or accepted ``seconds``.
+    not valid). The recipe requests ``planned`` repeats, each of one ``window`` or more.
     Valid repeats are judged; their drift and bound are then those of the common fit.
     """
     judged = list(results)
@@ -55,27 +54,26 @@ def judge(
         return judged, NOT_JUDGED
     # Without siblings there is nothing to pool.
     if planned <= ALONE and valid:
-        return judged, _each_alone([results[i] for i in valid], [blocks[i] for i in valid], revolutions, seconds)
+        return judged, _each_alone([results[i] for i in valid], [blocks[i] for i in valid], window)
     # Drift first: a drifting repeat also fluctuates, and the reason must be the drift.
-    drift = _refuse(judged, valid, blocks, revolutions, seconds)
+    drift = _refuse(judged, valid, blocks, window)
     kept = counting(judged)
     if any(judged[i].valid and i not in kept for i in valid):
-        drift = _refuse(judged, kept, blocks, revolutions, seconds)
+        drift = _refuse(judged, kept, blocks, window)
         kept = counting(judged)
     if not kept:
-        return judged, _left_with_refused(judged, blocks, revolutions, seconds)
-    return judged, _judgement(judged, drift, [blocks[i] for i in kept], revolutions, seconds)
+        return judged, _left_with_refused(judged, blocks, window)
+    return judged, _judgement(judged, drift, [blocks[i] for i in kept], window)
 
 
 def _refuse(
     judged: list[RepeatResult],
     positions: Sequence[int],
     blocks: Sequence[Sequence[Block]],
-    revolutions: float | None,
-    seconds: float | None,
+    window: Window,
 ) -> Drift:
     """Put the drift of the repeats at some positions into their results, refuse those that drift; return the fit."""
-    drift, refused = refusals([blocks[i] for i in positions], revolutions, seconds)
+    drift, refused = refusals([blocks[i] for i in positions], window)
     singles = iter(drift.repeats)
     for position, index in enumerate(positions):
         own_drift = refused[position] if position in refused else next(singles, None)
@@ -93,8 +91,7 @@ def _judgement(
     results: Sequence[RepeatResult],
     drift: Drift,
     blocks: Sequence[Sequence[Block]],
-    revolutions: float | None,
-    seconds: float | None,
+    window: Window,
 ) -> Judgement:
     trend, carries = trend_of(results, drift.per_kelvin_percent)
     carries |= _go_the_same_way(results, drift)
@@ -104,7 +101,7 @@ def _judgement(
         drift_error_percent=drift.error_percent,
         drift_bound_percent=drift.bound_percent,
         per_kelvin_percent=drift.per_kelvin_percent,
-        repeat_windows=_windows(blocks, revolutions, seconds),
+        repeat_windows=_windows(blocks, window),
         trend_percent=trend,
         flags=joined(flags),
     )
@@ -125,29 +122,27 @@ def _go_the_same_way(results: Sequence[RepeatResult], drift: Drift) -> bool:
 def _left_with_refused(
     results: Sequence[RepeatResult],
     blocks: Sequence[Sequence[Block]],
-    revolutions: float | None,
-    seconds: float | None,
+    window: Window,
 ) -> Judgement:
     """Return the judgement where no repeat is left: the drift of all that were refused for it."""
     drifting = [i for i, result in enumerate(results) if result.drifts and blocks[i]]
     if not drifting:
         return NOT_JUDGED
     left = [blocks[i] for i in drifting]
-    drift = fit_drift(left, revolutions, seconds, LOOK_CONFIDENCE)
-    judgement = _judgement(results, drift, left, revolutions, seconds)
+    drift = fit_drift(left, window, LOOK_CONFIDENCE)
+    judgement = _judgement(results, drift, left, window)
     return replace(judgement, flags=joined([NOT_SHOWN, *flags_in(judgement.flags)]))
 
 
 def _each_alone(
     results: Sequence[RepeatResult],
     blocks: Sequence[Sequence[Block]],
-    revolutions: float | None,
-    seconds: float | None,
+    window: Window,
 ) -> Judgement:
     """Return the judgement of repeats without siblings: that of the worst."""
-    drift = max((fit_drift([block], revolutions, seconds) for block in blocks), key=_bound)
+    drift = max((fit_drift([block], window) for block in blocks), key=_bound)
     flags = [NOT_SHOWN] if any(NOT_SHOWN in flags_in(result.flags) for result in results) else []
-    windows = _windows(blocks, revolutions, seconds)
+    windows = _windows(blocks, window)
     return Judgement(
         drift.drift_percent, drift.error_percent, drift.bound_percent, drift.per_kelvin_percent, windows,
         flags=joined(flags),
@@ -158,11 +153,11 @@ def _bound(drift: Drift) -> float:
     return drift.bound_percent if isfinite(drift.bound_percent) else inf
 
 
-def _windows(blocks: Sequence[Sequence[Block]], revolutions: float | None, seconds: float | None) -> float:
+def _windows(blocks: Sequence[Sequence[Block]], window: Window) -> float:
     """Return the mean number of windows that a repeat collected."""
-    if revolutions is not None:
-        return sum(len(block) for block in blocks) / (revolutions * len(blocks))
-    return sum(seconds_of(repeat) for repeat in blocks) / (seconds * len(blocks)) if seconds else 1.0
+    if window.revolutions is not None:
+        return sum(len(repeat) for repeat in blocks) / (window.revolutions * len(blocks))
+    return sum(seconds_of(repeat) for repeat in blocks) / (window.seconds * len(blocks)) if window.seconds else 1.0
 
 
 def trend_of(results: Sequence[RepeatResult], per_kelvin_percent: float) -> tuple[float, bool]:

@@ -25,7 +25,7 @@ from tester.analysis.change import change_within
 from tester.analysis.drift import Drift, fit_drift
 from tester.analysis.flags import EXTENDED, NOT_SHOWN, ROLLING, STICK_SLIP, STICK_SLIP_UNKNOWN, TRUNCATED, joined
 from tester.analysis.results import NAN, Burst, RepeatResult, RepeatStatus, Swing
-from tester.analysis.stability import REPEAT_WINDOWS, enough, filled, left_out, seconds_of
+from tester.analysis.stability import ANY_LENGTH, Window, enough, filled, left_out, seconds_of
 from tester.analysis.swing import LIMIT_PERCENT
 from tester.base.quantities import mean_of
 
@@ -72,15 +72,14 @@ def without_value(status: RepeatStatus, reason: str, started_s: float = NAN, end
     return RepeatResult(status=status, reason=reason, started_s=started_s, ended_s=ended_s)
 
 
-def counted(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> Sequence[Block]:
+def counted(blocks: Sequence[Block], window: Window) -> Sequence[Block]:
     """Return the blocks of a repeat that count: those after the transient at its beginning."""
-    return blocks[left_out(blocks, revolutions, seconds) :]
+    return blocks[left_out(blocks, window) :]
 
 
 def reduce_repeat(
     blocks: Sequence[Block],
-    revolutions: float | None = None,
-    seconds: float | None = None,
+    window: Window = ANY_LENGTH,
     *,
     rolling: bool = False,
     alone: bool = False,
@@ -88,7 +87,6 @@ def reduce_repeat(
 ) -> RepeatResult:
     """Return a repeat's result from its blocks, in order of time.
 
-    ``revolutions`` or ``seconds`` is the nominal window of accepted samples (both None: any length will do).
     ``rolling`` marks a condition of 0 mm/s, whose drift is not judged: its coefficient is rolling resistance, next to
     nothing. ``alone``: no siblings to be judged with, so a drift that is not shown to be small is flagged here.
     ``swing``: the swing of friction within a revolution; None where it was not analysed. Status: VALID, TOO_FEW when
@@ -96,13 +94,13 @@ def reduce_repeat(
     """
     if not blocks:
         return without_value(RepeatStatus.TOO_FEW, "not one whole accepted revolution")
-    used = counted(blocks, revolutions, seconds)
-    drift = fit_drift([used], revolutions, seconds)
+    used = counted(blocks, window)
+    drift = fit_drift([used], window)
     result = _averaged(blocks, used, drift)
-    status, reason = _status(blocks, used, revolutions, seconds)
+    status, reason = _status(blocks, used, window)
     if not isfinite(result.mu_resultant) or not (result.mu_resultant > 0.0 or rolling):
         status, reason = RepeatStatus.REFUSED, "coefficient without a value"
-    flags = _flags(blocks, used, revolutions, seconds)
+    flags = _flags(blocks, used, window)
     result = replace(result, status=status, reason=reason)
     if rolling:
         return replace(result, flags=joined([ROLLING, *flags]))
@@ -159,43 +157,35 @@ def _uncertainty(used: Sequence[Block], batches: Sequence[float], drift: Drift) 
     return max(of_batches, of_blocks)
 
 
-def _status(
-    blocks: Sequence[Block], used: Sequence[Block], revolutions: float | None, seconds: float | None
-) -> tuple[RepeatStatus, str]:
-    if enough(used, revolutions, seconds):
+def _status(blocks: Sequence[Block], used: Sequence[Block], window: Window) -> tuple[RepeatStatus, str]:
+    if enough(used, window):
         return RepeatStatus.VALID, ""
     transient = f", {len(blocks) - len(used)} more are transient" if len(used) < len(blocks) else ""
-    if revolutions is None:
-        return RepeatStatus.TOO_FEW, f"{len(used)} revolutions in less than {seconds:g} s{transient}"
-    return RepeatStatus.TOO_FEW, f"{len(used)} of {revolutions:g} revolutions{transient}"
+    if window.revolutions is None:
+        return RepeatStatus.TOO_FEW, f"{len(used)} revolutions in less than {window.seconds:g} s{transient}"
+    return RepeatStatus.TOO_FEW, f"{len(used)} of {window.revolutions:g} revolutions{transient}"
 
 
-def _flags(
-    blocks: Sequence[Block], used: Sequence[Block], revolutions: float | None, seconds: float | None
-) -> list[str]:
-    wanted = revolutions and REPEAT_WINDOWS * revolutions, seconds and REPEAT_WINDOWS * seconds
+def _flags(blocks: Sequence[Block], used: Sequence[Block], window: Window) -> list[str]:
+    wanted = window.of_repeat
     flags: list[str] = []
-    if any(wanted) and len(used) > 1 and enough(used[:-1], *wanted):
+    if wanted != ANY_LENGTH and len(used) > 1 and enough(used[:-1], wanted):
         flags.append(EXTENDED)
     if len(used) < len(blocks):
         flags.append(TRUNCATED)
     return flags
 
 
-def collected(
-    counter: BlockCounter, revolutions: float | None, seconds: float | None, extend_to: float, *, alone: bool
-) -> bool:
-    """Return whether a repeat is complete; one of ``revolutions`` and ``seconds`` is the window, the other is None.
+def collected(counter: BlockCounter, window: Window, *, alone: bool) -> bool:
+    """Return whether a repeat is complete.
 
-    ``extend_to``: the most it collects, in the window's unit. ``alone``: it has no siblings to be judged with, so it is
-    extended until its drift is shown to be small.
+    ``alone``: it has no siblings to be judged with, so it is extended until its drift is shown to be small, at most to
+    ``window.extend_to``.
     """
     blocks = counter.blocks
-    have = float(len(blocks)) if revolutions is not None else counter.seconds
-    if have >= extend_to:
+    have = float(len(blocks)) if window.revolutions is not None else counter.seconds
+    if have >= window.extend_to:
         return True
-    if not filled(blocks, revolutions, seconds):
+    if not filled(blocks, window):
         return False
-    if not alone:
-        return True
-    return fit_drift([counted(blocks, revolutions, seconds)], revolutions, seconds).stable
+    return not alone or fit_drift([counted(blocks, window)], window).stable

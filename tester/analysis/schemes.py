@@ -21,6 +21,7 @@ from tester.analysis.left_out import BY_HAND, NONE_BY_HAND, REPEATABILITY, Combi
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.repeats import ConditionResult, combine_repeats, with_coefficient
 from tester.analysis.results import NAN, NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
+from tester.analysis.stability import Window
 from tester.analysis.uncertainty import CONFIDENCE
 
 OTHER_HALF: Final = "the other repeat of its pair does not count"
@@ -67,8 +68,7 @@ class OppositePairs(Scheme):
         results: Sequence[RepeatResult],
         blocks: Sequence[Sequence[Block]],
         planned: int,
-        revolutions: float | None,
-        seconds: float | None,
+        window: Window,
     ) -> tuple[list[RepeatResult], Judgement]:
         """Judge each direction by its own repeats; return all of them, and the common judgement."""
         judged, judgements = list(results), list[Judgement]()
@@ -76,8 +76,8 @@ class OppositePairs(Scheme):
             places = [i for i in range(len(results)) if is_reversed(i + 1) == backward]
             if not places:
                 continue
-            repeats, judgement = judge([results[i] for i in places], [blocks[i] for i in places], planned, revolutions,
-                                   seconds)  # fmt: skip
+            listed = [results[i] for i in places]
+            repeats, judgement = judge(listed, [blocks[i] for i in places], planned, window)
             judgements.append(judgement)
             for place, repeat in zip(places, repeats, strict=True):
                 judged[place] = repeat

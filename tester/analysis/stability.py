@@ -13,7 +13,9 @@ values after the part that follows the surface temperature is removed.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import inf, isfinite
+from typing import Final
 
 from tester.analysis.blocks import Block
 from tester.base.quantities import temperatures
@@ -28,6 +30,39 @@ MIN_BLOCKS = 6
 MATERIAL = 0.005
 """A truncation is made when it moves the mean by more than this share of it [A]: correlated noise by itself often seems
 to have a transient of 0.1 to 0.3 %, and leaving out the steep beginning of a drift would hide it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Length of a repeat: revolutions or accepted seconds; one of the two is None. Without either, any length will do.
+
+    Drift is per window; a repeat collects 1.5 of them. ``extend_to`` (same unit, at least the window): the most that it
+    collects, its transient included, if it is judged alone.
+    """
+
+    revolutions: float | None = None
+    seconds: float | None = None
+    extend_to: float = inf
+
+    @property
+    def of_repeat(self) -> Window:
+        """Return what a repeat collects after its transient."""
+        revolutions, seconds = self.revolutions, self.seconds
+        return Window(revolutions and REPEAT_WINDOWS * revolutions, seconds and REPEAT_WINDOWS * seconds)
+
+    @property
+    def words(self) -> str:
+        """Return the window in a recipe's notation: 30 rev, or 60 s."""
+        return f"{self.revolutions:g} rev" if self.revolutions is not None else f"{self.seconds or 0.0:g} s"
+
+    def duration_s(self, revolutions_per_s: float) -> float:
+        """Return the seconds in which the window is collected at a speed in revolutions/s (> 0)."""
+        if self.seconds is not None:
+            return self.seconds
+        return (self.revolutions or 0.0) / revolutions_per_s
+
+
+ANY_LENGTH: Final = Window()
 
 
 def truncation(values: Sequence[float]) -> int | None:
@@ -61,27 +96,27 @@ def seconds_of(blocks: Sequence[Block]) -> float:
     return sum(block.ended_s - block.started_s for block in blocks)
 
 
-def enough(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> bool:
-    """Return whether blocks fill a window of ``revolutions`` or, if that is None, of accepted ``seconds``."""
-    if revolutions is not None:
-        return len(blocks) >= revolutions
-    return seconds is None or seconds_of(blocks) >= seconds
+def enough(blocks: Sequence[Block], window: Window) -> bool:
+    """Return whether blocks fill a window."""
+    if window.revolutions is not None:
+        return len(blocks) >= window.revolutions
+    return window.seconds is None or seconds_of(blocks) >= window.seconds
 
 
-def filled(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> bool:
+def filled(blocks: Sequence[Block], window: Window) -> bool:
     """Return whether the blocks after the transient fill all that a repeat of this window collects."""
-    wanted = revolutions and REPEAT_WINDOWS * revolutions, seconds and REPEAT_WINDOWS * seconds
-    return enough(blocks, *wanted) and enough(blocks[left_out(blocks, revolutions, seconds) :], *wanted)
+    wanted = window.of_repeat
+    return enough(blocks, wanted) and enough(blocks[left_out(blocks, window) :], wanted)
 
 
-def left_out(blocks: Sequence[Block], revolutions: float | None, seconds: float | None) -> int:
+def left_out(blocks: Sequence[Block], window: Window) -> int:
     """Return how many leading blocks are transient; only the first 1.5 windows count, so later blocks never change
     it."""
     first = list(blocks)
-    if revolutions is not None:
-        first = first[: int(REPEAT_WINDOWS * revolutions)]
-    elif seconds is not None:
-        while len(first) > MIN_BLOCKS and seconds_of(first[:-1]) >= REPEAT_WINDOWS * seconds:
+    if window.revolutions is not None:
+        first = first[: int(REPEAT_WINDOWS * window.revolutions)]
+    elif window.seconds is not None:
+        while len(first) > MIN_BLOCKS and seconds_of(first[:-1]) >= REPEAT_WINDOWS * window.seconds:
             first.pop()
     mu = [block.mu for block in first]
     if len(first) < MIN_BLOCKS or not all(map(isfinite, mu)) or sum(mu) <= 0.0:

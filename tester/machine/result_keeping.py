@@ -108,15 +108,14 @@ class StoredResults(Generic[ContextT]):
         else:
             result = reduce_repeat(
                 blocks,
-                window.revolutions,
-                window.seconds,
+                window,
                 rolling=measured.rolling_only,
                 alone=step.repeats <= ALONE,
                 swing=None if measured.rolling_only else swing_of(measured.counter.trace),
             )
         self.repeats.append(result)
         self.keys.append(key)
-        self.blocks.append(counted(blocks, window.revolutions, window.seconds))
+        self.blocks.append(counted(blocks, window))
         refused = self._judge(step) if self._enough_to_judge(step) else []
         result = self.repeats[-1]
         self.record_mounted(ctx)
@@ -181,7 +180,7 @@ class StoredResults(Generic[ContextT]):
         self.keys = list(earlier.keys) if earlier is not None else []
         window = step.window
         committed = earlier.blocks if earlier is not None else ()
-        self.blocks = [counted(blocks, window.revolutions, window.seconds) for blocks in committed]
+        self.blocks = [counted(blocks, window) for blocks in committed]
         self.judgement = earlier.judged if earlier is not None else NOT_JUDGED
         self.judged = len(self.repeats) if self.judgement.made else 0
         if self._enough_to_judge(step):
@@ -195,7 +194,7 @@ class StoredResults(Generic[ContextT]):
         window = step.window
         before = self.repeats
         self.repeats, self.judgement = step.scheme.judge(
-            before, self.blocks, step.repeats, window.revolutions, window.seconds
+            before, self.blocks, step.repeats, window
         )
         self.judged = len(before)
         return [i for i, result in enumerate(self.repeats) if before[i].valid and not result.valid]

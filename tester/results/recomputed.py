@@ -13,6 +13,7 @@ from tester.analysis.blocks import blocks_from_samples
 from tester.analysis.flags import ROLLING, flags_in
 from tester.analysis.reduce import reduce_repeat
 from tester.analysis.results import RepeatResult, RepeatStatus
+from tester.analysis.stability import Window
 from tester.analysis.swing import swing_of
 from tester.analysis.trace import Trace
 from tester.results.formats import FORMATS, Record
@@ -51,7 +52,7 @@ def _recomputed(reader: RunReader, stored_repeat: StoredRepeat, info: ConditionI
     trace = Trace(reader.quantities())
     blocks = blocks_from_samples(samples, reader.quantities(), trace)
     swing = None if rolling else swing_of(trace)
-    return reduce_repeat(blocks, info.window_revolutions, info.window_s, rolling=rolling, swing=swing)
+    return reduce_repeat(blocks, Window(info.window_revolutions, info.window_s), rolling=rolling, swing=swing)
 
 
 def _differing(stored_repeat: StoredRepeat, again: RepeatResult) -> Iterator[str]:

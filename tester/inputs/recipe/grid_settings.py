@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from tester.analysis.stability import Window
 from tester.base.axes import Axis, AxisValue
-from tester.inputs.recipe.plan import Soak, Window
+from tester.inputs.recipe.plan import Soak
 from tester.inputs.recipe.recipe_schema import Extent, GridModel, MeasureModel, RepeatsModel, SoakModel
 
 DEFAULT_MIN_VALID = 3

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from tester.analysis.schemes import Scheme, scheme_of
+from tester.analysis.stability import Window
 from tester.base.axes import Axes, Setpoint
 
 
@@ -35,30 +36,6 @@ class Specimen:
     index: int
     compound: str
     note: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Window:
-    """Length of a repeat: revolutions or seconds, exactly one of the two is not None.
-
-    Drift is per window; a repeat collects 1.5 of them. ``extend_to`` (same unit, at least the window): the most that it
-    collects, its transient included, if it is judged alone.
-    """
-
-    revolutions: float | None
-    seconds: float | None
-    extend_to: float
-
-    @property
-    def words(self) -> str:
-        """Return it in a recipe's notation: 30 rev, or 60 s."""
-        return f"{self.revolutions:g} rev" if self.revolutions is not None else f"{self.seconds or 0.0:g} s"
-
-    def duration_s(self, revolutions_per_s: float) -> float:
-        """Return the seconds in which the window is collected at a speed in revolutions/s (> 0)."""
-        if self.seconds is not None:
-            return self.seconds
-        return (self.revolutions or 0.0) / revolutions_per_s
 
 
 @dataclass(frozen=True, slots=True)

@@ -136,7 +136,7 @@ class SteadyRepeat:
         if self.counter.add(ctx.sample) is not None:
             self._since_s = ctx.now
             window, alone = self.condition.window, self.condition.repeats <= ALONE
-            if collected(self.counter, window.revolutions, window.seconds, window.extend_to, alone=alone):
+            if collected(self.counter, window, alone=alone):
                 self.ending = Ending.COMPLETE
         if self.ending is None and ctx.now - self._since_s > BLIND_S:
             self.ending, self.detail = Ending.INCOMPLETE, f"nothing has counted for {BLIND_S:g} s"

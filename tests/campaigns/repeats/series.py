@@ -21,6 +21,7 @@ from tester.analysis.judge import judge
 from tester.analysis.left_out import counting
 from tester.analysis.reduce import counted, reduce_repeat
 from tester.analysis.results import NOT_JUDGED, Judgement, RepeatResult
+from tester.analysis.stability import Window
 from tester.base.quantities import Means
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.store.run_reader import RunReader
@@ -116,7 +117,7 @@ def _made(of: Pattern, random: Random, repeat: int, drift: Drift) -> Sequence[Bl
         along, across = QUANTITIES.roles.friction
         means = dict(one.means) | {along: mu * one.means.normal, across: 0.0}
         blocks.append(replace(one, mu=mu, means=Means(one.means.table, means.values())))
-    transient = len(blocks) - len(counted(blocks, WINDOW, None))
+    transient = len(blocks) - len(counted(blocks, Window(WINDOW)))
     return blocks[: int(1.5 * WINDOW) + transient]
 
 
@@ -128,11 +129,11 @@ def condition(of: Pattern, seed: int, drift: Drift) -> Case:
     judgement = NOT_JUDGED
     for repeat in range(MOST):
         made = _made(of, random, repeat, drift)
-        results.append(reduce_repeat(made, WINDOW))
-        blocks.append(counted(made, WINDOW, None))
+        results.append(reduce_repeat(made, Window(WINDOW)))
+        blocks.append(counted(made, Window(WINDOW)))
         if sum(result.valid for result in results) >= LEAST:
-            results, judgement = judge(results, blocks, LEAST, WINDOW, None)
+            results, judgement = judge(results, blocks, LEAST, Window(WINDOW))
             if Case(tuple(results), judgement).stable:
                 return Case(tuple(results), judgement)
-    results, judgement = judge(results, blocks, LEAST, WINDOW, None)
+    results, judgement = judge(results, blocks, LEAST, Window(WINDOW))
     return Case(tuple(results), judgement)

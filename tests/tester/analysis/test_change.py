@@ -15,7 +15,10 @@ from tester.analysis.reduce import reduce_repeat
 from tester.analysis.repeats import combine_repeats
 from tester.analysis.results import NAN, ConditionStatus
 from tester.analysis.schemes import PAIRS
+from tester.analysis.stability import Window
 from tests.tester.analysis.series import blocks, correlated
+
+WINDOW = Window(30)
 
 
 def noisy(seed: int, levels: list[float]) -> list[float]:
@@ -51,13 +54,13 @@ def test_too_few_blocks_tell_nothing() -> None:
 
 
 def test_a_step_that_is_left_out_as_a_transient_is_told() -> None:
-    result = reduce_repeat(blocks(noisy(3, [1.0] * 15 + [1.15] * 30)), 30)
+    result = reduce_repeat(blocks(noisy(3, [1.0] * 15 + [1.15] * 30)), WINDOW)
     assert result.truncated >= 14
     assert result.change_percent > 12.0
 
 
 def test_a_change_of_no_slip_is_not_looked_for() -> None:
-    assert isnan(reduce_repeat(blocks([0.02] * 10 + [0.03] * 35), 30, rolling=True).change_percent)
+    assert isnan(reduce_repeat(blocks([0.02] * 10 + [0.03] * 35), WINDOW, rolling=True).change_percent)
 
 
 @pytest.mark.parametrize("values", [[1.0, 1.15], [1.15, 1.0, 1.0], [1.0, 1.0, 1.15], [1.0, 1.01, 1.14, 1.16, 1.15]])
@@ -80,26 +83,26 @@ def test_the_greatest_of_nothing_known_is_unknown() -> None:
 
 
 def test_a_condition_whose_friction_changed_carries_a_doubt() -> None:
-    first = reduce_repeat(blocks(noisy(3, [1.0] * 15 + [1.15] * 40)), 30)
-    later = [reduce_repeat(blocks(noisy(seed, [1.15] * 45)), 30) for seed in (4, 5)]
+    first = reduce_repeat(blocks(noisy(3, [1.0] * 15 + [1.15] * 40)), WINDOW)
+    later = [reduce_repeat(blocks(noisy(seed, [1.15] * 45)), WINDOW) for seed in (4, 5)]
     found = combine_repeats([first, *later], 3, ended=ConditionStatus.OK)
     assert CHANGED in found.doubts and found.change_percent == first.change_percent
 
 
 def test_repeats_that_part_carry_a_doubt() -> None:
-    made = [reduce_repeat(blocks(noisy(seed, [level] * 45)), 30) for seed, level in enumerate((1.0, 1.15, 1.15))]
+    made = [reduce_repeat(blocks(noisy(seed, [level] * 45)), WINDOW) for seed, level in enumerate((1.0, 1.15, 1.15))]
     assert CHANGED in combine_repeats(made, 3, ended=ConditionStatus.OK).doubts
 
 
 def test_a_repeat_that_a_person_left_out_is_not_looked_at() -> None:
-    made = [reduce_repeat(blocks(noisy(seed, [level] * 45)), 30) for seed, level in enumerate((1.2, 1.0, 1.0, 1.0))]
+    made = [reduce_repeat(blocks(noisy(seed, [level] * 45)), WINDOW) for seed, level in enumerate((1.2, 1.0, 1.0, 1.0))]
     found = combine_repeats(made, 3, ended=ConditionStatus.OK, by_hand={0: "dust"})
     assert CHANGED not in flags_in(found.flags)
 
 
 def test_directions_that_differ_are_no_change_and_a_step_in_one_is() -> None:
     def pairs(levels: list[float]) -> tuple[str, ...]:
-        made = [reduce_repeat(blocks(noisy(seed, [level] * 45)), 30) for seed, level in enumerate(levels)]
+        made = [reduce_repeat(blocks(noisy(seed, [level] * 45)), WINDOW) for seed, level in enumerate(levels)]
         return PAIRS.combine(made, 3, ended=ConditionStatus.OK).doubts
 
     assert CHANGED not in pairs([1.0, 1.1, 1.1, 1.0, 1.0, 1.1])

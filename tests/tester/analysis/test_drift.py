@@ -14,6 +14,7 @@ import pytest
 
 from tester.analysis.blocks import Block
 from tester.analysis.drift import decay, fit_drift, inflation, refusals
+from tester.analysis.stability import Window
 from tests.tester.analysis.series import blocks, correlated
 
 MU = 0.7
@@ -31,56 +32,56 @@ def repeat(
 
 
 def test_a_drift_without_noise_is_found_exactly() -> None:
-    found = fit_drift([repeat(None, 0.015), repeat(None, 0.015)], 30)
+    found = fit_drift([repeat(None, 0.015), repeat(None, 0.015)], Window(30))
     assert found.drift_percent == pytest.approx(1.5, rel=1e-3)
     assert found.stable and found.bound_percent == pytest.approx(1.5, rel=1e-3)
 
 
 def test_one_drift_stands_for_all_repeats() -> None:
-    found = fit_drift([repeat(None, 0.01), repeat(None, -0.01)], 30)
+    found = fit_drift([repeat(None, 0.01), repeat(None, -0.01)], Window(30))
     assert found.drift_percent == pytest.approx(0.0, abs=1e-6)
     assert [one.drift_percent for one in found.repeats] == pytest.approx([1.0, -1.0], rel=1e-3)
 
 
 def test_the_level_of_a_repeat_is_its_own() -> None:
     higher = blocks([1.1 * block.mu for block in repeat(3)], per_burst=15)
-    apart = fit_drift([repeat(3), higher], 30)
-    alike = fit_drift([repeat(3), repeat(3)], 30)
+    apart = fit_drift([repeat(3), higher], Window(30))
+    alike = fit_drift([repeat(3), repeat(3)], Window(30))
     assert apart.drift_percent == pytest.approx(alike.drift_percent, rel=1e-9)
 
 
 def test_drift_is_that_of_accepted_time_not_of_pauses_between_bursts() -> None:
-    assert fit_drift([repeat(None, 0.015, per_burst=3)], 30).drift_percent == pytest.approx(1.5, rel=1e-3)
+    assert fit_drift([repeat(None, 0.015, per_burst=3)], Window(30)).drift_percent == pytest.approx(1.5, rel=1e-3)
 
 
 def test_a_window_in_seconds_is_that_of_accepted_time() -> None:
-    by_turns, by_time = fit_drift([repeat(4, 0.01)], 30), fit_drift([repeat(4, 0.01)], None, 30 * 0.353)
+    by_turns, by_time = fit_drift([repeat(4, 0.01)], Window(30)), fit_drift([repeat(4, 0.01)], Window(None, 30 * 0.353))
     assert by_time.drift_percent == pytest.approx(by_turns.drift_percent, rel=1e-9)
 
 
 def test_a_sawtooth_of_temperature_is_not_taken_for_drift() -> None:
     surface = [24.0 + 2.0 * j / 14.0 for j in range(15)]
-    found = fit_drift([repeat(seed, per_kelvin=0.02, surface=surface) for seed in (1, 2, 3)], 30)
+    found = fit_drift([repeat(seed, per_kelvin=0.02, surface=surface) for seed in (1, 2, 3)], Window(30))
     assert found.stable and abs(found.drift_percent) < 0.7
     assert found.per_kelvin_percent == pytest.approx(2.0, abs=0.5)
 
 
 def test_drift_under_a_sawtooth_of_temperature_is_seen() -> None:
     surface = [24.0 + 2.0 * j / 14.0 for j in range(15)]
-    found = fit_drift([repeat(seed, 0.04, per_kelvin=0.02, surface=surface) for seed in (1, 2, 3)], 30)
+    found = fit_drift([repeat(seed, 0.04, per_kelvin=0.02, surface=surface) for seed in (1, 2, 3)], Window(30))
     assert found.drift_percent == pytest.approx(4.0, abs=0.8) and not found.stable
 
 
 def test_temperature_that_runs_with_time_leaves_the_drift_in_doubt() -> None:
     surface = [24.0 + 2.0 * i / 44.0 for i in range(N)]
-    steady = fit_drift([repeat(seed, per_burst=N) for seed in (1, 2, 3)], 30)
-    warming = fit_drift([repeat(seed, per_burst=N, surface=surface) for seed in (1, 2, 3)], 30)
+    steady = fit_drift([repeat(seed, per_burst=N) for seed in (1, 2, 3)], Window(30))
+    warming = fit_drift([repeat(seed, per_burst=N, surface=surface) for seed in (1, 2, 3)], Window(30))
     assert steady.stable and not warming.stable
     assert warming.error_percent > 3.0 * steady.error_percent
 
 
 def test_no_noise_at_all_is_stable() -> None:
-    found = fit_drift([repeat(None)] * 3, 30)
+    found = fit_drift([repeat(None)] * 3, Window(30))
     assert found.stable and found.bound_percent == pytest.approx(0.0, abs=1e-9)
 
 
@@ -109,18 +110,18 @@ def test_bursts_of_one_revolution_are_independent() -> None:
 def test_the_bound_covers_the_true_drift() -> None:
     covered = 0
     for seed in range(100):
-        found = fit_drift([repeat(3 * seed + i, 0.01) for i in range(3)], 30)
+        found = fit_drift([repeat(3 * seed + i, 0.01) for i in range(3)], Window(30))
         covered += abs(found.drift_percent - 1.0) <= found.bound_percent - abs(found.drift_percent)
     assert 84 <= covered <= 97
 
 
 def test_steady_repeats_stay() -> None:
-    found, refused = refusals([repeat(seed) for seed in range(4)], 30)
+    found, refused = refusals([repeat(seed) for seed in range(4)], Window(30))
     assert found.stable and not refused and len(found.repeats) == 4
 
 
 def test_a_repeat_that_drifts_is_refused_and_the_others_are_judged_without_it() -> None:
-    found, refused = refusals([repeat(1), repeat(2, 0.05), repeat(3)], 30)
+    found, refused = refusals([repeat(1), repeat(2, 0.05), repeat(3)], Window(30))
     assert list(refused) == [1] and refused[1].reason.startswith("drifts by +")
     assert found.stable and len(found.repeats) == 2
 
@@ -133,20 +134,20 @@ def test_a_repeat_that_differs_from_three_siblings_is_refused_although_it_drifts
         [MU * (1.0 + 0.1 * x + 0.015 * (i - 22) / 30) for i, x in enumerate(islice(correlated(Random(4)), N))],
         per_burst=15,
     )
-    _, refused = refusals([*quiet, odd], 30)
+    _, refused = refusals([*quiet, odd], Window(30))
     assert list(refused) == [3] and "the other repeats by" in refused[3].reason
-    _, two_siblings = refusals([*quiet[:2], odd], 30)
+    _, two_siblings = refusals([*quiet[:2], odd], Window(30))
     assert two_siblings == {}
 
 
 def test_where_all_drift_none_is_left() -> None:
-    found, refused = refusals([repeat(seed, 0.06) for seed in range(3)], 30)
+    found, refused = refusals([repeat(seed, 0.06) for seed in range(3)], Window(30))
     assert sorted(refused) == [0, 1, 2] and not found.stable
 
 
 @pytest.mark.parametrize("wrong", [float("nan"), float("inf")])
 def test_a_repeat_without_a_coefficient_is_not_looked_at(wrong: float) -> None:
-    found = fit_drift([repeat(1), blocks([MU] * 20 + [wrong] * 20), blocks([MU] * 5)], 30)
-    assert found.repeats[0].drift_percent == fit_drift([repeat(1)], 30).repeats[0].drift_percent
+    found = fit_drift([repeat(1), blocks([MU] * 20 + [wrong] * 20), blocks([MU] * 5)], Window(30))
+    assert found.repeats[0].drift_percent == fit_drift([repeat(1)], Window(30)).repeats[0].drift_percent
     assert found.repeats[1].drift_percent != found.repeats[1].drift_percent
-    assert not fit_drift([blocks([0.0] * 30)], 30).stable
+    assert not fit_drift([blocks([0.0] * 30)], Window(30)).stable

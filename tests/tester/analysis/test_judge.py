@@ -15,7 +15,7 @@ from tester.analysis.flags import CARRY_OVER, NOT_SHOWN, flags_in
 from tester.analysis.judge import judge, trend_of
 from tester.analysis.reduce import counted, reduce_repeat
 from tester.analysis.results import Judgement, RepeatResult, RepeatStatus
-from tester.analysis.stability import filled
+from tester.analysis.stability import Window, filled
 from tests.tester.analysis.series import blocks, correlated
 
 MU = 0.7
@@ -29,18 +29,18 @@ def repeat(seed: int, drift: float = 0.0, *, level: float = 1.0, settles: float 
         MU * level * (1.0 + x + drift * (i - 22) / 30 + settles * exp(-(at + i) / 94.0)) for i, x in enumerate(noise)
     ]
     made = blocks(values, per_burst=15)
-    return list(counted(next(made[:n] for n in range(N, 2 * N) if filled(made[:n], 30, None)), 30, None))
+    return list(counted(next(made[:n] for n in range(N, 2 * N) if filled(made[:n], Window(30))), Window(30)))
 
 
 def result_of(used: list[Block], *, alone: bool = False) -> RepeatResult:
     """Return a repeat's result from the blocks that count; neither window nor transient is left to be asked for."""
-    flags = NOT_SHOWN if alone and not fit_drift([used], 30).stable else ""
+    flags = NOT_SHOWN if alone and not fit_drift([used], Window(30)).stable else ""
     return replace(reduce_repeat(used), flags=flags, status=RepeatStatus.VALID)
 
 
 def judged(repeats: list[list[Block]], planned: int = 3) -> tuple[list[RepeatResult], Judgement]:
     results = [result_of(one, alone=planned <= 2) for one in repeats]
-    return judge(results, repeats, planned, 30, None)
+    return judge(results, repeats, planned, Window(30))
 
 
 def test_steady_repeats_are_valid_and_without_a_flag() -> None:
@@ -60,7 +60,7 @@ def test_a_repeat_that_drifts_is_refused_with_its_reason_and_keeps_its_value() -
 
 def test_repeats_with_too_few_blocks_for_a_fit_are_kept_and_their_drift_is_not_shown() -> None:
     repeats = [repeat(seed)[:2] for seed in (1, 2, 3)]
-    results, found = judge([result_of(one) for one in repeats], repeats, 3, 3, None)
+    results, found = judge([result_of(one) for one in repeats], repeats, 3, Window(3))
     assert all(result.valid for result in results)
     assert NOT_SHOWN in flags_in(found.flags)
 
@@ -92,16 +92,16 @@ def test_up_to_two_repeats_are_judged_each_alone_and_never_refused() -> None:
 
 def test_rolling_is_not_judged() -> None:
     made = [repeat(seed, 0.06) for seed in (1, 2, 3)]
-    results = [reduce_repeat(one, 30, rolling=True) for one in made]
-    after, found = judge(results, made, 3, 30, None)
+    results = [reduce_repeat(one, Window(30), rolling=True) for one in made]
+    after, found = judge(results, made, 3, Window(30))
     assert after == results and found.flags == "" and found.drift_percent != found.drift_percent
 
 
 def test_repeats_that_have_no_value_are_passed_over() -> None:
     made = [repeat(1), repeat(2), repeat(3)[:10], repeat(4)]
     results = [result_of(one) for one in made]
-    results[2] = reduce_repeat(made[2], 30)
-    after, _ = judge(results, made, 3, 30, None)
+    results[2] = reduce_repeat(made[2], Window(30))
+    after, _ = judge(results, made, 3, Window(30))
     assert after[2] == results[2] and after[2].status is RepeatStatus.TOO_FEW
 
 

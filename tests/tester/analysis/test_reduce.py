@@ -12,6 +12,7 @@ from tester.analysis.blocks import BlockCounter
 from tester.analysis.flags import NOT_SHOWN
 from tester.analysis.reduce import batch_means, bursts_of, reduce_repeat, standard_deviation, without_value
 from tester.analysis.results import RepeatStatus
+from tester.analysis.stability import Window
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tests.tester.analysis.series import REVOLUTION_S, block, blocks, correlated, sample
 
@@ -19,7 +20,7 @@ STEADY = [0.7, 0.701] * 15
 
 
 def test_a_full_steady_window_is_valid() -> None:
-    result = reduce_repeat(blocks(STEADY), 30)
+    result = reduce_repeat(blocks(STEADY), Window(30))
     assert (result.status, result.valid, result.reason) == (RepeatStatus.VALID, True, "")
     assert result.mu_resultant == pytest.approx(0.7005)
     assert (result.revolutions, result.truncated, result.bursts) == (30, 0, 1)
@@ -59,7 +60,7 @@ def test_means_are_those_of_the_blocks_that_are_left() -> None:
     random = Random(1)
     values = [0.7 * (1.0 + 0.2 * exp(-i / 2.0) + random.gauss(0.0, 0.004)) for i in range(60)]
     made = blocks(values, surface=[20.0 + 0.1 * i for i in range(60)])
-    result = reduce_repeat(made, 30)
+    result = reduce_repeat(made, Window(30))
     kept = made[result.truncated :]
     assert result.truncated > 0
     assert result.flags == "extended; truncated"
@@ -69,27 +70,27 @@ def test_means_are_those_of_the_blocks_that_are_left() -> None:
 
 
 def test_fewer_revolutions_than_the_window_are_too_few() -> None:
-    result = reduce_repeat(blocks(STEADY[:20]), 30)
+    result = reduce_repeat(blocks(STEADY[:20]), Window(30))
     assert (result.status, result.reason) == (RepeatStatus.TOO_FEW, "20 of 30 revolutions")
     assert result.mu_resultant == pytest.approx(0.7005)
 
 
 def test_fewer_seconds_than_the_window_are_too_few() -> None:
-    result = reduce_repeat(blocks(STEADY), seconds=60.0)
+    result = reduce_repeat(blocks(STEADY), Window(None, 60.0))
     assert (result.status, result.reason) == (RepeatStatus.TOO_FEW, "30 revolutions in less than 60 s")
 
 
 def test_a_drifting_repeat_is_flagged_where_it_is_judged_alone() -> None:
     random = Random(9)
     values = [0.7 * (1.0 + 0.05 * i / 30 + random.gauss(0.0, 0.01)) for i in range(45)]
-    result = reduce_repeat(blocks(values), 30, alone=True)
+    result = reduce_repeat(blocks(values), Window(30), alone=True)
     assert result.valid and result.flags == NOT_SHOWN
     assert result.bound_percent > result.drift_percent == pytest.approx(5.0, abs=1.0)
-    assert reduce_repeat(blocks(values), 30).flags == ""
+    assert reduce_repeat(blocks(values), Window(30)).flags == ""
 
 
 def test_the_drift_of_rolling_is_not_judged() -> None:
-    result = reduce_repeat(blocks([0.02 + 0.001 * i for i in range(45)]), 30, rolling=True, alone=True)
+    result = reduce_repeat(blocks([0.02 + 0.001 * i for i in range(45)]), Window(30), rolling=True, alone=True)
     assert result.valid and result.flags == "rolling"
     assert result.drift_percent != result.drift_percent
 
@@ -97,22 +98,22 @@ def test_the_drift_of_rolling_is_not_judged() -> None:
 def test_a_window_that_its_transient_leaves_short_is_too_few() -> None:
     random = Random(1)
     values = [0.7 * (1.0 + 0.2 * exp(-i / 2.0) + random.gauss(0.0, 0.002)) for i in range(32)]
-    result = reduce_repeat(blocks(values), 30)
+    result = reduce_repeat(blocks(values), Window(30))
     assert result.status is RepeatStatus.TOO_FEW and "more are transient" in result.reason
 
 
 def test_no_blocks_give_no_value() -> None:
-    result = reduce_repeat([], 30)
+    result = reduce_repeat([], Window(30))
     assert result.status is RepeatStatus.TOO_FEW
     assert result.mu_resultant != result.mu_resultant
 
 
 def test_a_condition_at_zero_slip_is_flagged_rolling() -> None:
-    assert reduce_repeat(blocks(STEADY), 30, rolling=True).flags == "rolling"
+    assert reduce_repeat(blocks(STEADY), Window(30), rolling=True).flags == "rolling"
 
 
 def test_a_window_of_exactly_the_asked_length_is_not_extended() -> None:
-    assert "extended" not in reduce_repeat(blocks(STEADY), 20.0).flags
+    assert "extended" not in reduce_repeat(blocks(STEADY), Window(20.0)).flags
 
 
 def test_load_that_is_no_load_gives_no_value() -> None:
@@ -130,7 +131,7 @@ def test_ten_batches_of_nearly_equal_length() -> None:
 def test_uncertainty_of_correlated_noise_covers_the_truth() -> None:
     covered = 0
     for seed in range(100):
-        result = reduce_repeat(blocks([0.7 * (1.0 + x) for x in islice(correlated(Random(seed)), 45)]), 30)
+        result = reduce_repeat(blocks([0.7 * (1.0 + x) for x in islice(correlated(Random(seed)), 45)]), Window(30))
         covered += abs(result.mu_resultant - 0.7) <= 2.262 * result.uncertainty  # t of ten batches
     assert covered >= 90
 

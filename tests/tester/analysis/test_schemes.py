@@ -16,6 +16,7 @@ from tester.analysis.measurand import Surroundings, pooled, with_budget
 from tester.analysis.repeats import combine_replicates
 from tester.analysis.results import ConditionStatus, RepeatResult
 from tester.analysis.schemes import EACH, OTHER_HALF, PAIRS, scheme_of
+from tester.analysis.stability import Window
 from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Contribution
 from tester.kinds.wheel_on_belt.budget import TERMS
@@ -82,7 +83,7 @@ def steady(seed: int, drift: float = 0.0, noisy: float = 0.3) -> list[Block]:
 def judged(drifts: dict[int, float], noisy: float = 0.3) -> tuple[list[RepeatResult], str, float]:
     """Judge six repeats, some of which drift; return them, the flags, the drift."""
     results = series([0.7] * 6)
-    found, judgement = PAIRS.judge(results, [steady(i, drifts.get(i, 0.0), noisy) for i in range(6)], 3, 30.0, None)
+    found, judgement = PAIRS.judge(results, [steady(i, drifts.get(i, 0.0), noisy) for i in range(6)], 3, Window(30.0))
     return found, judgement.flags, judgement.drift_percent
 
 

@@ -12,6 +12,7 @@ import pytest
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.reduce import reduce_repeat
 from tester.analysis.results import ConditionStatus
+from tester.analysis.stability import Window
 from tester.analysis.swing import swing_of
 from tester.base import clock
 from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
@@ -59,7 +60,7 @@ def slide(folder: Path, repeat: int = 1) -> None:
         sample = (0.1 * i, 1e-3 * i, 0.01, 70.0 + i % 10, 100.0, 45.0 + 0.01 * i, 0.0, 1.0, float(key))
         writer.sample(sample)
         counter.add(sample)
-    writer.commit_repeat(key, reduce_repeat(counter.blocks, 8.0, swing=swing_of(counter.trace)))
+    writer.commit_repeat(key, reduce_repeat(counter.blocks, Window(8.0), swing=swing_of(counter.trace)))
     writer.end_condition(CONDITIONS[0].condition, ConditionStatus.OK, t_s=60.0)
     writer.finish("done", rig_seconds=60.0, ended_utc="2024-02-21T15:00:00.000Z")
     writer.close()

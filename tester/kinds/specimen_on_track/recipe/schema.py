@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, TypeAlias
 
+from tester.analysis.stability import Window
 from tester.base.units import Quantity
 from tester.inputs.recipe.grid_settings import DEFAULT_EXTENSION, Settings, settings_of
-from tester.inputs.recipe.plan import Window
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES
 

@@ -249,7 +249,7 @@ class MeasureRepeat(CentredBursts):
         """Return whether the repeat has what it collects; without siblings, whether its drift is shown to be small."""
         window = self.condition.window
         alone = self.condition.repeats <= ALONE and not self.rolling_only
-        return collected(self.counter, window.revolutions, window.seconds, window.extend_to, alone=alone)
+        return collected(self.counter, window, alone=alone)
 
     def _end_burst(self, ctx: Context) -> None:
         gained = self.revolutions - self.burst.blocks_before

@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import recipes
+from tester.analysis.stability import Window
 from tester.inputs.recipe.conditions import conditions_of
 from tester.inputs.recipe.loader import load_recipe
-from tester.inputs.recipe.plan import PromptStep, Soak, Window
+from tester.inputs.recipe.plan import PromptStep, Soak
 from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import change_points, expand
