@@ -12,6 +12,7 @@ HOT = (
     "drivers/joined_cell.py",
     "drivers/modbus/answers.py",
     "drivers/modbus/device.py",
+    "drivers/modbus/line.py",
     "drivers/modbus/link.py",
     "drivers/modbus/request.py",
     "drivers/modbus/schedule.py",

@@ -98,13 +98,17 @@ class TemperatureController(Device):
         function, renew_s = profile.write_function, commanding.renew_s
         self._setpoint_write = link.write(self.station, function, self._register.address, (0,), renew_s)
         self._run_write = link.write(self.station, function, switch.address, (switch.off,), renew_s)
+        self._set_up(commanding.lease_s)
+
+    def _set_up(self, lease_s: float) -> None:
+        """Have standby, the profile's own writes and the lease (s, where there is one) written at every connection."""
+        profile, switch = self.profile, self._switch
         self.add_write("standby", switch.address, (switch.off,), read_back=False)
         for write in profile.setup:
             self.add_write(write.name, write.address, (write.value,), write.read_back)
         if self.has_lease:
             lease = profile.writes["lease"]
-            words = lease.words(commanding.lease_s, profile.word_order)
-            self.add_write("off-line time", lease.address, words, read_back=True)
+            self.add_write("off-line time", lease.address, lease.words(lease_s, profile.word_order), read_back=True)
         self.begin()
 
     def set_setpoint(self, celsius: float) -> None:

@@ -19,7 +19,7 @@ SOCKET_MARGIN_S = 0.05
 
 
 class LineType:
-    """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP."""
+    """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP; ``socket``: it is a TCP connection."""
 
     def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
         """Take the framing; ``baud`` in bit/s and ``parity`` matter on RTU only."""
@@ -31,22 +31,22 @@ class LineType:
         self.gap_s = 0.0 if self.socket else silent_gap_s(bits, baud)
 
     def read(
-        self, station: Station, function: int, address: int, count: int, period_s: float, priority_s: float
+        self, station: Station, function: int, address: int, count: int, period_s: float = inf
     ) -> Request:
-        """Return a read of ``count`` registers from ``address``; ``period_s``: 0 = every scan, infinity = once."""
+        """Add a read; it is not sent before it is enabled. ``period_s``: 0 = every scan, infinity = once."""
         slack_s = 0.0 if period_s == inf else SLACK_S if period_s > 0.0 else inf
-        request = Request(station, function, address, count, period_s, priority_s, slack_s)
+        request = Request(station, function, address, count, period_s, slack_s)
         request.frame = codec.read_request(self.framing, station.unit_id, function, address, count)
         if not self.socket:
             request.head = bytes((station.unit_id, function, 2 * count))
         return self._timed(request)
 
     def write(
-        self, station: Station, function: int, address: int, values: Sequence[int], renew_s: float
+        self, station: Station, function: int, address: int, values: Sequence[int], renew_s: float = inf
     ) -> Request:
-        """Return a write of ``values`` from ``address``, repeated every ``renew_s``."""
+        """Add a write of ``values``, repeated every ``renew_s``; it is not sent before it is enabled."""
         slack_s = 0.0 if renew_s == inf else SLACK_S
-        request = Request(station, function, address, len(values), renew_s, 0.0, slack_s)
+        request = Request(station, function, address, len(values), renew_s, slack_s)
         self.load(request, tuple(values))
         return self._timed(request)
 

@@ -2,14 +2,11 @@
 
 Give it what arrived (``feed``), then let it send what is due (``service``): in this order in every tick, so that a
 reply that came in time is never taken for a time-out because the tick was late.
-
-Over TCP any doubt about framing, and a time-out, ends the connection: what comes of the old one is never read
-(drivers.modbus.answers). On a serial line nothing is written before it is known whether the adapter hears itself.
+Doubts about framing, and adapters that give back what is sent: ``drivers.modbus.answers``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf
 from typing import Final
 
@@ -35,7 +32,7 @@ _DEVICE_GONE: Final = frozenset({10, 11})
 _GOOD: Final = AnswerKind.GOOD
 
 
-class ModbusLink:
+class ModbusLink(LineType):
     """Master of one Modbus line. ``deadline`` (s) is when it wants ``service`` at the latest.
 
     Before ``wants_s`` a ``service`` would do nothing: whoever ticks may spare it.
@@ -43,10 +40,7 @@ class ModbusLink:
 
     def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
         """Create an idle master; ``baud`` in bit/s and ``parity`` matter on RTU only."""
-        self.framing: codec.Framing = framing
-        self._type = LineType(framing, baud, parity)
-        self._gap_s = self._type.gap_s
-        self._socket = self._type.socket
+        super().__init__(framing, baud, parity)
         self._schedule = Schedule()
         self.stations: list[Station] = []
         self._active: Request | None = None
@@ -59,20 +53,13 @@ class ModbusLink:
         self.deadline = self.wants_s = -inf
         self.garbage = 0
         """Pieces that arrived although no station had been asked."""
-        self.reopened = 0
-        """How often the connection was dropped and opened anew (TCP)."""
         self.doubts = ""
-        """Why it was, the last time."""
+        """Why the connection was dropped and opened anew, the last time (TCP)."""
         self.scan_s = inf
         """Time between scans, s. Where the exchange of a read of every scan takes longer, the next begins at once."""
         self._doubt = ""
         self._sent = b""
-        self.ear = SerialEar(False if self._socket else None)
-
-    @property
-    def hears_itself(self) -> bool | None:
-        """Whether the adapter gives back what is sent: None until the first reply to a read shows it."""
-        return self.ear.hears_itself
+        self.ear = SerialEar(False if self.socket else None)
 
     # what the drivers ask for ----------------------------------------------------------------------------------
 
@@ -85,24 +72,6 @@ class ModbusLink:
         station = Station(unit_id, timing, owner)
         self.stations.append(station)
         return station
-
-    def read(
-        self,
-        station: Station,
-        function: int,
-        address: int,
-        count: int,
-        period_s: float = inf,
-        priority_s: float = 0.0,
-    ) -> Request:
-        """Add a read; it is not sent before ``enable``. ``period_s``: 0 = every scan, infinity = once."""
-        return self._type.read(station, function, address, count, period_s, priority_s)
-
-    def write(
-        self, station: Station, function: int, address: int, values: Sequence[int], renew_s: float = inf
-    ) -> Request:
-        """Add a write of ``values``, repeated every ``renew_s``; it is not sent before ``enable``."""
-        return self._type.write(station, function, address, values, renew_s)
 
     def enable(self, request: Request, due_s: float = -inf) -> None:
         """Send a request at ``due_s`` (s; at once by default), then in its period."""
@@ -122,7 +91,7 @@ class ModbusLink:
         """
         if values == request.values:
             return
-        self._type.load(request, values)
+        self.load(request, values)
         self._schedule.renew(request, urgent)
         self._backlog_s = self.wants_s = -inf
 
@@ -141,7 +110,7 @@ class ModbusLink:
                 self._unasked(t)
                 continue
             data = self._buffer + chunk if self._buffer else chunk
-            if self._socket:
+            if self.socket:
                 self._act(request, tcp_answer(request, self._sent, data), t)
                 continue
             hears_itself = self.ear.hears_itself
@@ -185,8 +154,12 @@ class ModbusLink:
             self.deadline = schedule.latest_s
             self.wants_s = -inf if reads_only else schedule.wants_s
             return
+        self._send(request, port, now)
+
+    def _send(self, request: Request, port: LinePort, now: float) -> None:
+        """Begin a transaction."""
         frame = request.frame
-        if self._socket:
+        if self.socket:
             self._transaction = self._transaction % 0xFFFF + 1
             frame = numbered(request, self._transaction)
         self._sent = frame
@@ -201,7 +174,7 @@ class ModbusLink:
         request.station.counters.requests += 1
         self._active = request
         self._give_up_s = give_up_s = now + request.timeout_s
-        self._backlog_s = backlog_s = -inf if schedule.slowest_s > self.scan_s else schedule.latest_s
+        self._backlog_s = backlog_s = -inf if self._schedule.slowest_s > self.scan_s else self._schedule.latest_s
         if backlog_s < give_up_s:
             self._wait(now)
         else:
@@ -216,7 +189,7 @@ class ModbusLink:
         station = request.station
         if station.contact is None:
             function, address = station.known_register
-            station.contact = self._type.read(station, function, address, 1, inf, 0.0)
+            station.contact = self.read(station, function, address, 1)
         return station.contact if station.contact.sent_s <= now - PROBE_S else None
 
     def _begin_anew(self, port: LinePort, now: float) -> None:
@@ -224,18 +197,13 @@ class ModbusLink:
         self.doubts, self._doubt = self._doubt, ""
         if not isinstance(port, RenewablePort):
             raise BusLost(f"{self.doubts}, and the line cannot be begun anew")
-        self.reopened += 1
         port.renew(now)
 
     def measure(self) -> None:
         """Measure anew how long the stations' replies take, from the next ones on."""
         for station in self.stations:
             station.reply.forget()
-            self._type.measured(station)
-
-    def exchange_s(self, station: Station) -> float:
-        """Return how long the longest read of a station takes from request to reply, by what was measured, s."""
-        return self._type.exchange_s(station)
+            self.measured(station)
 
     @property
     def only_watches(self) -> bool:
@@ -268,7 +236,7 @@ class ModbusLink:
         self._active = None
         self._buffer = b""
         self._suspect = None
-        quiet_s = t + self._gap_s
+        quiet_s = t + self.gap_s
         if quiet_s > self._quiet_s:
             self._quiet_s = quiet_s
         station = request.station
@@ -277,7 +245,9 @@ class ModbusLink:
         station.is_lost = False
         schedule = self._schedule
         if not station.reply.measured:
-            self._measured(station, t - request.sent_s - request.wire_s)
+            station.reply.note(max(0.0, t - request.sent_s - request.wire_s))
+            if station.reply.measured:
+                self._retimed(station)
         schedule.succeeded(request, t)
         self.wants_s = schedule.wants_s
         latest_s = schedule.latest_s
@@ -285,15 +255,9 @@ class ModbusLink:
         # A tick that came late cannot make a reading look newer than the time-out allows.
         station.owner.received(request, data, t if t < self._give_up_s else self._give_up_s)
 
-    def _measured(self, station: Station, seconds: float) -> None:
-        """Take note of how long a reply took beyond the wire."""
-        station.reply.note(max(0.0, seconds))
-        if station.reply.measured:
-            self._retimed(station)
-
     def _retimed(self, station: Station) -> None:
         """Let what is known of a station's replies count."""
-        self._type.measured(station)
+        self.measured(station)
         self._schedule.look_again()
 
     def _time_out(self, request: Request, now: float) -> None:
@@ -307,7 +271,7 @@ class ModbusLink:
         station.counters.timeouts += 1
         if self._buffer:
             station.counters.garbage += 1
-        if self._socket:
+        if self.socket:
             self._doubt = f"no reply on {request.describe()}"
             self._fail(request, now, now)
             return
@@ -338,7 +302,7 @@ class ModbusLink:
         elif kind is AnswerKind.EXCEPTION:
             self._except(request, answer.code, t)
         elif kind is AnswerKind.BROKEN:
-            self._fail(request, t, t + self._gap_s + request.reply_wire_s)
+            self._fail(request, t, t + self.gap_s + request.reply_wire_s)
         else:
             self._doubt = answer.why  # the connection is dropped
             self._fail(request, t, t)
@@ -349,24 +313,24 @@ class ModbusLink:
         exceptions = station.counters.exceptions
         exceptions[code] = exceptions.get(code, 0) + 1
         if code in _CONFIGURATION:
-            self._end(t + self._gap_s)
+            self._end(t + self.gap_s)
             self._schedule.disable(request)
             self._schedule.look_again()
             if station.refused is None:
                 text = codec.EXCEPTION_TEXTS[code]
                 station.refused = f"exception {code} ({text}) on {request.describe()}"
         elif code in _DEVICE_GONE:
-            self._end(t + self._gap_s)
+            self._end(t + self.gap_s)
             station.misses = MISSES_TO_LOSE
             self._schedule.failed(request, t)
             if not station.is_lost:
                 self._lose(station, t)
         else:
-            self._fail(request, t + BUSY_S, t + self._gap_s)
+            self._fail(request, t + BUSY_S, t + self.gap_s)
 
     def _unasked(self, t: float) -> None:
         """Count bytes nobody waits for; after a time-out they are the late reply, and the silence starts anew."""
-        if self._socket:
+        if self.socket:
             if not self._doubt:
                 self._doubt = "bytes that nobody asked for"
                 self.garbage += 1
@@ -375,7 +339,7 @@ class ModbusLink:
         suspect = self._suspect
         if suspect is None:
             self.garbage += 1
-            self._quiet_s = max(self._quiet_s, t + self._gap_s)
+            self._quiet_s = max(self._quiet_s, t + self.gap_s)
             return
         station = suspect.station
         station.counters.late += 1

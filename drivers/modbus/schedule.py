@@ -20,7 +20,7 @@ _EARLY_S: Final = 1e-3
 
 
 class Schedule:
-    """The requests of one line. Of those due, the one goes first that has waited longest, priority added.
+    """The requests of one line. Of those due, the one goes first that has waited longest.
 
     ``wants_s``: before it there is nothing to choose (s); ``latest_s``: when the first request will have waited as long
     as it may, of those not under way.
@@ -88,9 +88,9 @@ class Schedule:
                     continue
                 if request.period_s == 0.0 and not scan and not request.attempts:
                     continue
-                if due - request.priority_s < rank:
+                if due < rank:
                     # The one chosen so far is one of the others now.
-                    before, chosen, rank = chosen, request, due - request.priority_s
+                    before, chosen, rank = chosen, request, due
                     if before is None:
                         continue
                     request = before

@@ -13,7 +13,7 @@ from functools import partial
 from typing import Final
 
 from drivers.canopen import objects as o
-from sim.faults import can, drives, modbus, operation
+from sim.faults import cabinet, can, drives, modbus
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.language import FaultLanguage
 from sim.wires.modbus_wire import Kind
@@ -67,19 +67,19 @@ def bus_rows(drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
     """Yield how the bus and the safety inputs fail."""
     yield FaultKind("CAN adapter gone", can.adapter_gone, drives_on, _TRIP, SCAN_S)
     yield FaultKind("CAN bus off", can.bus_silent, drives_on, _TRIP, 0.2 + SCAN_S)
-    yield FaultKind("safety chain opened", operation.chain_open, drives_on, _TRIP, SCAN_S)
-    yield FaultKind("guard opened", operation.guard_open, enabled, _TRIP, SCAN_S)
+    yield FaultKind("safety chain opened", cabinet.chain_open, drives_on, _TRIP, SCAN_S)
+    yield FaultKind("guard opened", cabinet.guard_open, enabled, _TRIP, SCAN_S)
 
 
 def computer_rows(always: Enum, drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
     """Yield what the computer and its operator do."""
-    yield FaultKind("scan stalled", operation.stalled, enabled, _TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
+    yield FaultKind("scan stalled", cabinet.stalled, enabled, _TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
                     note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
-    yield FaultKind("process killed", operation.killed, always, Expected.DEVICES, 0.25)
-    yield FaultKind("operator hold", partial(operation.operator, "hold"), drives_on, Expected.HOLD, SCAN_S)
-    yield FaultKind("operator release", partial(operation.operator, "release"), always, Expected.RIDE, 0.0)
+    yield FaultKind("process killed", cabinet.killed, always, Expected.DEVICES, 0.25)
+    yield FaultKind("operator hold", partial(cabinet.operator, "hold"), drives_on, Expected.HOLD, SCAN_S)
+    yield FaultKind("operator release", partial(cabinet.operator, "release"), always, Expected.RIDE, 0.0)
     for action in ("abort", "stop", "fast stop"):
-        yield FaultKind(f"operator {action}", partial(operation.operator, action), drives_on, Expected.STOP,
+        yield FaultKind(f"operator {action}", partial(cabinet.operator, action), drives_on, Expected.STOP,
                         SCAN_S)
 
 

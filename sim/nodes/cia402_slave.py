@@ -20,18 +20,16 @@ from sim.nodes import drive_objects
 from sim.nodes.drive_modes import ProfileVelocity
 from sim.nodes.drive_objects import clamped_i16, wrapped_i32
 from sim.nodes.drive_positioning import Homing, ProfilePosition
-from sim.nodes.drive_power import ENERGISED, FAULTY, Axis, DrivePower
+from sim.nodes.drive_power import FAULTY, Axis, DrivePower
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import ObjectStore
 from sim.nodes.pdo_channels import ReceivePdo, TransmitPdo
 from sim.wires.can_wire import CanWire
 
 _CONTROLWORD: Final = (o.CONTROLWORD, 0)
-_MODE: Final = (o.MODE, 0)
 _OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
 _OUTPUT_MASK: Final = (o.DIGITAL_OUTPUTS, 2)
 _NO_MASK: Final = 0xFFFF_FFFF
-
 _TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 _MAX_TORQUE: Final = (o.MAX_TORQUE, 0)
 
@@ -128,7 +126,6 @@ class Cia402Slave(DrivePower):
     # time ----------------------------------------------------------------------------------------------------
 
     def advance(self, t0: float, t1: float) -> None:
-        """Move axis and timers from ``t0`` to ``t1`` s; what falls due in between is done and stamped at its time."""
         while self.due_s <= t1:
             t = self.due_s
             if t > t0:
@@ -181,11 +178,6 @@ class Cia402Slave(DrivePower):
         self.pdos.stale = True
 
     @property
-    def energised(self) -> bool:
-        """The power stage is on: the drive can give torque."""
-        return self.state in ENERGISED
-
-    @property
     def torque_limit_nm(self) -> float:
         """What 0x6072 leaves the drive, N m."""
         return self.store.values[_MAX_TORQUE] / self._per_mille
@@ -235,7 +227,7 @@ class Cia402Slave(DrivePower):
             self._switch_outputs(self.config.io.outputs_meant(values[_OUTPUTS] & mask), t)
         if self.local:
             return
-        self.select_mode(values[_MODE])
+        self.select_mode(values[(o.MODE, 0)])
         self._command(controlword, t)
         mode = self.mode
         if mode is not None:
@@ -321,13 +313,11 @@ class Cia402Slave(DrivePower):
             self.pdos.status_changed(t)
 
     def prepare_source(self, pdo: TransmitPdo) -> None:
-        """Give the usual TPDO1 its own packing."""
         usual = TPDO1_POSITION if self._by_position else TPDO1_VELOCITY
         if pdo.fields == usual.fields:
             pdo.source = self._sample
 
     def prepare_sink(self, pdo: ReceivePdo) -> None:
-        """Give the usual RPDO1 of a velocity drive a short cut to its target."""
         if pdo.fields == RPDO1_VELOCITY.fields:
             pdo.sink = self._take_velocity
 

@@ -98,6 +98,11 @@ class DrivePower(CanopenDevice):
     def update(self, t: float) -> None:
         """Compose the statusword."""
 
+    @property
+    def energised(self) -> bool:
+        """The power stage is on: the drive can give torque."""
+        return self.state in ENERGISED
+
     def reload_ramps(self) -> None:
         """Take over ramp and window objects; a move under way continues with them."""
         self.ramps.load(self.store, self.config)

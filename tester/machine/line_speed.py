@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from drivers.modbus.reply_times import REPLIES
+from drivers.modbus.request import REPLIES
 from drivers.sensor import Sensor
 from tester.machine.devices import DeviceList
 from tester.machine.modbus_health import FieldDevice
@@ -68,7 +68,7 @@ def described(devices: DeviceList) -> str:
         parts.append(f"{device.title} {1e3 * reply.least_s:.1f} to {_ms(reply.greatest_s)}")
     text = "replies beyond the wire: " + ", ".join(parts)
     for port, link in devices.lines:
-        if link.hears_itself and link.stations:
+        if link.ear.hears_itself and link.stations:
             text += "; an adapter hears itself, its echo is taken off"
         flag = getattr(port, "low_latency", None)
         if flag is not None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import inf, isfinite
 
 from sim.faults import FaultLanguage, FaultScript, FaultTextError, Scene
-from sim.faults.operation import OfComputer
+from sim.faults.cabinet import OfComputer
 from sim.machines import SimulatedMachine
 from sim.rig import SimRig
 from tester.base import clock

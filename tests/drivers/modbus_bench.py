@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from drivers.crc16 import with_crc
 from drivers.modbus import ModbusLink, Request
-from drivers.modbus.reply_times import REPLIES
+from drivers.modbus.request import REPLIES
 from drivers.ports import BusLost
 from drivers.profiles import Timing
 

@@ -38,7 +38,7 @@ def writing(*, values: tuple[int, ...] = (1,)) -> tuple[Bench, Request]:
 def test_a_reply_behind_its_own_request_shows_an_adapter_that_hears_itself() -> None:
     bench, request = reading()
     bench.serve(0.02, (0.01, READ + reply(1, 2)))
-    assert bench.link.hears_itself is True
+    assert bench.link.ear.hears_itself is True
     assert [data for _, data in bench.notes.replies] == [bytes.fromhex("00010002")]
     assert request.station.counters.garbage == 0
 
@@ -46,13 +46,13 @@ def test_a_reply_behind_its_own_request_shows_an_adapter_that_hears_itself() -> 
 def test_a_reply_alone_shows_an_adapter_that_does_not() -> None:
     bench, _ = reading()
     bench.serve(0.02, (0.01, reply(1, 2)))
-    assert bench.link.hears_itself is False
+    assert bench.link.ear.hears_itself is False
 
 
 def test_an_exception_alone_shows_it_too() -> None:
     bench, _ = reading()
     bench.serve(0.02, (0.01, refusal(2)))
-    assert bench.link.hears_itself is False
+    assert bench.link.ear.hears_itself is False
 
 
 @pytest.mark.parametrize("size", range(1, 9))
@@ -61,7 +61,7 @@ def test_the_echo_may_come_in_pieces(size: int) -> None:
     data = READ + reply(1, 2)
     chunks = [(0.001 * at, data[at : at + size]) for at in range(0, len(data), size)]
     bench.serve(0.03, *chunks)
-    assert bench.link.hears_itself is True
+    assert bench.link.ear.hears_itself is True
     assert len(bench.notes.replies) == 1
 
 
@@ -134,6 +134,6 @@ def test_an_adapter_that_begins_to_hear_itself_is_noticed_at_the_next_read() -> 
     bench.serve(0.02, (0.01, reply(1, 2)), scan=False)
     bench.serve(1.1)
     bench.serve(1.12, (1.11, READ + reply(3, 4)), scan=False)
-    assert bench.link.hears_itself is True
+    assert bench.link.ear.hears_itself is True
     assert bench.notes.replies[-1][1] == bytes.fromhex("00030004")
     assert read.station.counters.garbage == 0

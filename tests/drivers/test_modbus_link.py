@@ -168,16 +168,6 @@ def test_the_longest_waiting_goes_first() -> None:
     assert bench.frames == [early.frame]
 
 
-def test_priority_counts_as_waiting_longer() -> None:
-    bench = Bench()
-    station = bench.station()
-    late = bench.link.read(station, 3, 0, 9, 1.0, priority_s=0.5)
-    bench.link.enable(late, 0.2)
-    bench.link.enable(bench.link.read(station, 3, 20, 9, 1.0), 0.1)
-    bench.serve(0.3)
-    assert bench.frames == [late.frame]
-
-
 def test_the_same_read_is_the_same_bytes_object() -> None:
     bench = Bench()
     bench.link.enable(bench.link.read(bench.station(), 3, 0, 9, 0.0))

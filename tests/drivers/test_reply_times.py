@@ -6,7 +6,7 @@ import pytest
 
 from drivers.modbus import Request
 from drivers.modbus.line import RTU_MARGIN_S
-from drivers.modbus.reply_times import REPLIES, REPLY_FACTOR, UNMEASURED_S, ReplyTimes
+from drivers.modbus.request import REPLIES, REPLY_FACTOR, UNMEASURED_S, ReplyTimes
 from drivers.profiles import Timing
 from tests.drivers.modbus_bench import TIMING, Bench, reply
 

@@ -11,7 +11,7 @@ from enum import Enum
 from functools import partial
 from typing import Final
 
-from sim.faults import can, drives, modbus, operation
+from sim.faults import cabinet, can, drives, modbus
 from sim.faults.common import (
     SCAN_S,
     bus_rows,
@@ -135,7 +135,7 @@ def _rows() -> Iterator[FaultKind]:
     yield from _drive_rows()
     yield from bus_rows(Onset.DRIVES, Onset.ENABLED)
     yield FaultKind("CAN frames repeated", can.frames_repeated, Onset.ALWAYS, Expected.RIDE, 0.0)
-    yield FaultKind("emergency stop pressed", partial(operation.emergency_stop, ("track",)), Onset.DRIVES,
+    yield FaultKind("emergency stop pressed", partial(cabinet.emergency_stop, ("track",)), Onset.DRIVES,
                     Expected.TRIP, SCAN_S)
     yield from _device_rows()
     yield from computer_rows(Onset.ALWAYS, Onset.DRIVES, Onset.ENABLED)

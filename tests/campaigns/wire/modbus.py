@@ -9,7 +9,7 @@ from typing import Final
 
 from drivers.crc16 import with_crc
 from drivers.modbus import ModbusLink, Request
-from drivers.modbus.reply_times import REPLIES
+from drivers.modbus.request import REPLIES
 from drivers.ports import LineWatcher, Unwatch
 from drivers.profiles import Timing
 from tests.campaigns.wire.tally import Tally

@@ -13,10 +13,10 @@ from functools import partial
 
 from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand
+from sim.faults import cabinet as p
 from sim.faults import can as c
 from sim.faults import drives as d
 from sim.faults import modbus as m
-from sim.faults import operation as p
 from sim.faults.common import SCAN_S, bus_rows, connecting_rows, drive_rows, left_operation_rows
 from sim.faults.kinds import Expected, FaultKind
 from sim.faults.scene import Effect

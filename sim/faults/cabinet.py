@@ -1,4 +1,4 @@
-"""Faults of what operates the rig: contactor, safety chain and guard, the computer and its operator."""
+"""Faults of the control cabinet: contactor, safety chain and guard, the computer and its operator."""
 
 from __future__ import annotations
 
