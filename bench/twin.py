@@ -16,7 +16,7 @@ from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from drivers.temperature_controller import TemperatureController
 from sim.machines.wheel_on_belt.plant import Plant
-from sim.machines.wheel_on_belt.scatter import WheelSetting
+from sim.machines.wheel_on_belt.rubbing import WheelSetting
 from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.sensor_slave import CellSlave, IrSlave
 from sim.physics.contact import ContactModel

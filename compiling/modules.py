@@ -30,7 +30,7 @@ HOT = (
     "sim/machines/wheel_on_belt/heat_flow.py",
     "sim/machines/wheel_on_belt/plant.py",
     "sim/machines/wheel_on_belt/rig.py",
-    "sim/machines/wheel_on_belt/scatter.py",
+    "sim/machines/wheel_on_belt/rubbing.py",
     "sim/machines/wheel_on_belt/sensors.py",
     "sim/machines/wheel_on_belt/torque.py",
     "sim/physics/friction.py",

@@ -1,101 +1,36 @@
-"""The plant: wheel, belt, contact, heat, wear and what the sensors see of them.
+"""The plant: wheel, belt, contact, heat and what the sensors see of them; friction and wear: ``rubbing``.
 
-``Plant.advance`` is called once a tick with where the drives are at its end; forces follow at once, heat in
-steps of its own. Forces are those on the belt in the wheel's frame: Fx along the wheel's plane (above 0
-when the wheel drives), Fy across it, Fz the load. Every public attribute is the truth; the ``measured``
-methods are what instruments make of it. ``diameter_mm`` is the wheel's as it is, grown by its heat; ``cold_mm`` that
-at ambient temperature, which a calliper would find: wear takes from it.
+``Plant.advance`` is called once a tick with where the drives are at its end; forces follow at once, heat in steps of
+its own. Every public attribute is the truth; the ``measured`` methods are what instruments make of it.
 """
 
 from __future__ import annotations
 
 import math
-from math import cos, exp, inf, pi, radians, sin, sqrt
+from math import cos, exp, inf, pi, sin, sqrt
 from typing import Final
 
 from sim.machines.wheel_on_belt.heat_flow import SAME_STEP_S, HeatFlow
-from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor, run_factor, wheel_factor
+from sim.machines.wheel_on_belt.rubbing import Rubbing, WheelSetting, condition_factor, run_factor, wheel_factor
 from sim.machines.wheel_on_belt.sensors import LoadCellSensor
-from sim.noise import Autoregressive, NormalStream, StickSlip, uniforms
-from sim.physics import laws
+from sim.noise import NormalStream, uniforms
 from sim.physics.contact import ContactModel, Relaxation, Warmth
 from sim.physics.parameters import SimParameters
-from sim.physics.slip import cornering_factor, traction_direction
 from sim.physics.thermal import ThermalModel, ThermalState
 from sim.sensors import SpeedSensor, TemperatureSensor
 
 _TURN: Final = 2.0 * pi
 _SAME_SIZE_K: Final = 0.005
 """A change of the rubber's mean temperature that is waited for: 0.02 um of radius, 0.002 % of stiffness."""
-_RUNNING_IN_LASTS: Final = 37.0
-"""Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
 
-class Plant:
+class Plant(Rubbing):
     """The physics of one rig, with a wheel on it after ``install``. Deep-copyable; all randomness from one seed."""
-
-    __slots__ = (
-        "_arm_m",
-        "_blunts",
-        "_cold_factor",
-        "_compound",
-        "_cornering",
-        "_cos",
-        "_deficit",
-        "_deficit_keep",
-        "_dt",
-        "_excess",
-        "_flow",
-        "_friction",
-        "_grip",
-        "_law",
-        "_noise",
-        "_place",
-        "_relaxation",
-        "_rotating_above",
-        "_run_in_m",
-        "_run_in_scale_m",
-        "_scatter",
-        "_seed",
-        "_sideslip_deg",
-        "_sin",
-        "_stick_slip",
-        "_stiffness",
-        "_swing_mm",
-        "_touch_mm",
-        "_warm_c",
-        "_warmth",
-        "_wear_per_width",
-        "_within",
-        "belt_grip",
-        "belt_speed",
-        "cold_mm",
-        "condition_factor",
-        "diameter_mm",
-        "drive_torque_nm",
-        "force_x_n",
-        "force_y_n",
-        "force_z_n",
-        "hub_sensor",
-        "hung",
-        "ir",
-        "load_cell",
-        "mu",
-        "parameters",
-        "run_factor",
-        "size",
-        "sliding_m",
-        "slip_m_s",
-        "surface_c",
-        "wheel_angle_rev",
-        "wheel_factor",
-        "wheel_speed",
-    )  # fmt: skip
 
     def __init__(self, parameters: SimParameters, seed: int) -> None:
         """Build a rig at ambient temperature without a wheel; draw what stays the same for the session."""
+        super().__init__(parameters, seed)
         p = parameters
-        self.parameters = p
         self._seed = seed
         contact = ContactModel(p.contact)
         self._stiffness = (contact.factor, contact.exponent, contact.damping_n_s_mm)
@@ -105,41 +40,18 @@ class Plant:
         self._relaxation: Relaxation | None = None
         self.size = 1.0
         self.set_runout(p.contact.runout)
-        self._arm_m = 0.001 * p.friction.aligning_arm
         self._rotating_above = p.thermal.rotating_above
-        self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
-        self._stick_slip: StickSlip | None = None
-        if p.stick_slip > 0.0:
-            self._stick_slip = StickSlip(p.stick_slip, p.stick_slip_frequency, NormalStream(seed, "unused"))
-        self._grip = 1.0
-        self._blunts = p.counterface.loss > 0.0
-        self.belt_grip = 1.0
-        """What the belt has left of the grip that it began with; wheels come and go on it."""
-        self._dt, self._deficit_keep = 0.0, 1.0
+        self._dt = 0.0
         self.set_relaxation(p.relaxation * p.contact.relaxation)
-        self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
         self._build_sensors()
         self.hung: tuple[float, float, float] | None = None
         """What a person has hung on the load cell, N."""
         model = ThermalModel(p.wheel, p.thermal, p.friction_heat_fraction, p.belt_conductance)
         self._flow = HeatFlow(model, p.ambient, self.hub_sensor, self.load_cell)
-        self._compound = ""
-        self._friction, self._run_in_scale_m = p.friction, p.abrasion.running_in_distance
-        self._take("1#")
         self._place: tuple[int, ...] = ()
-        self.wheel_factor = self.condition_factor = self.run_factor = self._scatter = 1.0
         self._mount(p.wheel.outer_diameter, 0.0)
         self._touch_mm = inf  # nothing to touch before a wheel is installed
         self._key_streams()
-
-    def _take(self, compound: str) -> None:
-        """Take the law of a compound, and what running-in and wear make of the parameters."""
-        p = self.parameters
-        a = p.abrasion
-        self._law = laws.make(p.friction_model, compound)
-        self._excess = p.running_in * a.running_in_excess
-        self._run_in_m = _RUNNING_IN_LASTS * a.running_in_distance if self._excess > 0.0 else 0.0
-        self._wear_per_width = p.wear * a.wear_rate / (pi * p.wheel.width)
 
     def _build_sensors(self) -> None:
         """Make the sensors with the imperfections of this session."""
@@ -182,13 +94,6 @@ class Plant:
         self.slip_m_s = 0.0
         self.ir.reset(self.surface_c)
         self._release()
-
-    def _release(self) -> None:
-        """Take all force off; the next touch builds friction up anew."""
-        self.mu = 0.0
-        self.force_x_n = self.force_y_n = self.force_z_n = 0.0
-        self.drive_torque_nm = 0.0
-        self._deficit = self.parameters.friction.touch_deficit
 
     def install(
         self,
@@ -235,33 +140,6 @@ class Plant:
         self._place = place
         self._key_streams()
 
-    def truth(self, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> dict[str, float]:
-        """Return what makes the coefficient of the repeat that has begun, and the state that it begins in.
-
-        ``model``: of the compound at these setpoints; times ``condition`` and ``wheel`` it is this wheel's coefficient
-        in this condition on the belt as it was at first, times ``belt`` on the belt as it is, times ``run`` this
-        repeat's, before noise, running-in and wear.
-        """
-        model = self._law.mu(temperature_c, load_n, slip_m_s) * cornering_factor(self._compound, sideslip_deg)
-        return {
-            "model": model,
-            "condition": self.condition_factor,
-            "wheel": self.wheel_factor,
-            "run": self.run_factor,
-            "belt": self.belt_grip,
-            "surface_c": self.surface_c,
-            "diameter_mm": self.diameter_mm,
-        }
-
-    def set_grip(self, share: float) -> None:
-        """Let the belt transmit this share of the friction from now on: 1 as at first, 0 torn, above 1 sharper."""
-        self._grip = share
-        self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
-
-    def travel(self, travel_m: float, surface_c: float) -> None:
-        """Let the belt travel under load, m, below rubber of a surface temperature, degC: it goes blunt and clogs."""
-        self.belt_grip *= self.parameters.counterface.grip_kept(travel_m, surface_c)
-
     def set_runout(self, runout_mm: float) -> None:
         """Let the tread swing by this much, peak to peak in mm, once a turn."""
         self._swing_mm = 0.5 * runout_mm
@@ -303,7 +181,7 @@ class Plant:
         sideslip_deg: float,
         heater_w: float,
     ) -> None:
-        """Move on by ``dt`` s, 1 to 100 ms, with speeds and positions as at its end and the heater's mean power.
+        """Move on by ``dt`` s, 1 to 100 ms: speeds and positions are those at its end, the heater's power is its mean.
 
         ``press_mm`` is 0 when fully lifted and grows towards the wheel.
         """
@@ -318,12 +196,10 @@ class Plant:
         vx = wheel_m_s - belt_m_s * self._cos
         vy = belt_m_s * self._sin
         self.slip_m_s = sqrt(vx * vx + vy * vy)
-
         power_w = load_n = 0.0
         depth_mm, swing, relaxation = press_mm - self._touch_mm, self._swing_mm, self._relaxation
         if depth_mm > -swing:
-            angle = _TURN * turns
-            depth_mm += swing * sin(angle)
+            depth_mm += swing * sin(_TURN * turns)
         if depth_mm > 0.0:
             factor, exponent, damping = self._stiffness
             load_n = factor * math.pow(depth_mm, exponent)
@@ -338,13 +214,9 @@ class Plant:
             power_w = self._rub(dt, load_n, vx, vy)
         elif self.force_z_n > 0.0:
             self._release()
-
-        above = self._rotating_above
-        self.surface_c = surface_c = self._flow.advance(
-            dt, heater_w, power_w, load_n > 0.0, wheel_m_s > above or wheel_m_s < -above
-        )
-        ir = self.ir
-        ir.lagged_c += (surface_c - ir.lagged_c) * ir.gain  # as ``follow`` does
+        turning = abs(wheel_m_s) > self._rotating_above
+        self.surface_c = surface_c = self._flow.advance(dt, heater_w, power_w, load_n > 0.0, turning)
+        self.ir.follow(surface_c)
 
     def _retime(self, dt: float) -> None:
         """Prepare what depends on the length of a tick alone."""
@@ -354,52 +226,6 @@ class Plant:
         self._within.retime(dt)
         self.ir.retime(dt)
         self._deficit_keep = exp(-dt / self.parameters.friction.touch_time)
-
-    def _yaw(self, sideslip_deg: float) -> None:
-        """Prepare what depends on the sideslip angle alone."""
-        self._sideslip_deg = sideslip_deg
-        angle = radians(sideslip_deg)
-        self._cos, self._sin = cos(angle), sin(angle)
-        self._cornering = cornering_factor(self._compound, sideslip_deg) if self._compound else 1.0
-
-    def _rub(self, dt: float, load_n: float, vx: float, vy: float) -> float:
-        """Set the forces of a loaded contact, wear the tread and return the friction power in W."""
-        friction, slip_m_s = self._friction, self.slip_m_s
-        floor_n = friction.load_floor
-        mu = self._law.mu(self.surface_c, load_n if load_n > floor_n else floor_n, slip_m_s)
-        within = self._within
-        if within.kick:
-            within.value = within.keep * within.value + within.kick * self._noise.next()
-        mu *= self._cornering * self._scatter * (1.0 + within.value)
-        sliding_m = self.sliding_m
-        if sliding_m < self._run_in_m:
-            mu *= 1.0 + self._excess * exp(-sliding_m / self._run_in_scale_m)
-        if self._blunts:
-            mu *= self.belt_grip
-        if self._stick_slip is not None and slip_m_s > friction.creep:
-            mu *= self._stick_slip.factor(dt)
-        mu *= 1.0 - self._deficit
-        self._deficit *= self._deficit_keep
-
-        self.mu = mu
-        friction_n = mu * load_n
-        creep, reversal = friction.creep, friction.reversal_width
-        if vy == 0.0:
-            along = vx + creep / (1.0 + slip_m_s * slip_m_s / (creep * creep))
-            cx, cy = 1.0 if along >= reversal else -1.0 if along <= -reversal else along / reversal, 0.0
-        else:
-            cx, cy = traction_direction(vx, vy, creep, reversal)
-        self.force_x_n, self.force_y_n, self.force_z_n = friction_n * cx, friction_n * cy, load_n
-        diameter_mm = self.diameter_mm
-        self.drive_torque_nm = 0.0005 * diameter_mm * friction_n * cx
-
-        slid_m = slip_m_s * dt
-        self.sliding_m = sliding_m + slid_m
-        worn_mm = self._wear_per_width * load_n * slid_m / diameter_mm
-        self.diameter_mm = diameter_mm - 2.0 * worn_mm
-        self.cold_mm -= 2.0 * worn_mm
-        self._touch_mm += worn_mm
-        return friction_n * slip_m_s
 
     def press_at_mm(self, load_n: float) -> float:
         """Return where the press would stand now under a load of at least 0 N, at rest, mm."""
@@ -412,16 +238,6 @@ class Plant:
     def heat(self) -> ThermalState:
         """True temperatures."""
         return self._flow.state
-
-    @property
-    def moment_z_nm(self) -> float:
-        """True aligning moment in N m."""
-        return self._arm_m * self.force_y_n
-
-    @property
-    def belt_force_n(self) -> float:
-        """True force on the belt along its travel, in N."""
-        return self.force_x_n * self._cos - self.force_y_n * self._sin
 
     @property
     def hub_c(self) -> float:

@@ -13,7 +13,7 @@ from typing import Final
 
 from drivers.axis import AxisConfig
 from sim.machines.wheel_on_belt.plant import Plant
-from sim.machines.wheel_on_belt.scatter import WheelSetting
+from sim.machines.wheel_on_belt.rubbing import WheelSetting
 from sim.machines.wheel_on_belt.torque import PressScrew, capstan_n, shafts
 from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.controller_slave import ControllerSlave

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor
+from sim.machines.wheel_on_belt.rubbing import WheelSetting, condition_factor
 from sim.physics.friction import coefficient
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity

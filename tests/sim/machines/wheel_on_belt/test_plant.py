@@ -10,7 +10,7 @@ from itertools import pairwise
 import pytest
 
 from sim.machines.wheel_on_belt.plant import Plant
-from sim.machines.wheel_on_belt.scatter import WheelSetting
+from sim.machines.wheel_on_belt.rubbing import WheelSetting
 from sim.physics.contact import ContactModel
 from sim.physics.friction import KNOWN, FrictionModel, UnknownCompoundError
 from sim.physics.parameters import ContactParameters, DriveParameters, SimParameters

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from sim.machines.wheel_on_belt.scatter import WheelSetting, condition_factor, run_factor, wheel_factor
+from sim.machines.wheel_on_belt.rubbing import WheelSetting, condition_factor, run_factor, wheel_factor
 from sim.noise import Autoregressive, NormalStream
 from sim.physics.parameters import SimParameters
 from tests.campaigns.acceptance.sigma import stated_sigma

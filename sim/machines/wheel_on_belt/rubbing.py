@@ -1,0 +1,194 @@
+"""Friction between wheel and belt: the law, what scatters about it, and what it wears.
+
+Forces are those on the belt in the wheel's frame: Fx along the wheel's plane (above 0 when the wheel drives), Fy across
+it, Fz the load. ``diameter_mm`` is the wheel's as it is, grown by its heat; ``cold_mm`` that at ambient temperature,
+which a calliper would find: wear takes from it.
+
+Scatter multiplies the coefficient. A setting has one factor for each compound, however often a recipe measures it, on
+whichever wheel, in whichever place: it is how far the model misses the rubber there. A wheel and a repeat have their
+own.
+"""
+
+from __future__ import annotations
+
+import zlib
+from math import cos, exp, inf, pi, radians, sin
+from typing import Final, NamedTuple
+
+from sim.noise import Autoregressive, NormalStream, StickSlip, normal
+from sim.physics import laws
+from sim.physics.parameters import SimParameters
+from sim.physics.slip import cornering_factor, traction_direction
+
+_RUNNING_IN_LASTS: Final = 37.0
+"""Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
+
+
+class Rubbing:
+    """A wheel that rubs on a belt: its forces, its wear, the belt's grip. ``Plant`` presses, heats and measures it."""
+
+    def __init__(self, parameters: SimParameters, seed: int) -> None:
+        """Begin with a new belt that nothing touches."""
+        p = parameters
+        self.parameters = p
+        self.surface_c = p.ambient
+        self.cold_mm = self.diameter_mm = p.wheel.outer_diameter
+        self._touch_mm = inf  # nothing to touch before a wheel is installed
+        self.slip_m_s = self.sliding_m = 0.0
+        self._arm_m = 0.001 * p.friction.aligning_arm
+        self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
+        self._noise = NormalStream(seed, "unused")  # each place has its own
+        self._stick_slip: StickSlip | None = None
+        if p.stick_slip > 0.0:
+            self._stick_slip = StickSlip(p.stick_slip, p.stick_slip_frequency, self._noise)
+        self._grip = 1.0
+        self._blunts = p.counterface.loss > 0.0
+        self.belt_grip = 1.0
+        """What the belt has left of the grip that it began with; wheels come and go on it."""
+        self._deficit_keep = 1.0
+        self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
+        self._compound = ""
+        self._friction, self._run_in_scale_m = p.friction, p.abrasion.running_in_distance
+        self.wheel_factor = self.condition_factor = self.run_factor = self._scatter = 1.0
+        self._take("1#")
+        self._release()
+
+    def _take(self, compound: str) -> None:
+        """Take the law of a compound, and what running-in and wear make of the parameters."""
+        p = self.parameters
+        a = p.abrasion
+        self._law = laws.make(p.friction_model, compound)
+        self._excess = p.running_in * a.running_in_excess
+        self._run_in_m = _RUNNING_IN_LASTS * a.running_in_distance if self._excess > 0.0 else 0.0
+        self._wear_per_width = p.wear * a.wear_rate / (pi * p.wheel.width)
+
+    def _release(self) -> None:
+        """Take all force off; the next touch builds friction up anew."""
+        self.mu = 0.0
+        self.force_x_n = self.force_y_n = self.force_z_n = 0.0
+        self.drive_torque_nm = 0.0
+        self._deficit = self.parameters.friction.touch_deficit
+
+    def truth(self, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> dict[str, float]:
+        """Return what makes the coefficient of the repeat that has begun, and the state that it begins in.
+
+        ``model``: of the compound at these setpoints; times ``condition`` and ``wheel`` it is this wheel's coefficient
+        in this condition on the belt as it was at first, times ``belt`` on the belt as it is, times ``run`` this
+        repeat's, before noise, running-in and wear.
+        """
+        model = self._law.mu(temperature_c, load_n, slip_m_s) * cornering_factor(self._compound, sideslip_deg)
+        return {
+            "model": model,
+            "condition": self.condition_factor,
+            "wheel": self.wheel_factor,
+            "run": self.run_factor,
+            "belt": self.belt_grip,
+            "surface_c": self.surface_c,
+            "diameter_mm": self.diameter_mm,
+        }
+
+    def set_grip(self, share: float) -> None:
+        """Let the belt transmit this share of the friction from now on: 1 as at first, 0 torn, above 1 sharper."""
+        self._grip = share
+        self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
+
+    def travel(self, travel_m: float, surface_c: float) -> None:
+        """Let the belt travel under load, m, below rubber of a surface temperature, degC: it goes blunt and clogs."""
+        self.belt_grip *= self.parameters.counterface.grip_kept(travel_m, surface_c)
+
+    def _yaw(self, sideslip_deg: float) -> None:
+        """Prepare what depends on the sideslip angle alone."""
+        self._sideslip_deg = sideslip_deg
+        angle = radians(sideslip_deg)
+        self._cos, self._sin = cos(angle), sin(angle)
+        self._cornering = cornering_factor(self._compound, sideslip_deg) if self._compound else 1.0
+
+    def _rub(self, dt: float, load_n: float, vx: float, vy: float) -> float:
+        """Set the forces of a loaded contact, wear the tread and return the friction power in W."""
+        friction, slip_m_s = self._friction, self.slip_m_s
+        floor_n = friction.load_floor
+        mu = self._law.mu(self.surface_c, load_n if load_n > floor_n else floor_n, slip_m_s)
+        within = self._within
+        if within.kick:
+            within.value = within.keep * within.value + within.kick * self._noise.next()
+        mu *= self._cornering * self._scatter * (1.0 + within.value)
+        sliding_m = self.sliding_m
+        if sliding_m < self._run_in_m:
+            mu *= 1.0 + self._excess * exp(-sliding_m / self._run_in_scale_m)
+        if self._blunts:
+            mu *= self.belt_grip
+        if self._stick_slip is not None and slip_m_s > friction.creep:
+            mu *= self._stick_slip.factor(dt)
+        mu *= 1.0 - self._deficit
+        self._deficit *= self._deficit_keep
+
+        self.mu = mu
+        friction_n = mu * load_n
+        creep, reversal = friction.creep, friction.reversal_width
+        if vy == 0.0:
+            along = vx + creep / (1.0 + slip_m_s * slip_m_s / (creep * creep))
+            cx, cy = 1.0 if along >= reversal else -1.0 if along <= -reversal else along / reversal, 0.0
+        else:
+            cx, cy = traction_direction(vx, vy, creep, reversal)
+        self.force_x_n, self.force_y_n, self.force_z_n = friction_n * cx, friction_n * cy, load_n
+        diameter_mm = self.diameter_mm
+        self.drive_torque_nm = 0.0005 * diameter_mm * friction_n * cx
+
+        slid_m = slip_m_s * dt
+        self.sliding_m = sliding_m + slid_m
+        worn_mm = self._wear_per_width * load_n * slid_m / diameter_mm
+        self.diameter_mm = diameter_mm - 2.0 * worn_mm
+        self.cold_mm -= 2.0 * worn_mm
+        self._touch_mm += worn_mm
+        return friction_n * slip_m_s
+
+    @property
+    def moment_z_nm(self) -> float:
+        """True aligning moment in N m."""
+        return self._arm_m * self.force_y_n
+
+    @property
+    def belt_force_n(self) -> float:
+        """True force on the belt along its travel, in N."""
+        return self.force_x_n * self._cos - self.force_y_n * self._sin
+
+
+def wheel_factor(parameters: SimParameters, seed: int, specimen: int, wheel: int) -> float:
+    """Return what multiplies the friction of one wheel."""
+    sigma = parameters.scatter * parameters.variability.wheel
+    return 1.0 + sigma * normal(seed, "wheel", specimen, wheel)
+
+
+class WheelSetting(NamedTuple):
+    """What a condition is held at, as far as friction depends on it: slip m/s, load N, angles deg, surface degC."""
+
+    slip_m_s: float
+    load_n: float
+    angles_deg: tuple[float, ...]
+    """Of the driven angles, in the order of the machine's axes."""
+    temperature_c: float
+
+    @property
+    def key(self) -> tuple[int, ...]:
+        """Return whole numbers of at least 0 that are the same for the same setting.
+
+        In steps of 0.1 mm/s, 0.1 N, 0.01 deg and 0.1 K, finer than a rig holds any of them. Slip and angles without
+        their sign, as in the friction law.
+        """
+        return (
+            round(1e4 * abs(self.slip_m_s)),
+            round(10.0 * self.load_n),
+            *(round(100.0 * abs(angle)) for angle in self.angles_deg),
+            round(10.0 * (self.temperature_c + 273.0)),
+        )
+
+
+def condition_factor(parameters: SimParameters, seed: int, compound: str, setting: WheelSetting) -> float:
+    """Return what multiplies the friction of a compound at a setting: how far the model misses it."""
+    sigma = parameters.scatter * parameters.variability.condition(compound)
+    return 1.0 + sigma * normal(seed, "condition", zlib.crc32(compound.encode()), *setting.key)
+
+
+def run_factor(parameters: SimParameters, seed: int, *place: int) -> float:
+    """Return what multiplies the friction of one repeat (specimen, wheel, condition, repeat, attempt)."""
+    return 1.0 + parameters.scatter * parameters.variability.run * normal(seed, "run", *place)
