@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import inf, nan
+from operator import attrgetter
 from typing import Final, TypeAlias
 
 from drivers.modbus import ModbusLink
@@ -18,6 +19,8 @@ PERIOD_S: Final = 0.01
 """Every transmitter is asked this often, or as often as its line carries: as one alone is in the fastest scans [A]."""
 STILL_N: Final = 5.0
 """A transmitter that shows less may show the same for long: it is not taken for one that repeats itself [A]."""
+
+_STAMP: Final = attrgetter("stamp_s")
 
 
 class Transmitter(Sensor):
@@ -167,7 +170,7 @@ class JoinedCell:
         alone is named, with those that are known not to answer.
         """
         found: list[str] = []
-        oldest = {one.link: one for one in sorted(self.transmitters, key=_stamp, reverse=True)}
+        oldest = {one.link: one for one in sorted(self.transmitters, key=_STAMP, reverse=True)}
         for one in self.transmitters:
             age_s = now - one.stamp_s
             if one.refused is not None:
@@ -181,12 +184,12 @@ class JoinedCell:
         if found:
             return ", ".join(found)
         if not self.skew_s <= self.most_skew_s:
-            first, last = min(self.transmitters, key=_stamp), max(self.transmitters, key=_stamp)
+            first, last = min(self.transmitters, key=_STAMP), max(self.transmitters, key=_STAMP)
             apart = f"{1e3 * self.skew_s:.0f} ms apart, at most {1e3 * self.most_skew_s:.0f} ms"
             return f"{first.title} and {last.title} are read {apart}"
         same = [one for one in self.transmitters if _bears(one)]
         if same:
-            stuck = min(same, key=_changed)
+            stuck = min(same, key=attrgetter("changed_s"))
             if now - stuck.changed_s > FROZEN_SAID_S:
                 return f"{stuck.title}: the same counts for {1e3 * (now - stuck.changed_s):.0f} ms"
         return ""
@@ -207,11 +210,3 @@ def links_of(cell: LoadCell) -> tuple[ModbusLink, ...]:
 def _bears(one: Transmitter) -> bool:
     """Tell whether it shows a force that cannot stand still while a wheel turns under it."""
     return any(not -STILL_N < value < STILL_N for value in one.raw)
-
-
-def _stamp(one: Transmitter) -> float:
-    return one.stamp_s
-
-
-def _changed(one: Transmitter) -> float:
-    return one.changed_s

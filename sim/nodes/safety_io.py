@@ -5,14 +5,7 @@ from __future__ import annotations
 from math import inf
 from typing import Final
 
-SAFETY_CHAIN: Final = 1 << 16
-"""0x60FD bit 16: the safety chain (emergency stop circuit) is healthy."""
-GUARD_CLOSED: Final = 1 << 17
-"""0x60FD bit 17: the guard is closed."""
-CONTACTOR: Final = 1 << 18
-"""0x60FD bit 18: the contactor has pulled in (feedback contact)."""
-CONTACTOR_REQUEST: Final = 1 << 16
-"""0x60FE:01 bit 16: pull the contactor in."""
+from drivers.digital_io import CONTACTOR, GUARD, REQUEST, SAFETY_CHAIN
 
 PULL_IN_S: Final = 0.03
 """From the request to the feedback of a small power contactor, s [A]."""
@@ -24,28 +17,23 @@ class SafetyIo:
     """Inputs as levels, and a contactor that needs both the request and a healthy safety chain.
 
     ``contactor_closed`` is the state of its power contacts; ``due_s`` is when it moves next; contacts that are
-    ``welded`` do not open.
+    ``welded`` do not open; ``requested``: the contactor is asked for.
     """
 
     def __init__(self) -> None:
         """Start with a healthy chain, a closed guard and the contactor open."""
         self._chain = True
         self._guard = True
-        self._requested = False
+        self.requested = False
         self._coil = True
         self.welded = False
         self.contactor_closed = False
         self.due_s = inf
 
     @property
-    def requested(self) -> bool:
-        """The contactor is asked for."""
-        return self._requested
-
-    @property
     def inputs(self) -> int:
         """The word of 0x60FD."""
-        return self._chain * SAFETY_CHAIN | self._guard * GUARD_CLOSED | self.contactor_closed * CONTACTOR
+        return self._chain * SAFETY_CHAIN | self._guard * GUARD | self.contactor_closed * CONTACTOR
 
     def set_chain(self, healthy: bool, t: float) -> None:
         """Open or close the safety chain at ``t`` s."""
@@ -58,10 +46,10 @@ class SafetyIo:
 
     def set_outputs(self, word: int, t: float) -> bool:
         """Take the word of 0x60FE:01, masked by :02, at ``t`` s; return whether the request changed."""
-        requested = bool(word & CONTACTOR_REQUEST)
-        if requested == self._requested:
+        requested = bool(word & REQUEST)
+        if requested == self.requested:
             return False
-        self._requested = requested
+        self.requested = requested
         self._aim(t)
         return True
 
@@ -86,7 +74,7 @@ class SafetyIo:
         self._aim(t)
 
     def _aim(self, t: float) -> None:
-        wanted = self._requested and self._chain and self._coil
+        wanted = self.requested and self._chain and self._coil
         if wanted == self.contactor_closed:
             self.due_s = inf
         elif self.due_s == inf:

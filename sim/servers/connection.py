@@ -4,6 +4,13 @@ from __future__ import annotations
 
 import socket
 import sys
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Sequence
+from typing import Generic, TypeVar
+
+from sim.servers.doors import Readable
+
+Session = TypeVar("Session")
 
 MOST_UNSENT = 256 * 1024
 """Bytes kept for a client that does not read; beyond them what is new is dropped, as a full adapter does [A]."""
@@ -54,6 +61,72 @@ class Connection:
     def close(self) -> None:
         """Close the connection."""
         self.socket.close()
+
+
+def accepted(listener: socket.socket) -> Connection | None:
+    """Return the next client's connection; None where the client has left already."""
+    try:
+        return Connection(listener.accept()[0])
+    except OSError:
+        return None
+
+
+class ClientsDoor(ABC, Generic[Session]):
+    """A TCP door with several clients, each with a session; beyond ``most`` a connection is closed at once."""
+
+    def __init__(self, listener: socket.socket, most: int, begin: Callable[[], Session]) -> None:
+        """Wait for clients; ``begin`` makes a client's session."""
+        self.listener = listener
+        self._most, self._begin = most, begin
+        self.clients: dict[socket.socket, tuple[Connection, Session]] = {}
+
+    @property
+    def taken(self) -> bool:
+        """Whether a client is connected."""
+        return bool(self.clients)
+
+    def sources(self) -> Sequence[Readable]:
+        """Return the listener and the clients."""
+        return [*self.clients, self.listener]
+
+    def read(self, ready: Collection[Readable], now: float) -> None:
+        """Serve the clients, then let others in."""
+        for client in [client for client in self.clients if client in ready]:
+            self.serve(*self.clients[client], now)
+        connection = accepted(self.listener) if self.listener in ready else None
+        if connection is None:
+            return
+        if len(self.clients) >= self._most:
+            connection.close()
+        else:
+            self.clients[connection.socket] = (connection, self._begin())
+
+    @abstractmethod
+    def serve(self, connection: Connection, session: Session, now: float) -> None:
+        """Take what a client has sent, at ``now`` s."""
+
+    def deliver(self, now: float) -> None:
+        """Send what is left to send, and forget clients that are gone."""
+        for client, (connection, session) in tuple(self.clients.items()):
+            connection.send(self.outgoing(session))
+            if connection.gone:
+                connection.close()
+                del self.clients[client]
+                self.left(session, now)
+
+    def outgoing(self, session: Session) -> bytearray:
+        """Return what a session has for its client; sending empties it."""
+        return bytearray()
+
+    def left(self, session: Session, now: float) -> None:
+        """Act on a client that is gone."""
+
+    def close(self) -> None:
+        """Shut the door and let go of every client."""
+        self.listener.close()
+        for connection, _ in self.clients.values():
+            connection.close()
+        self.clients.clear()
 
 
 def listen(host: str, port: int) -> socket.socket:

@@ -18,13 +18,12 @@ from sim.servers.adapter_door import AdapterDoor
 from sim.servers.connection import listen
 from sim.servers.doors import CAN_DOORS, Doors, Place, Readable, WireDoor
 from sim.servers.pty_doors import RtuDoor, SlcanDoor
-from sim.servers.tcp_doors import GatewayDoor, SocketcandDoor, address_of
+from sim.servers.tcp_doors import GatewayDoor, SocketcandDoor
 
 STEP_S = 0.01
 """The rig is advanced this often at least, s, and shown to the observer."""
 LONGEST_SLEEP_S = 0.05
 """Of this computer's clock: how long it takes to notice, at most, that it is asked to end, s [A]."""
-Address = tuple[str, int]
 
 
 class Observer(Protocol):
@@ -73,19 +72,6 @@ class RigServer:
             opened.pop_all()
         self._doors: list[WireDoor] = [self.can, *self.lines.values()]
         self._step_due_s = 0.0
-
-    @property
-    def can_address(self) -> Address:
-        """Where the CAN bus is, behind its TCP door."""
-        if not isinstance(self.can, SocketcandDoor):
-            raise TypeError(f"the CAN bus has no address: it is at {self.can.place}")
-        return _address(address_of(self.can.listener))
-
-    @property
-    def line_addresses(self) -> dict[str, Address]:
-        """Where each Modbus line with a TCP door is."""
-        doors = {name: door for name, door in self.lines.items() if isinstance(door, GatewayDoor)}
-        return {name: _address(address_of(door.listener)) for name, door in doors.items()}
 
     @property
     def line_places(self) -> dict[str, Place]:
@@ -173,8 +159,3 @@ def _open(rig: SimRig, doors: Doors, opened: ExitStack) -> tuple[WireDoor, dict[
         else:
             lines[name] = kept(RtuDoor(wire, wire.baud, links / name if links else None))
     return can, lines
-
-
-def _address(text: str) -> Address:
-    host, _, port = text.rpartition(":")
-    return host, int(port)

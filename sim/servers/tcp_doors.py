@@ -8,7 +8,7 @@ from math import inf
 from typing import Final
 
 from drivers.ports import BusLost
-from sim.servers.connection import Connection
+from sim.servers.connection import ClientsDoor, Connection, accepted
 from sim.servers.doors import Place, Readable
 from sim.servers.modbus_tcp import ModbusGateway, ModbusSession
 from sim.servers.socketcand import BUSY, SocketcandSession
@@ -61,11 +61,9 @@ class SocketcandDoor:
 
     def _accept(self) -> None:
         """Let a client in, or turn it away where another one is connected."""
-        try:
-            accepted, _ = self.listener.accept()
-        except OSError:
-            return  # it has thought better of it
-        connection = Connection(accepted)
+        connection = accepted(self.listener)
+        if connection is None:
+            return
         if self.connection is None:
             self.connection, self._session = connection, SocketcandSession()
             connection.send(self._session.outgoing)
@@ -114,14 +112,13 @@ class SocketcandDoor:
         self._close_client()
 
 
-class GatewayDoor:
+class GatewayDoor(ClientsDoor[ModbusSession]):
     """One Modbus line behind Modbus TCP."""
 
     def __init__(self, wire: ModbusWire, listener: socket.socket) -> None:
         """Wait for clients."""
-        self.listener = listener
+        super().__init__(listener, MOST_CLIENTS, ModbusSession)
         self.gateway = ModbusGateway(wire)
-        self.clients: dict[socket.socket, tuple[Connection, ModbusSession]] = {}
 
     @property
     def place(self) -> Place:
@@ -129,59 +126,26 @@ class GatewayDoor:
         return Place(GATEWAY, address_of(self.listener))
 
     @property
-    def taken(self) -> bool:
-        """A client is connected."""
-        return bool(self.clients)
-
-    @property
     def due_s(self) -> float:
         """When the gateway has something to do next, s."""
         return self.gateway.due_s
 
-    def sources(self) -> Sequence[Readable]:
-        """Return the listener and the clients."""
-        return [*self.clients, self.listener]
-
-    def read(self, ready: Collection[Readable], now: float) -> None:
-        """Take requests, then let clients in."""
-        for client in [one for one in self.clients if one in ready]:
-            connection, session = self.clients[client]
-            self.gateway.take(session, connection.receive(), now)
-            if session.ended:
-                connection.gone = True
-        if self.listener in ready:
-            self._accept()
-
-    def _accept(self) -> None:
-        """Let a client in; beyond the most it is closed at once."""
-        try:
-            accepted, _ = self.listener.accept()
-        except OSError:
-            return
-        connection = Connection(accepted)
-        if len(self.clients) >= MOST_CLIENTS:
-            connection.close()
-        else:
-            self.clients[accepted] = (connection, ModbusSession())
+    def serve(self, connection: Connection, session: ModbusSession, now: float) -> None:
+        self.gateway.take(session, connection.receive(), now)
+        if session.ended:
+            connection.gone = True
 
     def deliver(self, now: float) -> None:
         """Send replies that have arrived, and forget clients that are gone."""
         self.gateway.serve(now)
-        for client, (connection, session) in tuple(self.clients.items()):
-            if session.outgoing:
-                connection.send(session.outgoing)
-            if connection.gone:
-                self.gateway.forget(session)
-                connection.close()
-                del self.clients[client]
-                self.gateway.serve(now)  # it may have held the line
+        super().deliver(now)
 
-    def close(self) -> None:
-        """Shut it and let go of every client."""
-        self.listener.close()
-        for connection, _ in self.clients.values():
-            connection.close()
-        self.clients.clear()
+    def outgoing(self, session: ModbusSession) -> bytearray:
+        return session.outgoing
+
+    def left(self, session: ModbusSession, now: float) -> None:
+        self.gateway.forget(session)
+        self.gateway.serve(now)  # it may have held the line
 
 
 def address_of(listener: socket.socket) -> str:

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Collection, Sequence
 from math import inf
 
-from sim.servers.connection import Connection
+from sim.servers.connection import ClientsDoor, Connection
 from sim.servers.doors import Place, Readable
 from sim.servers.tcp_doors import address_of
 
@@ -34,64 +34,25 @@ class TextLines:
         return [line[-LONGEST_LINE:].decode("utf-8", errors="replace").strip() for line in lines]
 
 
-class CommandDoor:
+class CommandDoor(ClientsDoor[TextLines]):
     """Commands over TCP on loopback: one a line; the answer ends with an empty line."""
 
     due_s = inf
 
     def __init__(self, listener: socket.socket, command: Command) -> None:
         """Wait for clients."""
-        self._listener = listener
+        super().__init__(listener, MOST_CLIENTS, TextLines)
         self._command = command
-        self._clients: dict[socket.socket, tuple[Connection, TextLines]] = {}
 
     @property
     def place(self) -> Place:
         """Where it is: host:port."""
-        return Place("commands", address_of(self._listener))
+        return Place("commands", address_of(self.listener))
 
-    @property
-    def taken(self) -> bool:
-        """A client is connected."""
-        return bool(self._clients)
-
-    def sources(self) -> Sequence[Readable]:
-        """Return the listener and the clients."""
-        return [*self._clients, self._listener]
-
-    def read(self, ready: Collection[Readable], now: float) -> None:
-        """Do what clients say, then let others in."""
-        for client in [one for one in self._clients if one in ready]:
-            connection, lines = self._clients[client]
-            for line in lines.feed(connection.receive()):
-                answer = "".join(f"{said}\n" for said in self._command(line, now))
-                connection.send(bytearray(f"{answer}\n".encode()))
-        if self._listener in ready:
-            self._accept()
-
-    def _accept(self) -> None:
-        try:
-            accepted, _ = self._listener.accept()
-        except OSError:
-            return
-        if len(self._clients) >= MOST_CLIENTS:
-            accepted.close()
-        else:
-            self._clients[accepted] = (Connection(accepted), TextLines())
-
-    def deliver(self, now: float) -> None:
-        """Send what is left to send, and forget clients that are gone."""
-        for client, (connection, _) in tuple(self._clients.items()):
-            connection.send(bytearray())
-            if connection.gone:
-                connection.close()
-                del self._clients[client]
-
-    def close(self) -> None:
-        """Shut it."""
-        self._listener.close()
-        for connection, _ in self._clients.values():
-            connection.close()
+    def serve(self, connection: Connection, session: TextLines, now: float) -> None:
+        for line in session.feed(connection.receive()):
+            answer = "".join(f"{text}\n" for text in self._command(line, now))
+            connection.send(bytearray(f"{answer}\n".encode()))
 
 
 class StandardInput:
@@ -126,8 +87,8 @@ class StandardInput:
             data = b""
         self._open = bool(data)  # at its end the rig lives on, without commands
         for line in self._lines.feed(data):
-            for said in self._command(line, now):
-                self._say(said)
+            for text in self._command(line, now):
+                self._say(text)
 
     def deliver(self, now: float) -> None:
         """Pass nothing on."""

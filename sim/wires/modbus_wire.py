@@ -90,9 +90,9 @@ class ModbusWire:
         """
         self._held_s = held_s
         self.baud = baud
-        self._character_s = (10 if parity == "N" else 11) / baud
+        self.character_s: float = (10 if parity == "N" else 11) / baud
         # Silence that ends a frame: 3.5 characters up to 19200 bit/s, 1.75 ms above (Modbus over serial line V1.02).
-        self._gap_s = 3.5 * self._character_s if baud <= 19200 else 0.00175
+        self.gap_s = 3.5 * self.character_s if baud <= 19200 else 0.00175
         self._busy_s = -inf
         self._inbox: list[tuple[float, bytes]] = []
         self.arrives_s = inf
@@ -122,23 +122,13 @@ class ModbusWire:
         """Tell whether a slave is on this line."""
         return self._slaves.get(slave.unit_id) is slave
 
-    @property
-    def character_s(self) -> float:
-        """Time of one character on the line, s."""
-        return self._character_s
-
-    @property
-    def gap_s(self) -> float:
-        """Silence that ends a frame, s."""
-        return self._gap_s
-
     # the computer's side ---------------------------------------------------------------------------------------
 
     def write(self, data: bytes, now: float) -> None:
         """Send a frame at ``now`` s; the slave answers in place. Raises BusLost when disconnected."""
         if not self.connected:
             raise BusLost("the simulated serial adapter is disconnected")
-        length_s = len(data) * self._character_s
+        length_s = len(data) * self.character_s
         end = now + length_s
         self.requests += 1
         self.occupied_s += length_s
@@ -147,7 +137,7 @@ class ModbusWire:
         if now < self._busy_s:
             self._collide(now, end)
             return
-        t = end + self._gap_s
+        t = end + self.gap_s
         slave = self._slaves.get(data[0])
         if slave is None:
             if data[0] == BROADCAST:
@@ -165,7 +155,7 @@ class ModbusWire:
             self._busy_s = end
             return
         # As ``_reply`` does; by itself because nearly every transaction ends here.
-        length_s = len(reply) * self._character_s
+        length_s = len(reply) * self.character_s
         self._busy_s = arrival = t + slave.turnaround_s + length_s
         self.occupied_s += length_s
         self._last_reply = reply
@@ -216,7 +206,7 @@ class ModbusWire:
 
     def _reply(self, reply: bytes, start: float) -> None:
         """Let a slave send from ``start`` s."""
-        length_s = len(reply) * self._character_s
+        length_s = len(reply) * self.character_s
         arrival = start + length_s
         self._busy_s = arrival
         self.occupied_s += length_s

@@ -17,6 +17,7 @@ from sim.servers.server import RigServer
 from tester.base import clock
 from tester.kinds import load_rig
 from tester.run.simulated import simulated_ports
+from tests.sim.servers.addresses import can_address, line_addresses
 
 CELL_REGISTERS = 9
 HUB, SURFACE = 1, 0x0E
@@ -39,7 +40,7 @@ def server() -> Iterator[RigServer]:
 
 @pytest.fixture
 def bus(server: RigServer) -> Iterator[can.BusABC]:
-    host, port = server.can_address
+    host, port = can_address(server)
     with SocketCanDaemonBus("vcan0", host, port) as bus:
         yield bus
 
@@ -79,13 +80,13 @@ def test_python_can_sends_a_sync_without_data(bus: can.BusABC) -> None:
 
 
 def test_a_second_python_can_is_turned_away(server: RigServer, bus: can.BusABC) -> None:
-    host, port = server.can_address
+    host, port = can_address(server)
     with pytest.raises(can.CanError, match="another program"):
         SocketCanDaemonBus("vcan0", host, port)
 
 
 def test_canopen_talks_to_every_drive(server: RigServer) -> None:
-    host, port = server.can_address
+    host, port = can_address(server)
     network = canopen.Network()
     network.connect(interface="socketcand", channel="vcan0", host=host, port=port)
     try:
@@ -100,7 +101,7 @@ def test_canopen_talks_to_every_drive(server: RigServer) -> None:
 
 
 def test_pymodbustcp_reads_the_load_cell(server: RigServer) -> None:
-    host, port = server.line_addresses["load_cell"]
+    host, port = line_addresses(server)["load_cell"]
     client = ModbusClient(host, port, unit_id=1, timeout=2.0)
     registers = client.read_holding_registers(0, CELL_REGISTERS)
     client.close()
@@ -108,7 +109,7 @@ def test_pymodbustcp_reads_the_load_cell(server: RigServer) -> None:
 
 
 def test_pymodbus_reads_jacket_and_thermometer_on_one_line(server: RigServer) -> None:
-    host, port = server.line_addresses["heat"]
+    host, port = line_addresses(server)["heat"]
     with ModbusTcpClient(host, port=port, timeout=2.0) as client:
         hub = client.read_holding_registers(HUB, count=1, device_id=1)
         surface = client.read_holding_registers(SURFACE, count=1, device_id=2)
@@ -116,7 +117,7 @@ def test_pymodbus_reads_jacket_and_thermometer_on_one_line(server: RigServer) ->
 
 
 def test_pymodbus_writes_a_setpoint_and_reads_it_back(server: RigServer) -> None:
-    host, port = server.line_addresses["heat"]
+    host, port = line_addresses(server)["heat"]
     with ModbusTcpClient(host, port=port, timeout=2.0) as client:
         assert not client.write_register(26, 900, device_id=1).isError()
         assert client.read_holding_registers(26, count=1, device_id=1).registers == [900]

@@ -13,7 +13,7 @@ from drivers.drives.reader import drive_profile, drive_profile_names
 from drivers.screw import Screw
 from drivers.servo import ServoDrive
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.safety_io import CONTACTOR, CONTACTOR_REQUEST, GUARD_CLOSED, SAFETY_CHAIN
+from sim.nodes.safety_io import CONTACTOR, GUARD, REQUEST, SAFETY_CHAIN
 from tests.sim.drive_bench import NODE, PRESS, WHEEL, YAW, DriveBench, SdoRefusedError
 from tests.sim.test_master_meets_drives import Bus
 
@@ -183,12 +183,12 @@ def test_the_makers_bits_are_the_programs() -> None:
     bus = Bus((replace(PRESS, node_id=3, wiring=wiring),)).connect()
     drive, node = bus.drives[0], bus.nodes[0]
     assert drive.refused is None
-    assert drive.inputs == SAFETY_CHAIN | GUARD_CLOSED
+    assert drive.inputs == SAFETY_CHAIN | GUARD
     assert node.store.read((0x60FD, 0)) == 1 << 2 | 1 << 0 | 1 << 5
-    drive.outputs = CONTACTOR_REQUEST
+    drive.outputs = REQUEST
     bus.tick(10)
     assert node.store.read((0x60FE, 1)) == 1 << 1
-    assert drive.inputs == SAFETY_CHAIN | GUARD_CLOSED | CONTACTOR
+    assert drive.inputs == SAFETY_CHAIN | GUARD | CONTACTOR
 
 
 def test_parameters_are_written_and_read_back() -> None:

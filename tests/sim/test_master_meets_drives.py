@@ -12,7 +12,7 @@ from drivers.canopen.master import CanMaster
 from drivers.cia402 import Goal, State
 from drivers.servo import ServoDrive
 from sim.nodes.cia402_slave import Cia402Slave
-from sim.nodes.safety_io import CONTACTOR, CONTACTOR_REQUEST, GUARD_CLOSED, SAFETY_CHAIN
+from sim.nodes.safety_io import CONTACTOR, GUARD, REQUEST, SAFETY_CHAIN
 from sim.wires.can_wire import CanWire
 from tests.sim.drive_bench import PRESS, WHEEL, YAW
 
@@ -172,13 +172,13 @@ def test_a_fault_is_reported_and_reset_once_asked(bus: Bus) -> None:
 
 def test_the_contactor_answers_its_request(bus: Bus) -> None:
     press = bus.drives[2]
-    assert press.inputs == SAFETY_CHAIN | GUARD_CLOSED
-    press.outputs = CONTACTOR_REQUEST
+    assert press.inputs == SAFETY_CHAIN | GUARD
+    press.outputs = REQUEST
     bus.tick(10)
     assert press.inputs & CONTACTOR
     bus.nodes[2].set_safety_chain(False)
     bus.tick(10)
-    assert press.inputs == GUARD_CLOSED
+    assert press.inputs == GUARD
 
 
 def test_a_foreign_master_is_noticed(bus: Bus) -> None:

@@ -6,10 +6,10 @@ from math import inf
 
 from sim.nodes.safety_io import (
     CONTACTOR,
-    CONTACTOR_REQUEST,
     DROP_OUT_S,
-    GUARD_CLOSED,
+    GUARD,
     PULL_IN_S,
+    REQUEST,
     SAFETY_CHAIN,
     SafetyIo,
 )
@@ -17,18 +17,18 @@ from sim.nodes.safety_io import (
 
 def closed() -> SafetyIo:
     io = SafetyIo()
-    io.set_outputs(CONTACTOR_REQUEST, 0.0)
+    io.set_outputs(REQUEST, 0.0)
     io.fire(PULL_IN_S)
     return io
 
 
 def test_chain_is_healthy_and_guard_closed_at_the_start() -> None:
-    assert SafetyIo().inputs == SAFETY_CHAIN | GUARD_CLOSED
+    assert SafetyIo().inputs == SAFETY_CHAIN | GUARD
 
 
 def test_the_contactor_pulls_in_after_its_time() -> None:
     io = SafetyIo()
-    io.set_outputs(CONTACTOR_REQUEST, 1.0)
+    io.set_outputs(REQUEST, 1.0)
     assert io.due_s == 1.0 + PULL_IN_S
     assert not io.fire(1.0)
     assert io.fire(1.0 + PULL_IN_S)
@@ -37,7 +37,7 @@ def test_the_contactor_pulls_in_after_its_time() -> None:
 
 def test_a_request_withdrawn_in_time_leaves_it_open() -> None:
     io = SafetyIo()
-    io.set_outputs(CONTACTOR_REQUEST, 0.0)
+    io.set_outputs(REQUEST, 0.0)
     io.set_outputs(0, PULL_IN_S / 2)
     assert io.due_s == inf
 
@@ -47,13 +47,13 @@ def test_an_open_chain_lets_it_drop_out() -> None:
     io.set_chain(False, 1.0)
     assert io.due_s == 1.0 + DROP_OUT_S
     io.fire(1.0 + DROP_OUT_S)
-    assert io.inputs == GUARD_CLOSED
+    assert io.inputs == GUARD
 
 
 def test_it_does_not_pull_in_on_an_open_chain() -> None:
     io = SafetyIo()
     io.set_chain(False, 0.0)
-    io.set_outputs(CONTACTOR_REQUEST, 0.0)
+    io.set_outputs(REQUEST, 0.0)
     assert io.due_s == inf
 
 
@@ -66,6 +66,6 @@ def test_an_open_guard_is_only_reported() -> None:
 
 def test_the_same_request_again_changes_nothing() -> None:
     io = SafetyIo()
-    assert io.set_outputs(CONTACTOR_REQUEST, 0.0)
-    assert not io.set_outputs(CONTACTOR_REQUEST, 0.01)
+    assert io.set_outputs(REQUEST, 0.0)
+    assert not io.set_outputs(REQUEST, 0.01)
     assert io.due_s == PULL_IN_S

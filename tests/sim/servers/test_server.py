@@ -14,6 +14,7 @@ from sim.servers.server import RigServer
 from sim.servers.tcp_doors import MOST_CLIENTS, GatewayDoor
 from tester.kinds import load_rig
 from tester.run.simulated import simulated_ports
+from tests.sim.servers.addresses import can_address, line_addresses
 
 HEARTBEAT = b"< send 77F 1 5 >"
 READ_CELL = bytes.fromhex("0001 0000 0006 01 03 0000 0001")
@@ -102,7 +103,7 @@ class Client:
 
 
 def test_a_client_is_greeted_and_hears_the_nodes_boot(bench: Bench, connect: Connect) -> None:
-    client = Client(bench, connect(bench.server.can_address))
+    client = Client(bench, connect(can_address(bench.server)))
     bench.run(0.4)
     assert client.text.startswith(b"< hi >< ok >< ok >")
     heard = client.look()
@@ -110,7 +111,7 @@ def test_a_client_is_greeted_and_hears_the_nodes_boot(bench: Bench, connect: Con
 
 
 def test_an_answer_leaves_when_its_time_on_the_wire_is_over(bench: Bench, connect: Connect) -> None:
-    client = Client(bench, connect(bench.server.can_address))
+    client = Client(bench, connect(can_address(bench.server)))
     bench.run(0.3)
     client.look()
     began = bench.t
@@ -123,23 +124,23 @@ def test_an_answer_leaves_when_its_time_on_the_wire_is_over(bench: Bench, connec
 
 
 def test_a_second_client_is_turned_away_with_a_reason(bench: Bench, connect: Connect) -> None:
-    Client(bench, connect(bench.server.can_address))
-    second = connect(bench.server.can_address)
+    Client(bench, connect(can_address(bench.server)))
+    second = connect(can_address(bench.server))
     bench.run(0.003)
     assert b"another program" in second.recv(100)
     assert second.recv(100) == b""
 
 
 def test_a_client_may_come_after_one_that_is_gone(bench: Bench, connect: Connect) -> None:
-    first = Client(bench, connect(bench.server.can_address))
+    first = Client(bench, connect(can_address(bench.server)))
     first.socket.close()
-    second = connect(bench.server.can_address)
+    second = connect(can_address(bench.server))
     bench.run(0.005)
     assert second.recv(6) == b"< hi >"
 
 
 def test_a_drive_that_watched_a_client_stops_when_it_is_gone(bench: Bench, connect: Connect) -> None:
-    client = Client(bench, connect(bench.server.can_address))
+    client = Client(bench, connect(can_address(bench.server)))
     bench.run(0.3)
     client.send(HEARTBEAT)
     client.write(1, 0x1016, 1, 127 << 16 | 200, 4)
@@ -167,7 +168,7 @@ def test_a_drive_that_watched_a_client_stops_when_it_is_gone(bench: Bench, conne
 
 
 def test_a_modbus_client_reads_the_load_cell(bench: Bench, connect: Connect) -> None:
-    client = connect(bench.server.line_addresses["load_cell"])
+    client = connect(line_addresses(bench.server)["load_cell"])
     client.sendall(READ_CELL)
     bench.run(0.02)
     reply = client.recv(100)
@@ -175,14 +176,14 @@ def test_a_modbus_client_reads_the_load_cell(bench: Bench, connect: Connect) -> 
 
 
 def test_a_modbus_client_that_talks_something_else_is_shut_out(bench: Bench, connect: Connect) -> None:
-    client = connect(bench.server.line_addresses["heat"])
+    client = connect(line_addresses(bench.server)["heat"])
     client.sendall(b"GET / HTTP/1.1\r\n\r\n")
     bench.run(0.005)
     assert client.recv(100) == b""
 
 
 def test_more_modbus_clients_than_a_line_has_places_for_are_shut_out(bench: Bench, connect: Connect) -> None:
-    address = bench.server.line_addresses["heat"]
+    address = line_addresses(bench.server)["heat"]
     clients = [connect(address) for _ in range(MOST_CLIENTS + 1)]
     bench.run(0.05)
     door = bench.server.lines["heat"]

@@ -21,6 +21,7 @@ from tester.machine.tickers import TickStatistics, run_real_time
 from tester.run.bus_log import BusLog
 from tester.run.rig_wires import hardware_ports
 from tester.run.simulated import simulated_ports
+from tests.sim.servers.addresses import can_address, line_addresses
 from tests.tester.run.reached import reached_over_tcp
 
 
@@ -48,7 +49,7 @@ class Machine:
         _, rig, _ = simulated_ports(config, 1, None)
         assert isinstance(rig, WheelRig)
         self.server = RigServer(rig, "127.0.0.1", 0)
-        self.config = reached_over_tcp(config, self.server.can_address, self.server.line_addresses)
+        self.config = reached_over_tcp(config, can_address(self.server), line_addresses(self.server))
         self._stop, origin = Event(), clock.monotonic()
         self._thread = Thread(target=self.server.serve, args=(lambda: clock.monotonic() - origin, self._stop.is_set))
         self._thread.start()
@@ -113,7 +114,7 @@ def test_a_machine_that_is_switched_off_is_a_lost_bus(machine: Machine) -> None:
 
 def test_a_machine_that_is_not_there_leaves_nothing_open(machine: Machine) -> None:
     lines = dict.fromkeys(machine.config.lines, ("127.0.0.1", 1))
-    broken = reached_over_tcp(load_rig("sim"), machine.server.can_address, lines)
+    broken = reached_over_tcp(load_rig("sim"), can_address(machine.server), lines)
     with pytest.raises(BusLost, match=r"127\.0\.0\.1:1"):
         hardware_ports(broken, None)
     hardware_ports(machine.config, None).close()  # the bus is free again
