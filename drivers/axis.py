@@ -1,4 +1,4 @@
-"""What is configured of an axis, and what its drive says about itself."""
+"""What is configured of an axis, and what its drive reports about itself."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ class DeviceIdentity:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """What a drive says about its fault: 0x603F, 0x1001 and 0x1003 (newest first).
+    """What a drive reports about its fault: 0x603F, 0x1001 and 0x1003 (newest first).
 
     ``failed`` names the request that was not answered, if any; the rest is then what had been read before.
     """

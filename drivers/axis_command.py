@@ -172,7 +172,7 @@ class AxisCommand(CanNode):
         return rpdo
 
     def set_homing(self, active: bool, start: bool = False) -> None:
-        """Tell whether the device is in homing mode, and whether to start (controlword bit 4).
+        """Return whether the device is in homing mode, and whether to start (controlword bit 4).
 
         ``homing_scans`` counts the scans sent with the start bit.
         """

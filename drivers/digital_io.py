@@ -21,7 +21,7 @@ class DigitalWiring:
     """Bit numbers, 0..31; raises ValueError for one out of range or taken twice.
 
     Only the contactor's feedback may be inverted: an inverted safety chain or guard would read a broken wire as
-    closed, and an inverted request would pull the contactor in when nobody asks any more.
+    closed, and an inverted request would pull the contactor in without a request.
     """
 
     safety_chain: int = 16

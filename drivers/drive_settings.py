@@ -128,7 +128,7 @@ class _Planner:
         self.made = DrivePlan()
 
     def lacks(self, *key: int) -> bool:
-        """Tell whether the drive has no such object."""
+        """Return whether the drive has no such object."""
         index, sub = key
         return (index, sub) in self.absent or self.profile.lacks((index, sub))
 
@@ -140,11 +140,11 @@ class _Planner:
         for index, sub, value in _settings(config):
             self._take(made.settings, index, sub, value)
         if config.feedback == "position":
-            told = len(made.without), len(made.refused)
+            before = len(made.without), len(made.refused)
             for index, sub, value in _homing(config):
                 self._take(made.homing, index, sub, value)
             if config.mode != "position":        # it is not homed in the course of a run
-                del made.without[told[0]:], made.refused[told[1]:]
+                del made.without[before[0]:], made.refused[before[1]:]
         self._watches()
         self._torque()
         self._bits()
@@ -170,7 +170,7 @@ class _Planner:
             self._refuse(key, "the rig file has a home_offset")
         elif key in LOST:
             self._lose(key, LOST[key])
-        elif key not in (_DEADLINE, (o.MAX_TORQUE, 0)):      # told by _watches, _torque
+        elif key not in (_DEADLINE, (o.MAX_TORQUE, 0)):      # see _watches, _torque
             self._refuse(key, "nothing stands in for it")
 
     def _lose(self, key: Key, lost: str) -> None:
@@ -178,10 +178,10 @@ class _Planner:
             self.made.without.append(f"no {describe(*key)}: {lost}")
 
     def _refuse(self, key: Key, why: str) -> None:
-        """Say it once of an object, with the first reason."""
-        said = f"{describe(*key)}: the drive does not have it"
-        if not any(one.startswith(said) for one in self.made.refused):
-            self.made.refused.append(f"{said}; {why}")
+        """Note a refusal once for each object, with the first reason."""
+        absent = f"{describe(*key)}: the drive does not have it"
+        if not any(text.startswith(absent) for text in self.made.refused):
+            self.made.refused.append(f"{absent}; {why}")
 
     def _watches(self) -> None:
         """Without the PC the drive has to stop: its heartbeat is watched, or else its setpoints are."""

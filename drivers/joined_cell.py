@@ -208,5 +208,5 @@ def links_of(cell: LoadCell) -> tuple[ModbusLink, ...]:
 
 
 def _bears(one: Transmitter) -> bool:
-    """Tell whether it shows a force that cannot stand still while a wheel turns under it."""
+    """Return whether it shows a force that cannot stand still while a wheel turns under it."""
     return any(not -STILL_N < value < STILL_N for value in one.raw)

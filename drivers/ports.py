@@ -1,6 +1,6 @@
 """What a driver needs of a wire: frames or bytes in and out, with time stamps.
 
-Whoever wants to see the frames of a port (a log, a screen) watches the port itself; any number may.
+A log or a screen that shows the frames of a port watches the port itself; any number may.
 
 A port never blocks. Real ports live in ``drivers.transports``; simulated ones in ``sim``. Times are seconds on the
 caller's monotonic clock (simulated or real); the caller passes ``now`` and no port reads a clock for it.
@@ -17,10 +17,10 @@ CanFrame = tuple[float, int, bytes]
 """(arrival time in s, CAN identifier, data of 0..8 bytes)."""
 
 CanWatcher = Callable[[float, int, bytes, bool], None]
-"""Told of each frame: time in s, CAN identifier, data, and whether the computer sent it."""
+"""Called for each frame: time in s, CAN identifier, data, and whether the computer sent it."""
 
 LineWatcher = Callable[[float, bytes, bool], None]
-"""Told of each piece on a line: time of its last byte in s, bytes, and whether the computer sent it."""
+"""Called for each piece on a line: time of its last byte in s, bytes, and whether the computer sent it."""
 
 Unwatch = Callable[[], None]
 """Ends a watch; calling it again does nothing."""
@@ -51,7 +51,7 @@ class CanPort(Protocol):
         ...
 
     def watch(self, watcher: CanWatcher) -> Unwatch:
-        """Have ``watcher`` told of every frame in both directions, until the returned way to stop is taken."""
+        """Call ``watcher`` for every frame in both directions, until the returned function is called."""
         ...
 
 
@@ -83,7 +83,7 @@ class FrameByFrame(ABC):
     """A port that sends the frames of a cycle one by one; who implements it tells the ``watchers``."""
 
     def __init__(self) -> None:
-        """Nobody watches."""
+        """Begin without watchers."""
         self.watchers: list[CanWatcher] = []
 
     @abstractmethod
@@ -96,7 +96,7 @@ class FrameByFrame(ABC):
             self.send(can_id, data, now)
 
     def watch(self, watcher: CanWatcher) -> Unwatch:
-        """Have ``watcher`` told of every frame."""
+        """Call ``watcher`` for every frame."""
         return add_watcher(self.watchers, watcher)
 
     def tell_sent(self, can_id: int, data: bytes, now: float) -> None:
@@ -123,13 +123,13 @@ class LinePort(Protocol):
         ...
 
     def watch(self, watcher: LineWatcher) -> Unwatch:
-        """Have ``watcher`` told of all bytes in both directions, until the returned way to stop is taken."""
+        """Call ``watcher`` with all bytes in both directions, until the returned function is called."""
         ...
 
 
 @runtime_checkable
 class RenewablePort(LinePort, Protocol):
-    """A line that can be begun anew where nobody knows any more where a frame begins: a TCP connection."""
+    """A line that can be opened anew when its framing is in doubt: a TCP connection."""
 
     def renew(self, now: float) -> None:
         """Drop the connection with all that is under way, and open another one; raises BusLost."""
@@ -137,16 +137,16 @@ class RenewablePort(LinePort, Protocol):
 
 
 class WatchedLine:
-    """What lines have in common: who is told of their bytes, and what makes them quicker (``remedy``)."""
+    """What lines have in common: the watchers of their bytes, and advice for a slow adapter (``remedy``)."""
 
     remedy = ""
 
     def __init__(self) -> None:
-        """Nobody watches."""
+        """Begin without watchers."""
         self.watchers: list[LineWatcher] = []
 
     def watch(self, watcher: LineWatcher) -> Unwatch:
-        """Have ``watcher`` told of all bytes."""
+        """Call ``watcher`` with all bytes."""
         return add_watcher(self.watchers, watcher)
 
     def tell(self, t: float, data: bytes, sent: bool) -> None:

@@ -91,7 +91,7 @@ class Sensor(Device):
         self.values = [raw - zero for raw, zero in zip(self.raw, values, strict=True)]
 
     def fresh(self, now: float) -> bool:
-        """Tell whether the last reading is valid and, at ``now`` s, not too old."""
+        """Return whether the last reading is valid and, at ``now`` s, not too old."""
         return self.valid and now - self.stamp_s <= self.stale_s
 
     def received(self, request: Request, data: bytes, t: float) -> None:

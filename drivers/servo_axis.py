@@ -35,7 +35,7 @@ class ServoAxis(AxisCommand):
 
     Units are ``config.unit`` for ``target`` and ``actual`` (of TPDO1's field: a speed, or with position
     feedback rad, m, mm, deg) and N m. ``stamp_s`` is the arrival of the last TPDO1, -inf before the first;
-    whoever uses a reading decides how old it may be. ``actual`` and ``torque_nm`` are NaN before they were
+    the user of a reading decides how old it may be. ``actual`` and ``torque_nm`` are NaN before they were
     ever read.
 
     ``online``: configured, OPERATIONAL and its heartbeat present. ``lost``: its heartbeat stopped, or it
@@ -44,9 +44,9 @@ class ServoAxis(AxisCommand):
     was neither reset by the device nor acknowledged. ``parameters`` holds what was read back of the device,
     by (index, sub-index). ``plan`` says since connect what the drive is done without, and what is lost by that
     (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is the
-    arrival of the last TPDO2, -inf before the first. Whoever sees that outputs have not done what they are for sets
-    ``outputs_unanswered``: they are then sent again. ``stands``: it has said between two SYNCs that it stands now;
-    whoever has looked takes it back.
+    arrival of the last TPDO2, -inf before the first. A caller that sees no effect of the outputs sets
+    ``outputs_unanswered``: they are then sent again. ``stands``: it has reported between two SYNCs that it stands now;
+    the caller clears it.
 
     The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
     """
@@ -66,7 +66,7 @@ class ServoAxis(AxisCommand):
         self._forget()
 
     def _forget(self) -> None:
-        """Set everything to what is known of a drive nobody has spoken to."""
+        """Set everything to what is known of a drive before its first answer."""
         self.clear_commands()
         self.actual = math.nan
         self.torque_nm = math.nan

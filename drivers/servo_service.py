@@ -1,4 +1,4 @@
-"""What is said to a drive that is connected, outside the scan: homing, fault diagnosis, the way back, the end.
+"""Conversations with a connected drive, outside the scan: homing, fault diagnosis, the way back, the end.
 
 Each function is a conversation for ``CanMaster.start``.
 """
@@ -79,7 +79,7 @@ def _run_homing(drive: ServoAxis) -> Step:
 
 
 def diagnose(drive: ServoAxis) -> Conversation:
-    """Read 0x603F, 0x1001 and 0x1003 into ``drive.diagnosis``, for the journal, before anybody resets."""
+    """Read 0x603F, 0x1001 and 0x1003 into ``drive.diagnosis``, for the journal, before a reset."""
     error_code = 0
     register = 0
     history: list[int] = []

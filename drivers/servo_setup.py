@@ -1,4 +1,4 @@
-"""What is said to a drive when it is connected (CiA 402-2, CiA 301): a conversation for ``CanMaster.start``.
+"""The conversation that connects a drive (CiA 402-2, CiA 301), for ``CanMaster.start``.
 
 Everything written is read back and kept in ``drive.parameters``. What a drive refuses while it is configured is
 collected, so that ``drive.refused`` tells all of it at once; what is done without stands in ``drive.plan``. An answer

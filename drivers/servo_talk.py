@@ -39,14 +39,14 @@ def write(drive: ServoAxis, index: int, sub: int, value: int, mask: int = -1, ki
 
 
 def compare(drive: ServoAxis, index: int, sub: int, value: int, mask: int = -1) -> Step:
-    """Read what the drive cannot be told; only bits of ``mask`` are compared."""
+    """Read an object that cannot be set and compare it; only bits of ``mask`` count."""
     back = yield from keep(drive, index, sub)
     if back & mask != value & mask:
         raise SetupRefusedError(f"{describe(index, sub)}: read 0x{back:X}, 0x{value:X} is needed and cannot be set")
 
 
 def write_where_present(drive: ServoAxis, index: int, sub: int, value: int) -> Step:
-    """Write an optional object and read it back; a device without it has nothing to be told."""
+    """Write an optional object and read it back; a device without it needs no write."""
     try:
         yield from write(drive, index, sub, value)
     except RequestError as error:

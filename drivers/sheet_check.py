@@ -31,12 +31,12 @@ def check_sheet(config: AxisConfig, sheet: DataSheet) -> SheetVerdict:
     """Return what connecting the axis to a drive that is as its data sheet says would refuse and do without."""
     absent = [key for key in tried(config) if key not in sheet.objects]
     made = plan(config, absent)
-    told: dict[str, str] = {}                # once of an object, with the first reason
+    refused: dict[str, str] = {}             # once for each object, with the first reason
     for one in (*made.refused, *_identity(config, sheet), *_objects(config, sheet, made)):
-        told.setdefault(one[:len(describe(0, 0))], one)
+        refused.setdefault(one[:len(describe(0, 0))], one)
     unused = [key for key in config.drive.missing if key in USED and key in sheet.objects]
     noted = [f"{describe(*key)}: the drive has it, the profile {config.profile} does without" for key in sorted(unused)]
-    return SheetVerdict(tuple(told.values()), tuple(made.without), tuple(noted))
+    return SheetVerdict(tuple(refused.values()), tuple(made.without), tuple(noted))
 
 
 def _identity(config: AxisConfig, sheet: DataSheet) -> Iterator[str]:

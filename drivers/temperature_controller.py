@@ -142,7 +142,7 @@ class TemperatureController(Device):
             self.link.rewrite(self._run_write, (self._switch.on if on else self._switch.off,), urgent=not on)
 
     def received(self, request: Request, data: bytes, t: float) -> None:
-        """Take a good reply; a setpoint that nobody asked for since the last one is not renewed."""
+        """Take a good reply; a setpoint that was not asked for since the last one is not renewed."""
         if request is self._setpoint_write:
             if not self._asked:
                 self.link.disable(self._setpoint_write)

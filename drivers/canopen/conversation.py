@@ -1,8 +1,8 @@
-"""Conversations: what is said to a device in many steps, written as a generator and run by the master.
+"""Conversations with a device in many steps, each written as a generator and run by the master.
 
 A conversation yields one request at a time and is sent the reply: the value read (SdoRead), True or False
 (Until: whether the condition came true in time), else None. A failed SDO request is thrown into it as
-RequestError. Generators cannot be copied: a conversation has ended before anybody copies the drivers.
+RequestError. Generators cannot be copied: a conversation has ended before the drivers are copied.
 """
 
 from __future__ import annotations

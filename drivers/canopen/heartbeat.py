@@ -6,7 +6,7 @@ import math
 from typing import Final
 
 MISSED: Final = 3
-"""A producer is lost when nothing was heard for this many of its periods (safety.md: 3 x 50 ms)."""
+"""A producer is lost after this many of its periods without a heartbeat (safety.md: 3 x 50 ms)."""
 
 
 def consumer_entry(node_id: int, timeout_s: float) -> int:

@@ -23,7 +23,7 @@ _MASTER_FUNCTIONS: Final = {
     o.RPDO1_BASE: "RPDO1", o.RPDO2_BASE: "RPDO2", o.RPDO3_BASE: "RPDO3", o.RPDO4_BASE: "RPDO4",
     o.SDO_REQUEST_BASE: "SDO request",
 }
-"""What only a master sends: received, it is somebody else's."""
+"""Sent by masters only: a received one is another master's."""
 _SYNC_ID: Final = o.SYNC_ID
 
 
@@ -36,7 +36,7 @@ class CanMaster:
 
     ``deadline`` (s) is the earliest time it wants service; it may lie in the past ("at once").
     ``foreign_master`` is set by the first frame that only a master sends, and ``foreign_frame`` describes
-    it; the caller clears them. ``unknown_frames`` counts frames of nobody added here.
+    it; the caller clears them. ``unknown_frames`` counts frames of nodes that were not added.
     """
 
     def __init__(self, node_id: int = 127, heartbeat_s: float = 0.05, sdo_timeout_s: float = 0.3) -> None:
@@ -178,7 +178,7 @@ class CanMaster:
             self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)
 
     def service(self, port: CanPort, now: float) -> None:
-        """Send our heartbeat when due and go on with the conversations; notice nodes that fell silent."""
+        """Send our heartbeat when due and continue the conversations; notice nodes that fell silent."""
         if self._dialogues or now + EARLY_S >= self.deadline:
             self._serve(port, now)
 

@@ -10,7 +10,7 @@ from drivers.canopen.heartbeat import HeartbeatMonitor
 
 
 class CanNode:
-    """One node of a bus: what the master asks of it, and what it is told.
+    """One node of a bus, as its master reads and commands it.
 
     ``connected``: configured, and its frames are believed. ``online``: connected, OPERATIONAL and its heartbeat there.
     ``lost``: its heartbeat stopped, or it booted while in use; stays until the next connect. ``stamp_s`` is the arrival

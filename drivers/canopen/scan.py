@@ -23,7 +23,7 @@ ANSWER_S: Final = 0.1
 PATIENCE_S: Final = 0.5
 """A node that ought to be there is waited for so long, s: a busy computer hears an answer 0.1 s late."""
 AT_ONCE: Final = 4
-"""Nodes asked at the same time: a SocketCAN interface queues ten frames unless told otherwise (txqueuelen)."""
+"""Nodes asked at the same time: a SocketCAN interface queues ten frames by default (txqueuelen)."""
 _FUNCTION: Final = 0x780
 _NODE: Final = 0x07F
 
@@ -91,8 +91,8 @@ class _Node:
 class SdoScan:
     """Uploads objects from nodes: ``feed`` what arrived, ``service`` what is due, until ``done``.
 
-    A node that does not answer the first question is not asked the others. ``surplus`` counts answers that nobody
-    waited for: two nodes of one number answer every question twice.
+    A node that does not answer the first question is not asked the others. ``surplus`` counts answers that were
+    not awaited: two nodes of one number answer every question twice.
     """
 
     def __init__(self, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> None:

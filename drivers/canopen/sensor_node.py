@@ -51,7 +51,7 @@ class SensorNode(CanNode):
         self.values: list[float] = [nan] * len(config.channels)
 
     def fresh(self, now: float) -> bool:
-        """Tell whether the node is there and its last frame, at ``now`` s, not too old."""
+        """Return whether the node is there and its last frame, at ``now`` s, not too old."""
         return self.online and now - self.stamp_s <= self.stale_s
 
     def on_tpdo1(self, t: float, data: bytes) -> None:
@@ -113,6 +113,6 @@ def _check(node: SensorNode) -> Generator[Request, Reply, None]:
         if expected:
             found = yield from read_number(o.IDENTITY, sub)
             if found != expected:
-                said = f"{describe(o.IDENTITY, sub)}: read 0x{found:08X}, the configuration has 0x{expected:08X}"
-                raise RequestError(f"{said}: another device", 0)
+                difference = f"{describe(o.IDENTITY, sub)}: read 0x{found:08X}, the configuration has 0x{expected:08X}"
+                raise RequestError(f"{difference}: another device", 0)
     yield SdoWrite(o.PRODUCER_HEARTBEAT, 0, round(1000.0 * config.heartbeat_s))

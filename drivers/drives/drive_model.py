@@ -115,7 +115,7 @@ class DriveProfile:
         return self
 
     def lacks(self, key: Key) -> bool:
-        """Tell whether the drive has no such object; one that is missing lacks all its sub-indices."""
+        """Return whether the drive has no such object; one that is missing lacks all its sub-indices."""
         return key in self.missing or (key[0], 0) in self.missing
 
     def dictionary(self) -> dict[Key, Entry]:

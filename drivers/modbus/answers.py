@@ -26,7 +26,7 @@ class AnswerKind(IntEnum):
     BROKEN = 3
     """No reply, and none will follow: the attempt has failed."""
     DOUBTED = 4
-    """Nobody knows any more where a frame begins (TCP)."""
+    """The begin of the next frame is unknown (TCP)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,7 @@ class SerialEar:
         """Return what came in answer to ``sent``."""
         if self.hears_itself is False and (request.writes or not data.startswith(sent)):
             return serial_answer(request, data)
-        # Between two replies somebody may change the adapter: from then on it is taken for one that hears itself.
+        # The adapter may be changed between two replies: from then on it counts as one that hears itself.
         if not self._stripped:
             if len(data) < len(sent) and sent.startswith(data):
                 return ReplySoFar(AnswerKind.WAITED_FOR, data)

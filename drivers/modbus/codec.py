@@ -137,7 +137,7 @@ def next_frame(framing: Framing, buffer: bytes) -> tuple[int, int, int, bytes]:
 
 
 class FramingError(ValueError):
-    """What came over TCP cannot be the reply: from here on nobody knows where a frame begins."""
+    """What came over TCP cannot be the reply: the begin of the next frame is unknown."""
 
 
 def tcp_reply(data: bytes, transaction: int, unit_id: int, function: int, length: int) -> bytes:

@@ -56,7 +56,7 @@ class Device(ABC):
 
     @property
     def is_lost(self) -> bool:
-        """Tell whether it stopped answering."""
+        """Return whether it stopped answering."""
         return self.station.is_lost
 
     def begin(self) -> None:
@@ -77,7 +77,7 @@ class Device(ABC):
             self._steps.append(SetupStep(what, self.link.read(self.station, READ_HOLDING, address, 1), words[0]))
 
     def received(self, request: Request, data: bytes, t: float) -> None:
-        """Take a good reply that arrived at ``t`` s: go on with the set-up, or update the readings."""
+        """Take a good reply that arrived at ``t`` s: continue the set-up, or update the readings."""
         if not self.ready and request is self._steps[self._step].request:
             self._proceed(self._steps[self._step], data)
         if request.block >= 0:

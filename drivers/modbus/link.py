@@ -35,7 +35,7 @@ _GOOD: Final = AnswerKind.GOOD
 class ModbusLink(LineType):
     """Master of one Modbus line. ``deadline`` (s) is when it wants ``service`` at the latest.
 
-    Before ``wants_s`` a ``service`` would do nothing: whoever ticks may spare it.
+    Before ``wants_s`` a ``service`` does nothing: the caller may skip it.
     """
 
     def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
@@ -193,7 +193,7 @@ class ModbusLink(LineType):
         return station.contact if station.contact.sent_s <= now - PROBE_S else None
 
     def _begin_anew(self, port: LinePort, now: float) -> None:
-        """Drop a connection on which nobody knows where a frame begins; raises BusLost where there is no other."""
+        """Drop a connection whose framing is in doubt; raises BusLost for a line that cannot be begun anew."""
         self.doubts, self._doubt = self._doubt, ""
         if not isinstance(port, RenewablePort):
             raise BusLost(f"{self.doubts}, and the line cannot be begun anew")
@@ -207,7 +207,7 @@ class ModbusLink(LineType):
 
     @property
     def only_watches(self) -> bool:
-        """Tell that ``deadline`` is for a missing reply alone: nothing else waits for the line."""
+        """Whether ``deadline`` is for a missing reply alone: nothing else waits for the line."""
         return self._active is not None and self.deadline == self._give_up_s
 
     def _wait(self, now: float) -> None:
@@ -329,7 +329,7 @@ class ModbusLink(LineType):
             self._fail(request, t + BUSY_S, t + self.gap_s)
 
     def _unasked(self, t: float) -> None:
-        """Count bytes nobody waits for; after a time-out they are the late reply, and the silence starts anew."""
+        """Count unexpected bytes; after a time-out they are the late reply, and the silence starts anew."""
         if self.socket:
             if not self._doubt:
                 self._doubt = "bytes that nobody asked for"

@@ -93,7 +93,7 @@ class LineScan:
         question = self._question
         for t, chunk in chunks:
             if question is None or self._sent_s is None or self.answer is not None:
-                self._quiet_s = max(self._quiet_s, t + SETTLE_S)  # of an earlier question: nobody waits for it
+                self._quiet_s = max(self._quiet_s, t + SETTLE_S)  # of an earlier question, which has been given up
                 continue
             self._buffer += chunk
             self._examine(question, t)
@@ -123,7 +123,7 @@ class LineScan:
         return codec.reply_length(self.framing, question.function, question.count) * self._character_s
 
     def _examine(self, question: RegisterQuestion, t: float) -> None:
-        """Find the answer in what has arrived; what is none stays, and is told when the time is over."""
+        """Find the answer in what has arrived; the rest stays, and is reported as noise when the time is over."""
         at, data = 0, self._buffer
         while at < len(data):
             used, unit_id, transaction, pdu = codec.next_frame(self.framing, data[at:])

@@ -61,14 +61,14 @@ class ReplyTimes:
 
 
 class Owner(Protocol):
-    """The driver behind a station; it hears what becomes of its requests."""
+    """The driver behind a station; it is called with the outcome of its requests."""
 
     def received(self, request: Request, data: bytes, t: float) -> None:
         """Take the registers of a good reply (empty for a write) that arrived at ``t`` s."""
         ...
 
     def lost(self, t: float) -> None:
-        """Learn that the station does not answer any more."""
+        """Act on a station that has stopped answering."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""Frames of a Modbus RTU line that somebody else talks on: where each ends, and who sent it.
+"""Frames of a Modbus RTU line on which others talk: where each ends, and who sent it.
 
 For a second adapter that only listens. It tells nothing of silences, which USB adapters do not keep: a frame ends where
 its CRC is right and its length is one that its function code has (Modbus application protocol V1.1b3, 6).
@@ -47,7 +47,7 @@ class LineTap:
         return None
 
     def _from_master(self, frame: bytes) -> bool:
-        """Tell whether a frame asks: it does unless it can be the answer to the one before."""
+        """Return whether a frame asks: it does unless it can be the answer to the one before."""
         asked, self._asked = self._asked, b""
         if asked and frame[0] == asked[0] and _answers(asked, frame):
             return False

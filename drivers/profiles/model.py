@@ -215,7 +215,7 @@ class DeviceProfile:
     a value is plausible from ``least`` to ``greatest``."""
 
     falls_back_s: float | None = None
-    """Of a controller: without a setpoint for so long, s, it goes on with one of its own, which its set-up makes one
+    """Of a controller: without a setpoint for so long, s, it continues with its own, which its set-up makes one
     of no heat; None = it does not."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> DeviceProfile:
@@ -246,7 +246,7 @@ class DeviceProfile:
         raise ProfileError(f"profile {self.name} has no signal {name!r}")
 
     def has(self, name: str) -> bool:
-        """Tell whether a signal of this name is read."""
+        """Return whether a signal of this name is read."""
         return any(signal.name == name for block in self.blocks for signal in block.signals)
 
     def bit(self, meaning: str) -> int:

@@ -114,7 +114,7 @@ class ProfileTable:
         return list(self._data)
 
     def end(self) -> None:
-        """Refuse what nobody took."""
+        """Refuse the keys that were not taken."""
         if self._data:
             keys = "is not a key" if len(self._data) == 1 else "are not keys"
             raise self.error(", ".join(self._data), f"{keys} of such a profile")

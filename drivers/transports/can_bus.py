@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 POLL_S = 0.1
 """How long the receive thread waits for a frame before it looks whether the port was closed."""
 MAX_WAITING = 20_000
-"""Frames kept until the caller takes them: over 2 s of a full bus at 1 Mbit/s. More means that nobody reads."""
+"""Frames kept until the caller takes them: over 2 s of a full bus at 1 Mbit/s. More means that no caller reads."""
 BUS_OFF: Final = 0x40
 """Class bit of a SocketCAN error frame (linux/can/error.h, CAN_ERR_BUSOFF)."""
 _CLASSES: Final = {
@@ -49,8 +49,8 @@ class PythonCanPort(FrameByFrame):
     Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``on_urgent`` is called in
     that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, changed
     inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored``
-    counts frames that are none of ours: remote, 29-bit and FD frames; ``errors`` error frames, by what they say. Frames
-    of other programs of this computer are heard as those from the wire (``local`` counts what the interface marks as
+    counts frames that are none of ours: remote, 29-bit and FD frames; ``errors`` error frames, by their kind. Frames
+    of other programs of this computer count as those from the wire (``local`` counts what the interface marks as
     sent here); our own, where the interface gives them back, are not (``own``: how that is found out).
     """
 

@@ -1,9 +1,9 @@
-"""Frames of our own that an interface gives back, told from those of others.
+"""Frames of our own that an interface gives back, separated from those of others.
 
 Most interfaces give none back. Some do (``receive_own_messages``, adapters that report what they have sent as received,
 bridges that loop), and nothing in a frame says so: python-can's ``is_rx`` is False for our own frames on some of them,
 and for those of other programs of the same computer on SocketCAN (hardbyte/python-can#1274). So it is tried: the first
-frame sent is a probe that nobody else sends, and who gets it back gets everything back.
+frame sent is a probe that no other program sends: an interface that gives it back gives everything back.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class OwnFrames:
             self._awaited.append((now, can_id, bytes(data)))
 
     def others(self, frames: list[CanFrame], now: float) -> list[CanFrame]:
-        """Return the frames that somebody else sent, of those received up to ``now`` s.
+        """Return the frames of others, of those received up to ``now`` s.
 
         Until it is known whether ours come back, what looks like one of ours waits: for ``SETTLE_S`` at most.
         """

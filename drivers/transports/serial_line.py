@@ -70,7 +70,7 @@ class SerialLine(WatchedLine):
 
 
 def open_serial_line(port: str, baud: int, parity: Literal["N", "E", "O"] = "N") -> SerialLine:
-    """Open a serial port for Modbus RTU: ``baud`` in bit/s, 8 data bits, 1 stop bit; nobody else can open it.
+    """Open a serial port for Modbus RTU: ``baud`` in bit/s, 8 data bits, 1 stop bit; no other program can open it.
 
     USB adapters are asked for low latency: by default many deliver in batches of 16 ms. Raises
     BusLost when the port cannot be opened.

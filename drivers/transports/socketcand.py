@@ -1,6 +1,6 @@
 """What python-can's socketcand client leaves to its user: the address, sending at once, and the end of the stream.
 
-Measured with python-can 4.6.1: where nobody listens it tries for ten seconds without a pause, and where nobody greets
+Measured with python-can 4.6.1: without a listener it tries for ten seconds without a pause, and without a greeting
 it waits for ever; its small frames wait for each other (Nagle's algorithm) unless ``tcp_tune`` is set, which Windows
 does not have; and where the server closed the connection, ``recv`` returns None for ever, without waiting. The latter
 two are set right at the client's socket, which it does not give out: a client that keeps it elsewhere one day is used
@@ -30,7 +30,7 @@ logging.getLogger("can.interfaces.socketcand").addHandler(logging.NullHandler())
 def settings_of(channel: str) -> dict[str, str | int]:
     """Return what the client wants to know, from ``bus@host:port``.
 
-    Raises ValueError for another text, and OSError where nobody greets in time: the client itself would wait for ever.
+    Raises ValueError for another text, and OSError without a greeting in time: the client itself would wait for ever.
     """
     bus, at, address = channel.rpartition("@")
     host, colon, port = address.rpartition(":")
@@ -42,9 +42,10 @@ def settings_of(channel: str) -> dict[str, str | int]:
 
 def _be_greeted(host: str, port: int) -> None:
     with socket.create_connection((host, port), CONNECT_S) as connection:
-        said = connection.recv(256)
-    if said != _GREETING:
-        raise OSError(f"expected {_GREETING.decode()}, got {said.decode('ascii', errors='replace')[:80] or 'nothing'}")
+        greeting = connection.recv(256)
+    if greeting != _GREETING:
+        shown = greeting.decode("ascii", errors="replace")[:80] or "nothing"
+        raise OSError(f"expected {_GREETING.decode()}, got {shown}")
 
 
 def tune(bus: can.BusABC) -> None:
@@ -55,7 +56,7 @@ def tune(bus: can.BusABC) -> None:
 
 
 def ended(bus: can.BusABC) -> bool:
-    """Tell whether a socketcand client's server has closed the connection.
+    """Return whether a socketcand client's server has closed the connection.
 
     For the thread that receives, when nothing was received: it looks at the next byte and takes none.
     """

@@ -68,7 +68,7 @@ class TcpLine(WatchedLine):
         self._socket.connect_ex(self._address)
 
     def _connected(self, now: float) -> bool:
-        """Tell whether the connection is up; raises BusLost once it should be."""
+        """Return whether the connection is up; raises BusLost once it should be."""
         if not self._connecting:
             return True
         _, writable, failed = select.select((), (self._socket,), (self._socket,), 0.0)

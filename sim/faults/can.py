@@ -22,9 +22,9 @@ def unseen(t: float, can_id: int, data: bytes, sent: bool) -> None:
 class FaultyCanWire(CanWire):
     """A bus on which frames can be spoiled. Without a fault it behaves, frame by frame, as the plain one.
 
-    ``lost`` are identifiers that reach nobody; ``late_s`` delays the frames of a function code (identifier without
+    ``lost`` are identifiers that reach no node; ``late_s`` delays the frames of a function code (identifier without
     the node) by s; ``loss`` is the share of all frames lost, evenly spread; ``frozen`` repeats the last data of an
-    identifier; ``repeated`` doubles every frame; ``silent`` loses everything and tells nobody.
+    identifier; ``repeated`` doubles every frame; ``silent`` loses everything without an error.
     """
 
     __slots__ = ("_counted", "_cut", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
@@ -55,7 +55,7 @@ class FaultyCanWire(CanWire):
         self.forget_cycle()
 
     def cut(self, node_id: int, off: bool) -> None:
-        """Take a node off the bus (True), or put it on again: it neither hears nor is heard."""
+        """Take a node off the bus (True), or put it on again: it neither receives nor reaches others."""
         self._cut = self._cut | {node_id} if off else self._cut - {node_id}
         self.note_faults()
         for can_id, ranked in self._ranked.items():

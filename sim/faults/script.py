@@ -25,7 +25,7 @@ class Planned:
 class FaultScript:
     """The faults of one run, applied as it goes. Plain data; ``due_s`` is the time of the next one.
 
-    ``happened`` collects (time in s, text) of what began and ended, until somebody takes it.
+    ``happened`` collects (time in s, text) of what began and ended, until it is fetched.
     """
 
     waiting: list[Injection] = field(default_factory=list[Injection])

@@ -1,6 +1,6 @@
 """The communication half of a simulated CANopen device (CiA 301): boot-up, NMT, heartbeats, SDO, emergencies.
 
-What the device is for (the drive) is a subclass: it is told of resets, lost connections and received process data.
+A subclass (the drive) adds what the device is for: it is called on resets, lost connections and process data.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class ProfilePosition:
                 self._go(self._target)
 
     def watch(self, t: float, enabled: bool) -> bool:
-        """Update the status bits and go on to a buffered set-point; return whether something may still change."""
+        """Update the status bits and continue with a buffered set-point; return whether something may still change."""
         axis, ramps = self._axis, self._drive.ramps
         if enabled and axis.still and self._buffered is not None and not self._halt:
             self._go(self._buffered)

@@ -302,7 +302,7 @@ class DrivePower(CanopenDevice):
         self._drop_outputs(t)
 
     def _drop_outputs(self, t: float) -> None:
-        """Switch the digital outputs off: nobody commands them any more [A]."""
+        """Switch the digital outputs off: no master commands them [A]."""
         self.store.values[_OUTPUTS] = 0
         self._switch_outputs(0, t)
 

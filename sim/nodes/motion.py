@@ -199,7 +199,7 @@ class PositionAxis:
             self.target = self.demand
 
     def block(self, blocked: bool) -> None:
-        """Hold the shaft (True) while its trajectory goes on, or free it: it starts again from where it stands."""
+        """Hold the shaft (True) while its trajectory continues, or free it: it then starts from where it is."""
         self.blocked = blocked
         if blocked:
             self.value = 0.0

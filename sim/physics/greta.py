@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from sim.physics.materials import Array, Rubber, Shear, Sinusoid, Surface
 
 SLOWEST_M_S: Final = 1e-6
-"""Slower sliding has the coefficient of this speed: adhesion is said to be that of slow sliding by then [A]."""
+"""Slower sliding has the coefficient of this speed: adhesion has reached that of slow sliding by then [A]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,7 +51,7 @@ class LawOfRange(FrictionLaw, Protocol):
 
 @dataclass(frozen=True, slots=True)
 class LawSetting:
-    """What a law is told beside compound and figures, where it is made of materials."""
+    """What a law of materials needs beside compound and figures."""
 
     materials: Materials | None = None
     surface: str = ""
@@ -86,7 +86,7 @@ NO_SETTING: Final = LawSetting()
 
 
 class UnknownLawError(ValueError):
-    """A law that nobody has registered; the message names those that are there."""
+    """A law that is not registered; the message lists those that are."""
 
 
 class NoPartsError(ValueError):

@@ -1,4 +1,4 @@
-"""A law of friction as a table: what a simulated rig is told in every step, within microseconds.
+"""A law of friction as a table: a simulated rig looks it up in every step, within microseconds.
 
 ln mu, and adhesion's share of mu, are cubic B-splines over ln v, -1 / (T + 150 degC) and the root of the load, each in
 equal steps. The second is nearly straight in the logarithm of a rubber's shift of time by temperature; under light

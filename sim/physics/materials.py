@@ -1,4 +1,4 @@
-"""What laws of friction are told of two materials: a rubber's complex modulus and the surface that it slides on.
+"""Two materials as laws of friction need them: a rubber's complex modulus and the surface that it slides on.
 
 SI throughout. ``tester.inputs.materials`` reads the files of compounds and surfaces; this module holds what a
 calculation needs of them.

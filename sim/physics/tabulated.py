@@ -188,11 +188,10 @@ def _key(
     assert setting.materials is not None  # the law was made of them
     maker = laws.find(name)
     version = maker.version if isinstance(maker, laws.OfMaterials) else 0
-    told = (
+    content = repr((
         FORMAT, name, version, sorted(figures.items()), setting.area_mm2, span, POINTS, ROUNDS,
         setting.materials.rubber(compound), setting.materials.surface(setting.surface),
-    )  # fmt: skip
-    content = repr(told)
+    ))  # fmt: skip
     if " object at 0x" in content:
         return None  # an address is no content
     return hashlib.sha256(content.encode()).hexdigest()

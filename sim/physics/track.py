@@ -170,7 +170,7 @@ class TrackParameters:
 
     @property
     def of_materials(self) -> bool:
-        """Tell whether the law is made of a rubber and a surface."""
+        """Return whether the law is made of a rubber and a surface."""
         return isinstance(laws.find(self.law), laws.OfMaterials)
 
     def law_of(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> laws.FrictionLaw:

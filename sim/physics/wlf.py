@@ -6,7 +6,7 @@ mu = mu_0 + (mu_max - mu_0) exp(-(x / width)^2), x = log10(aT v / v_ref), with v
 
 Grosch, Proc. Roy. Soc. A 274 (1963) 21, found that friction of rubber over speeds and temperatures falls on one curve
 over aT v, with a maximum. With T_ref = Tg + 50 K the constants are nearly the same for all rubbers: C1 = 8.86,
-C2 = 101.5 K (Williams, Landel, Ferry 1955), said to hold from Tg to Tg + 100 K. At T_ref - C2 the shift has a pole: at
+C2 = 101.5 K (Williams, Landel, Ferry 1955), valid from Tg to Tg + 100 K. At T_ref - C2 the shift has a pole: at
 or below it there is no law, and ``PoleError`` is raised.
 """
 
@@ -83,7 +83,7 @@ class WlfBellParameters:
 
     @property
     def fitted_c(self) -> tuple[float, float]:
-        """Between these temperatures the shift is said to hold, degC: glass transition and 100 K above."""
+        """The temperatures between which the shift holds, degC: glass transition and 100 K above."""
         glass_c = self.t_ref - GLASS_TO_REFERENCE_K
         return glass_c, glass_c + FITTED_K
 

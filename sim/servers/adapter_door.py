@@ -22,7 +22,7 @@ POLL_S = 0.001
 MOST_AT_ONCE = 256
 """Frames taken in one turn: the rest waits for the next."""
 REMEMBERED_S = 0.5
-"""Nobody has sent for this long: no program is on the bus [A]; a master's heartbeats come more often."""
+"""Without a frame for this long no program is on the bus [A]: a master's heartbeats come more often."""
 _STANDARD = 0x7FF
 
 
@@ -62,7 +62,7 @@ class AdapterDoor:
 
     @property
     def taken(self) -> bool:
-        """Somebody has sent something lately."""
+        """Whether a program has sent a frame lately."""
         return self._now_s - self._heard_s < REMEMBERED_S
 
     @property
@@ -75,7 +75,7 @@ class AdapterDoor:
         return [self._bus] if self._waits else []
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Let the simulated nodes hear what was sent."""
+        """Pass what was sent to the simulated nodes."""
         if self._waits and self._bus not in ready:
             return
         self._now_s = now
@@ -86,7 +86,7 @@ class AdapterDoor:
                     break
                 self._hear(message, now)
         except self._errors:
-            pass  # the interface is down: nothing is heard until it is up again
+            pass  # the interface is down: no frame comes until it is up again
         if not self._waits:
             self._due_s = now + POLL_S
 
@@ -120,7 +120,7 @@ class AdapterDoor:
 
 
 def _selectable(bus: can.BusABC) -> bool:
-    """Tell whether ``select`` can wait for a bus: SocketCAN's and the virtual ones over UDP are sockets."""
+    """Return whether ``select`` can wait for a bus: SocketCAN's and the virtual ones over UDP are sockets."""
     try:
         return bus.fileno() >= 0
     except NotImplementedError:

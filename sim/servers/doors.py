@@ -28,7 +28,7 @@ class Place:
     at: str
 
     def __str__(self) -> str:
-        """Say it as the ready line does."""
+        """Return it as the ready line shows it."""
         return f"{self.at} ({self.speaks})"
 
 
@@ -42,7 +42,7 @@ class WireDoor(Protocol):
 
     @property
     def taken(self) -> bool:
-        """A program is at it, as far as the door can tell."""
+        """Whether a program is connected, as far as the door can know."""
         ...
 
     @property

@@ -1,7 +1,7 @@
 """A Modbus TCP gateway in front of a simulated serial line; sans-IO.
 
-Requests are unwrapped (MBAP header off, CRC on) and go over the line one at a time, with its wire times; replies go
-back to whoever asked. A slave that is not there stays silent, as on the line itself: no gateway exception is made up.
+Requests are unwrapped (MBAP header off, CRC on) and go over the line one at a time, with its wire times; replies return
+to the client that asked. An absent slave stays silent, as on the line itself: no gateway exception is made up.
 Source: Modbus messaging on TCP/IP implementation guide V1.0b, 3.1.3.
 """
 
@@ -62,7 +62,7 @@ class ModbusSession:
 @dataclass(slots=True)
 class _Transaction:
     session: ModbusSession | None
-    """Who asked; None once that client is gone."""
+    """The client that asked; None once it is gone."""
     number: int
     frame: bytes
     until_s: float = inf
@@ -103,7 +103,7 @@ class ModbusGateway:
             self._end_if_unheard()
 
     def _end_if_unheard(self) -> None:
-        """End a transaction that nobody waits for once nothing more comes of it."""
+        """End a transaction whose client is gone, once its reply cannot come any more."""
         if self._active is not None and self._active.session is None and not isfinite(self.wire.arrives_s):
             self._active = None
 
@@ -118,7 +118,7 @@ class ModbusGateway:
             self.wire.write(transaction.frame, now)
         except BusLost:
             return  # an unplugged line is silent
-        if transaction.frame[0] != 0:  # nobody answers a broadcast
+        if transaction.frame[0] != 0:  # a broadcast is not answered
             transaction.until_s = now + PATIENCE_S
             self._active, self._reply = transaction, b""
 

@@ -17,7 +17,7 @@ class Pty:
     """A serial port, seen from its far end. ``name`` is the device that a program opens.
 
     It never blocks. The near end is kept open here: settings survive a program that leaves, and one that has left is
-    not seen, as an adapter does not see it. ``dropped`` counts bytes that nobody fetched.
+    not seen, as an adapter does not see it. ``dropped`` counts bytes that were not fetched.
     """
 
     def __init__(self, baud: int, link: Path | None = None) -> None:
@@ -76,7 +76,7 @@ class Pty:
             return
         try:
             sent = os.write(self._far, self._unsent)
-        except OSError:  # full: nobody reads
+        except OSError:  # full: no program reads
             return
         del self._unsent[:sent]
 

@@ -27,7 +27,7 @@ LONGEST_SLEEP_S = 0.05
 
 
 class Observer(Protocol):
-    """Whoever wants to see the rig every ``STEP_S``."""
+    """Sees the rig every ``STEP_S``."""
 
     def observe(self, rig: SimRig, controlled: bool) -> None:
         """Take note of the rig as it is; ``controlled``: a program is on its CAN bus."""
@@ -97,9 +97,9 @@ class RigServer:
         if t - due > self.latest_s:
             self.latest_s = t - due
         (self.life or self.rig).advance(t)
-        heard = set(ready)
+        readable = set(ready)
         for door in self._doors:
-            door.read(heard, t)
+            door.read(readable, t)
         for door in self._doors:
             door.deliver(t)
         if t >= self._step_due_s:

@@ -27,7 +27,7 @@ _DIGITS = frozenset(hexdigits.encode("ascii"))
 class SlcanSession:
     """The adapter: ``feed`` takes what the computer sent, ``outgoing`` holds what is to be sent to it.
 
-    ``bitrate`` is that of the bus, bit/s: opened at another one, the adapter hears nothing and nobody hears it.
+    ``bitrate`` is that of the bus, bit/s: opened at another one, the adapter receives nothing and reaches no node.
     ``ignored`` counts frames that the simulated bus does not carry (29-bit identifiers, remote frames), ``refused``
     lines that are no valid command.
     """
@@ -46,7 +46,7 @@ class SlcanSession:
 
     @property
     def deaf(self) -> bool:
-        """Tell whether the channel is open at another bit rate than the bus has."""
+        """Return whether the channel is open at another bit rate than the bus has."""
         return self.is_open and self._own_rate != self.bitrate
 
     def feed(self, data: bytes) -> list[tuple[int, bytes]]:

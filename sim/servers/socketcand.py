@@ -47,7 +47,7 @@ class SocketcandSession:
 
     @property
     def raw(self) -> bool:
-        """Tell whether frames go both ways."""
+        """Return whether frames go both ways."""
         return self._frames_from_s < inf
 
     def feed(self, data: bytes, now: float) -> list[tuple[int, bytes]]:

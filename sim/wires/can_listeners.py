@@ -34,7 +34,7 @@ class CanListeners:
     )
 
     def __init__(self, frame_s: tuple[float, ...]) -> None:
-        """Have nobody listen; ``frame_s``: s that a frame takes on the wire, by its number of bytes."""
+        """Begin without listeners; ``frame_s``: s that a frame takes on the wire, by its number of bytes."""
         self.nodes: list[WiredNode] = []
         self._frame_s = frame_s
         self._routes: dict[int, tuple[Listener, ...]] = {}

@@ -23,7 +23,7 @@ _LOAD_MARK_S: Final = 0.1
 
 
 def _same_lengths(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> bool:
-    """Tell whether the frames of two cycles are as long as each other: with equal identifiers, equal times."""
+    """Return whether the frames of two cycles are as long as each other: with equal identifiers, equal times."""
     if len(payloads) != len(others):
         return False
     same = True
@@ -38,7 +38,7 @@ class CanWire(CanListeners):
 
     ``urgent_s`` is the arrival time of the earliest urgent frame not yet received (emergency, boot-up, change of a
     drive's state, input change), infinity if there is none. ``ready_s`` is when the next frame that a node sends by
-    itself asks for the wire. ``watchers`` are told of every frame in both directions, with its arrival.
+    itself asks for the wire. ``watchers`` are called for every frame in both directions, with its arrival.
     """
 
     __slots__ = (
@@ -159,7 +159,7 @@ class CanWire(CanListeners):
         return inbox[:count]
 
     def watch(self, watcher: CanWatcher) -> Unwatch:
-        """Have ``watcher`` told of every frame."""
+        """Call ``watcher`` for every frame."""
         return add_watcher(self.watchers, watcher)
 
     def disconnect(self) -> None:

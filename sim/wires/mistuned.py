@@ -1,4 +1,4 @@
-"""What a computer meets whose adapter is set otherwise than the devices on its wire: nobody understands it."""
+"""Ports of a computer whose adapter is not set as the devices on its wire are: no device understands it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class MistunedCan(FrameByFrame):
         self.bus_off = False
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
-        """Send a frame that nobody acknowledges: errors count up to 256 within milliseconds (ISO 11898-1, 12.1)."""
+        """Send a frame that no node acknowledges: errors count up to 256 within milliseconds (ISO 11898-1, 12.1)."""
         if self.bus_off:
             raise BusLost("CAN bus lost: bus-off")
         self.tell_sent(can_id, data, now)
@@ -31,7 +31,7 @@ class MistunedLine(WatchedLine):
     """A serial port at another speed or parity than its devices: they take no frame for one, and are silent."""
 
     def write(self, data: bytes, now: float) -> None:
-        """Send bytes that nobody understands."""
+        """Send bytes that no device understands."""
         self.tell(now, data, True)
 
     def read(self, now: float) -> list[tuple[float, bytes]]:

@@ -56,7 +56,7 @@ class Impairment:
         return None
 
     def strikes(self, unit_id: int) -> bool:
-        """Tell whether this transaction is concerned, and count it."""
+        """Return whether this transaction is concerned, and count it."""
         if self.count == 0 or self.unit_id not in (0, unit_id):
             return False
         if self.skip > 0:
@@ -70,7 +70,7 @@ class Impairment:
 class ModbusWire:
     """The line and the computer's port on it (``drivers.ports.LinePort``).
 
-    ``watchers`` are told of every frame in both directions; ``impair`` spoils transactions; ``occupied_s`` is how long
+    ``watchers`` are called for every frame either way; ``impair`` spoils transactions; ``occupied_s`` is how long
     the line has carried characters, ``collisions`` how often the computer spoke while a slave did. The computer's
     adapter may hold back what it receives, as a USB adapter's latency timer does. ``arrives_s`` is
     when the next bytes not read yet arrive, s: infinity when none are on their way, -infinity when a read would raise.
@@ -119,7 +119,7 @@ class ModbusWire:
         self._slaves[slave.unit_id] = slave
 
     def has(self, slave: ModbusSlave) -> bool:
-        """Tell whether a slave is on this line."""
+        """Return whether a slave is on this line."""
         return self._slaves.get(slave.unit_id) is slave
 
     # the computer's side ---------------------------------------------------------------------------------------
@@ -184,7 +184,7 @@ class ModbusWire:
         return sorted(arrived)
 
     def watch(self, watcher: LineWatcher) -> Unwatch:
-        """Have ``watcher`` told of every frame."""
+        """Call ``watcher`` for every frame."""
         return add_watcher(self.watchers, watcher)
 
     def disconnect(self) -> None:
