@@ -77,6 +77,14 @@ class SensorSlave(ModbusSlave):
         self._invalid = profile.invalid_bits & -profile.invalid_bits
         self._overload = profile.bit("overload")
         self._limits = tuple(_most_counts(signal) if profile.kind == "load_cell" else inf for signal in block.signals)
+        names = [signal.name for signal in block.signals]
+        self._status_place = names.index("status") if "status" in names else -1
+        self._rows = tuple(
+            (signal.scale, signal.type != "f32", limit, 1 << signal.sign_bit if signal.sign_bit is not None else 0,
+             *LIMITS[signal.type])
+            for signal, limit in zip(block.signals, self._limits, strict=True)
+        )
+        """Of each signal: scale, whether its counts are whole, greatest counts, bit of its sign, ends of its type."""
         self._shown = bytes(2 * block.count)
         self.blocks = {(block.address, block.count): 0}
 
@@ -99,27 +107,23 @@ class SensorSlave(ModbusSlave):
         self.dither = phase = (self.dither + 1) & 3
         step, status = PATTERN[phase], self.status_bits
         counts: list[object] = []
-        status_place = -1
-        for signal, value, limit in zip(self._signals, values, self._limits, strict=True):
-            if signal.name == "status":
-                status_place = len(counts)
+        for (scale, whole, limit, sign, least, most), value in zip(self._rows, values, strict=True):
+            if len(counts) == self._status_place:
                 counts.append(0)
                 continue
             if not isfinite(value):
                 status |= self._invalid
                 value = 0.0
-            whole = signal.type != "f32"
-            found: float = floor(value / signal.scale + step) if whole else value / signal.scale
-            if not -limit < found < limit:
+            count: float = floor(value / scale + step) if whole else value / scale
+            if not -limit < count < limit:
                 status |= self._overload
-                found = min(max(found, -limit), limit)
-            if signal.sign_bit is not None and found < 0.0:
-                status |= 1 << signal.sign_bit
-                found = -found
-            least, most = LIMITS[signal.type]
-            counts.append(min(max(int(found), least), most) if whole else found)
-        if status_place >= 0:
-            counts[status_place] = status
+                count = min(max(count, -limit), limit)
+            if sign and count < 0.0:
+                status |= sign
+                count = -count
+            counts.append(min(max(int(count), least), most) if whole else count)
+        if self._status_place >= 0:
+            counts[self._status_place] = status
         self._shown = data = self._block.pack(*counts)
         return data
 
@@ -203,6 +207,7 @@ class IrSlave(SensorSlave):
         self._emissivity = profile.writes.get("emissivity")
         self.source = source
         self.sensor_c = sensor_c
+        self._of_itself = tuple(signal.name == "sensor" for signal in self._signals)
         self.power(True)
 
     def power(self, on: bool) -> None:
@@ -220,7 +225,7 @@ class IrSlave(SensorSlave):
     def measure(self, t: float) -> list[float]:
         """Return the surface's temperature at ``t`` s on every channel but that of the device itself."""
         surface_c = self.source.surface_measured_c(t)
-        return [self.sensor_c if signal.name == "sensor" else surface_c for signal in self._signals]
+        return [self.sensor_c if of_itself else surface_c for of_itself in self._of_itself]
 
 
 def _most_counts(signal: Signal) -> float:
