@@ -182,7 +182,7 @@ class Axes:
         """
         rows: list[dict[str, object]] = []
         for axis in self.table:
-            row: dict[str, object] = {name: getattr(axis, name) for name in TOLD}
+            row: dict[str, object] = {name: getattr(axis, name) for name in WORDING}
             rows.append(row | {"choices": list(axis.choices), "blocks": axis.name == self.blocks})
         return rows
 
@@ -200,7 +200,7 @@ class Axes:
         return tuple(axis for axis in self.table if axis.paper or not all(axis.at_default(held) for held in listed))
 
 
-TOLD = ("name", "recipe_unit", "field", "unit", "scale", "column", "header", "title", "word", "default", "paper",
+WORDING = ("name", "recipe_unit", "field", "unit", "scale", "column", "header", "title", "word", "default", "paper",
         "plotted")  # fmt: skip
 """Fields of an axis that determine its words; with its choices and the axis of blocks, a table as plain data."""
 
@@ -214,7 +214,7 @@ def axes_from(rows: Iterable[Mapping[str, object]]) -> Axes:
 
 
 def _axis_from(row: Mapping[str, object]) -> Axis:
-    text = {name: str(row[name]) for name in TOLD}
+    text = {name: str(row[name]) for name in WORDING}
     scale, default, choices, plotted = row["scale"], row["default"], row["choices"], row["plotted"]
     if not isinstance(scale, int | float) or not isinstance(plotted, int) or not isinstance(choices, list | tuple):
         raise ValueError(f"no axis: {row}")

@@ -53,7 +53,7 @@ def buses_of(rig: Rig) -> list[str]:
     return [f"can {rig.can.interface}:{rig.can.channel}", *lines]
 
 
-def told_before(rig: Rig, today: date) -> list[str]:
+def warnings_before(rig: Rig, today: date) -> list[str]:
     """Return warnings before a rig starts: expired certificates, lines with other settings.
 
     Raises CannotStartError if a certificate has expired and that refuses a start (``calibration.overdue``).

@@ -187,7 +187,7 @@ def record_parameters(
     rows = list(read_back(rig, devices, now_s))
     for row in rows:
         recorder.device_parameter(row.t_s, row.device, row.parameter, row.value, row.name)
-    return good.told(rig, rows) if good is not None else ""
+    return good.differences(rig, rows) if good is not None else ""
 
 
 def record_statistics(devices: DeviceList, recorder: Recorder, now_s: float) -> None:

@@ -42,7 +42,7 @@ from tester.run.latch import acknowledge, open_trips
 from tester.run.merge_parts import put_together, recover
 from tester.run.part_run import PartWatch, run_part
 from tester.run.pool import WorkerPool
-from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, prepared, told_before
+from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, prepared, warnings_before
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.run.reporter import LastingScreen, ReportScreen
 from tester.run.resumed_run import prepare
@@ -207,7 +207,7 @@ class Session(PartWatch):
 
     def _foretell(self, rig: Rig) -> None:
         """Show warnings about a rig before it starts. Raises CannotStartError."""
-        for text in told_before(rig, date.fromisoformat(utc_now()[:10])):
+        for text in warnings_before(rig, date.fromisoformat(utc_now()[:10])):
             self.screen.message(text)
 
     def _job(self, folder: Path, seed: int, rig: Rig) -> Job:

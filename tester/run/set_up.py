@@ -140,7 +140,7 @@ class GoodRun:
     name: str
     devices: Parameters
 
-    def told(self, rig: Rig, rows: Iterable[StoredParameter]) -> str:
+    def differences(self, rig: Rig, rows: Iterable[StoredParameter]) -> str:
         """Return the differences between ``rows``, read while connecting, and the good run; "" without any."""
         now = stored(rig, rows)
         before = {

@@ -89,7 +89,7 @@ class GatewayLink:
         """Whether any client is connected."""
         return self.presence.viewers > 0 or self.presence.controller_id != 0
 
-    # -- saying -----------------------------------------------------------------------------------------------
+    # -- sending -----------------------------------------------------------------------------------------------
 
     def event(self, kind: str, text: str, severity: str = "info", t_s: float = 0.0, run: str = "") -> None:
         """Send an event."""
@@ -97,7 +97,7 @@ class GatewayLink:
         line = b"e%d " % self.sequence
         line += encode(Event(self.sequence, t_s, clock.utc_now(), kind, severity, text, run))
         self._events.append(line)
-        self._say(line)
+        self._send(line)
 
     def state(self, view: StateView, row: tuple[float | None, ...]) -> None:
         """Send the state; it replaces a state still waiting."""
@@ -105,7 +105,7 @@ class GatewayLink:
         self._rows.append(encoded)
         if self._end is not None:
             try:
-                self._end.say_state(b"s" + to_json(view, inf_nan_mode="null") + b"\t" + encoded)
+                self._end.send_state(b"s" + to_json(view, inf_nan_mode="null") + b"\t" + encoded)
             except LinkLost as lost:
                 self._lose(lost)
 
@@ -117,32 +117,32 @@ class GatewayLink:
         if line != self._machine:
             self._machine = line
             self._rows.clear()
-            self._say(line)
+            self._send(line)
 
     def plan(self, plan: PlanView | None) -> None:
         """Send the plan."""
         self._plan = b"p" + to_json(plan, inf_nan_mode="null")
-        self._say(self._plan)
+        self._send(self._plan)
 
     def frames(self, frames: Frames) -> None:
         """Send frames to the clients that watch them."""
-        self._say(b"f" + encode(frames))
+        self._send(b"f" + encode(frames))
 
     def accept(self, order: Order, result: JsonValue = None) -> None:
         """Answer an order: accepted."""
-        self._say(b"a%d " % order.client + encode(Accepted(order.id, result)))
+        self._send(b"a%d " % order.client + encode(Accepted(order.id, result)))
 
     def refuse(self, order: Order, reason: str) -> None:
         """Answer an order: refused, with the reason."""
-        self._say(b"a%d " % order.client + encode(Refused(order.id, reason)))
+        self._send(b"a%d " % order.client + encode(Refused(order.id, reason)))
 
     def notify(self, event: str, text: str, run: str, folder: str) -> None:
         """Run the user's hook."""
-        self._say(b"n" + to_json({"event": event, "text": text, "run": run, "folder": folder, "utc": clock.utc_now()}))
+        self._send(b"n" + to_json({"event": event, "text": text, "run": run, "folder": folder, "utc": clock.utc_now()}))
 
-    # -- hearing ----------------------------------------------------------------------------------------------
+    # -- receiving ----------------------------------------------------------------------------------------------
 
-    def hear(self) -> list[Order | Presence]:
+    def receive(self) -> list[Order | Presence]:
         """Return a bounded number of clients' messages; restart a gateway that is gone."""
         self.lane.look()
         if self._end is None:
@@ -151,7 +151,7 @@ class GatewayLink:
             return []
         try:
             self._end.flush()
-            messages = self._end.hear()
+            messages = self._end.receive()
         except LinkLost as lost:
             self._lose(lost)
             return []
@@ -166,7 +166,7 @@ class GatewayLink:
         """Wait until a message arrives, at most ``seconds``."""
         if self._end is None:
             clock.sleep_until(clock.monotonic() + seconds)
-        elif not self._end.heard:
+        elif not self._end.has_lines:
             select.select([self._end.socket, self.lane.bell], [], [], max(seconds, 0.0))
 
     # -- the gateway ------------------------------------------------------------------------------------------
@@ -190,18 +190,18 @@ class GatewayLink:
             self.service, __version__, str(path), str(self.config.runs), self.config.rig, self.config.notify,
             address.token if tcp else "", address.port if tcp else 0, self.lane.port, self.config.accept_risk,
         )  # fmt: skip
-        self._say(SETTINGS.dump_json(settings))
+        self._send(SETTINGS.dump_json(settings))
         if self._machine:
-            self._say(self._machine)
+            self._send(self._machine)
         for row in self._rows:
-            self._say(b"t" + row)
+            self._send(b"t" + row)
         for event in self._events:
-            self._say(event)
-        self._say(self._plan)
+            self._send(event)
+        self._send(self._plan)
 
     def close(self) -> None:
-        """End the gateway, which says goodbye to every client. STOP works until then."""
-        self._say(b"b")
+        """End the gateway, which sends a goodbye to every client. STOP works until then."""
+        self._send(b"b")
         if self._end is not None:
             self._end.drain(END_S)
         if self._process is not None:
@@ -219,16 +219,16 @@ class GatewayLink:
                 unlink_socket(path)
         self.config.card.unlink(missing_ok=True)
 
-    def _say(self, line: bytes) -> None:
+    def _send(self, line: bytes) -> None:
         if self._end is None:
             return
         try:
-            self._end.say(line)
+            self._end.send(line)
         except LinkLost as lost:
             self._lose(lost)
 
     def _lose(self, lost: LinkLost) -> None:
-        """Give up a gateway; the next ``hear`` starts another."""
+        """Give up a gateway; the next ``receive`` starts another."""
         if self._end is not None:
             self._end.close()
         self._end = None

@@ -2,8 +2,8 @@
 
 A client sends ``join`` first and gets ``hello``; from then on the service sends ``snapshot`` (four a second, newest
 wins), ``plan`` (newest wins), ``event`` (numbered, never dropped), ``machine`` where a run is on another kind of rig
-and, while asked for, ``frames``. Each command is answered by ``accepted`` or ``refused``. ``goodbye`` says why the
-service closes the connection.
+and, to a client that watches them, ``frames``. Each command is answered by ``accepted`` or ``refused``. ``goodbye``
+gives the reason for which the service closes the connection.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ FromGateway: TypeAlias = Annotated[Order | Presence, Field(discriminator="type")
 FROM_GATEWAY: TypeAdapter[FromGateway] = TypeAdapter(FromGateway)
 
 
-class LinkLost(Exception):  # noqa: N818 - says what happened, as BusLost does
+class LinkLost(Exception):  # noqa: N818 - an event, as BusLost
     """The other end is gone, or has stopped reading."""
 
 
@@ -92,10 +92,10 @@ class OwnerEnd:
         self._state = b""
         self._sent = 0
         """Bytes of the first waiting line that are already sent."""
-        self._heard = b""
+        self._received = b""
         self._lines: deque[bytes] = deque()
 
-    def say(self, line: bytes) -> None:
+    def send(self, line: bytes) -> None:
         """Queue a line that must arrive. Raises LinkLost for a gateway that has stopped reading."""
         self._waiting.append(line + b"\n")
         self._waiting_bytes += len(line) + 1
@@ -103,7 +103,7 @@ class OwnerEnd:
             raise LinkLost("the gateway does not read")
         self.flush()
 
-    def say_state(self, line: bytes) -> None:
+    def send_state(self, line: bytes) -> None:
         """Send a state; it replaces a state still waiting."""
         self._state = line + b"\n"
         self.flush()
@@ -130,7 +130,7 @@ class OwnerEnd:
             self._waiting_bytes -= len(first)
             self._sent = 0
 
-    def hear(self) -> list[Order | Presence]:
+    def receive(self) -> list[Order | Presence]:
         """Return a bounded number of the gateway's messages, without waiting. Raises LinkLost."""
         if len(self._lines) < LINES_AT_ONCE:
             self._read()
@@ -141,12 +141,12 @@ class OwnerEnd:
             messages = [FROM_GATEWAY.validate_json(self._lines.popleft()) for _ in range(count)]
         except ValidationError as error:
             raise LinkLost("the gateway sent an unknown message") from error
-        self.say(b"k%d" % count)
+        self.send(b"k%d" % count)
         return messages
 
     @property
-    def heard(self) -> bool:
-        """Whether a line has arrived that ``hear`` has not returned."""
+    def has_lines(self) -> bool:
+        """Whether a line has arrived that ``receive`` has not returned."""
         return bool(self._lines)
 
     def _read(self) -> None:
@@ -158,11 +158,11 @@ class OwnerEnd:
             raise LinkLost(str(error)) from error
         if not data:
             raise LinkLost("the gateway has ended")
-        self._heard += data
+        self._received += data
         if b"\n" in data:
-            *lines, self._heard = self._heard.split(b"\n")
+            *lines, self._received = self._received.split(b"\n")
             self._lines.extend(lines)
-        if len(self._heard) > 4 * MAX_MESSAGE:
+        if len(self._received) > 4 * MAX_MESSAGE:
             raise LinkLost("the gateway's line does not end")
 
     def drain(self, seconds: float) -> None:

@@ -107,7 +107,7 @@ class Desk:
         kind = served_kind(run.engine.ctx.rig)
         self.gateway.machine(kind.machine)
         self.watch, self.hand, self.run = RunWatch(run, track, kind), hand, view
-        run.engine.ctx.journal.heard = self.heard
+        run.engine.ctx.journal.on_event = self.forward
         self.gateway.lane.begin_ticking()
         self.now_s = 0.0
         self._asked = 0
@@ -129,7 +129,7 @@ class Desk:
         """Stop watching the run; ``view`` is its last view."""
         self.gateway.lane.end_ticking()
         if self.watch is not None:
-            self.watch.run.engine.ctx.journal.heard = None
+            self.watch.run.engine.ctx.journal.on_event = None
             for name in self.watch.watched:
                 self.alarms.clear(name)
         self.watch = self.hand = None
@@ -177,7 +177,7 @@ class Desk:
                 self.tell("mode", f"the acknowledgement cannot be recorded: {in_words(error)}", "warning")
         self.latched, self.tripped, self.interrupted = "", "", ()
 
-    def heard(self, t_s: float, kind: str, text: str, severity: str) -> None:
+    def forward(self, t_s: float, kind: str, text: str, severity: str) -> None:
         """Forward what the run records to the clients."""
         if kind == "emergency" and self.watch is not None:
             self.watch.buses.count_emergency(text)
@@ -195,7 +195,7 @@ class Desk:
             self.tell(kind, text, severity)
         else:
             ctx = self.watch.run.engine.ctx
-            ctx.journal.event(ctx.now, kind, text, severity)  # the journal calls ``heard``, which sends it
+            ctx.journal.event(ctx.now, kind, text, severity)  # the journal calls ``forward``
 
     def notify(self, event: str, text: str) -> None:
         """Run the user's hook."""
@@ -208,7 +208,7 @@ class Desk:
         """Carry out clients' orders, and publish the state when it is due. ``now_s``: rig time."""
         self.now_s = now_s
         self.stop_first()
-        for message in self.gateway.hear():
+        for message in self.gateway.receive():
             if isinstance(message, Order):
                 self.obey(message)
             self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # show the change soon

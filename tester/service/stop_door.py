@@ -61,7 +61,7 @@ class Caller:
     process: int
     admitted: bool
     peer: str
-    said: bytes = b""
+    received: bytes = b""
 
 
 @dataclass(slots=True)
@@ -117,10 +117,10 @@ class StopDoor:
                 within_s = left_s if within_s is None else min(within_s, left_s)
         ready = {id(key.fileobj): key.data for key, _ in self._selector.select(within_s)}
         if id(self.owner) in ready:
-            self._hear_owner()
+            self._receive_answers()
         for caller in ready.values():
             if isinstance(caller, Caller) and caller in self.callers:
-                self._hear(caller)
+                self._receive(caller)
         if id(self._listener) in ready:
             self._admit()
 
@@ -158,19 +158,19 @@ class StopDoor:
         self._selector.unregister(caller.connection)
         caller.connection.close()
 
-    def _hear(self, caller: Caller) -> None:
+    def _receive(self, caller: Caller) -> None:
         try:
             data = caller.connection.recv(LONGEST)
         except BlockingIOError:
             return
         except OSError:
             data = b""
-        caller.said += data
-        *lines, caller.said = caller.said.split(b"\n")
+        caller.received += data
+        *lines, caller.received = caller.received.split(b"\n")
         for line in lines:
             if not self._understand(caller, line):
                 data = b""
-        if not data or len(caller.said) > LONGEST:
+        if not data or len(caller.received) > LONGEST:
             self._let_go(caller)
 
     def _understand(self, caller: Caller, line: bytes) -> bool:
@@ -181,7 +181,7 @@ class StopDoor:
         word, _, name = line.decode("utf-8", "replace").partition(" ")
         if word not in ("stop", "fast"):
             return False
-        plain = "".join(c for c in name if c.isprintable())[:NAME_LENGTH] or "somebody"
+        plain = "".join(c for c in name if c.isprintable())[:NAME_LENGTH] or "a client"
         self._want(caller, word == "fast", with_peer(plain, caller.peer))
         return True
 
@@ -208,7 +208,7 @@ class StopDoor:
         except OSError:
             self.ended = True
 
-    def _hear_owner(self) -> None:
+    def _receive_answers(self) -> None:
         try:
             data = self.owner.recv(4096)
         except BlockingIOError:

@@ -52,7 +52,7 @@ class StopLane:
         self._wishes: list[StopWish] = []
         self._settings: DoorSettings | None = None
         self._link: socket.socket | None = None
-        self._said = b""
+        self._received = b""
         self._process: subprocess.Popen[bytes] | None = None
         self._again_s = float("-inf")
 
@@ -113,11 +113,11 @@ class StopLane:
     def _listen(self, link: socket.socket) -> None:
         link.setblocking(False)
         self._link = link
-        Thread(target=self._hear, args=(link,), name="stop lane", daemon=True).start()
+        Thread(target=self._listen_to_door, args=(link,), name="stop lane", daemon=True).start()
 
     # -- requests ---------------------------------------------------------------------------------------------
 
-    def _hear(self, link: socket.socket) -> None:
+    def _listen_to_door(self, link: socket.socket) -> None:
         """Read the door until it is gone; the ticking thread may read first."""
         while self._link is link:
             select.select([link], [], [])
@@ -137,9 +137,9 @@ class StopLane:
         except OSError:
             data = b""
         if not data:
-            self._link, self._said = None, b""
+            self._link, self._received = None, b""
             return
-        *lines, self._said = (self._said + data).split(b"\n")
+        *lines, self._received = (self._received + data).split(b"\n")
         for line in lines:
             self._take(line.decode("utf-8", "replace"))
 

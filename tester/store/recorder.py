@@ -71,7 +71,7 @@ class Recorder:
     """Why nothing more can be written; the run must end in a controlled stop."""
     overruns: int = 0
     """Samples dropped because the queue was full."""
-    heard: Callable[[float, str, str, str], None] | None = None
+    on_event: Callable[[float, str, str, str], None] | None = None
     """Called with every recorded event: rig time in s, kind, text, severity."""
 
     def sample(self, row: tuple[float, ...]) -> None:
@@ -278,8 +278,8 @@ class Recorder:
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
         """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two at once."""
-        if self.heard is not None:
-            self.heard(t_s, kind, text, severity)
+        if self.on_event is not None:
+            self.on_event(t_s, kind, text, severity)
         self._events += 1
         event = StoredEvent(self._events, t_s, self._utc(), kind, severity, text, data)
         self._write(self._row("event", event), urgent=severity in URGENT_SEVERITIES)

@@ -68,7 +68,7 @@ class Sweep:
     name: str
     recipe_text: str
     rig_text: str
-    held: Axes
+    condition_axes: Axes
     """Axes of the recipe's conditions."""
     worn: str
     """People's name for the part of the machine that wears."""
@@ -112,7 +112,7 @@ def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, i
     options = sweep.options
     folder = make_folder(options.out, sweep.name)
     write_sources(folder, sweep.recipe_text, sweep.rig_text, options.axes, options.first_seed, options.seeds)
-    files = SweepFiles(folder, options.axes, sweep.held, sweep.worn)
+    files = SweepFiles(folder, options.axes, sweep.condition_axes, sweep.worn)
     audience.begin(folder, len(sweep.tasks))
     code = EXIT_DONE
     try:

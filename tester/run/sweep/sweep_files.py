@@ -24,18 +24,19 @@ class SweepFiles:
     Raises OSError.
     """
 
-    def __init__(self, folder: Path, axes: Sequence[SweepAxis], held: Axes, worn: str) -> None:
+    def __init__(self, folder: Path, axes: Sequence[SweepAxis], condition_axes: Axes, worn: str) -> None:
         """Create ``runs.csv`` and ``conditions.csv`` in ``folder``.
 
-        ``held``: the axes of the recipe's conditions; ``worn``: people's name for the part that wears, in the headers.
+        ``condition_axes``: the axes of the recipe's conditions; ``worn``: people's name for the part that wears, in the
+        headers.
         """
         self.folder = folder
         self.axes = axes
-        self.held = held
+        self.condition_axes = condition_axes
         self.worn = worn
         self.results: list[CaseResult] = []
         self._runs = _begin(folder / RUNS, sweep_tables.run_header(axes, worn))
-        self._conditions = _begin(folder / CONDITIONS, sweep_tables.condition_header(axes, held))
+        self._conditions = _begin(folder / CONDITIONS, sweep_tables.condition_header(axes, condition_axes))
 
     def add(self, result: CaseResult) -> None:
         """Write a run's result; it is in the files on return."""
@@ -52,8 +53,8 @@ class SweepFiles:
         conditions = chain.from_iterable(sweep_tables.condition_rows(result) for result in results)
         for name, header, rows in (
             (RUNS, sweep_tables.run_header(axes, self.worn), runs),
-            (CONDITIONS, sweep_tables.condition_header(axes, self.held), conditions),
-            (SUMMARY, sweep_tables.summary_header(axes, self.held), sweep_tables.summary_rows(results)),
+            (CONDITIONS, sweep_tables.condition_header(axes, self.condition_axes), conditions),
+            (SUMMARY, sweep_tables.summary_header(axes, self.condition_axes), sweep_tables.summary_rows(results)),
             (TOTALS, sweep_tables.totals_header(axes, self.worn), sweep_tables.totals_rows(results)),
         ):
             write_file(self.folder / name, encode(chain([header], rows)))

@@ -40,9 +40,9 @@ def run_row(result: CaseResult) -> Row:
     return (*r.point, r.seed, r.outcome, r.reason, r.exit_code, r.rig_seconds, r.mounted, len(r.rows), r.missing)
 
 
-def condition_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
-    """Return the columns of ``conditions.csv``; ``held``: the axes of the recipe's conditions."""
-    return (*head_of(axes), "seed", *_setpoint_header(held), *(column.key for column in sweep_columns()))
+def condition_header(axes: Sequence[SweepAxis], condition_axes: Axes) -> Row:
+    """Return the columns of ``conditions.csv``; ``condition_axes``: the axes of the recipe's conditions."""
+    return (*head_of(axes), "seed", *_setpoint_header(condition_axes), *(column.key for column in sweep_columns()))
 
 
 def condition_rows(result: CaseResult) -> Iterator[Row]:
@@ -54,7 +54,7 @@ def condition_rows(result: CaseResult) -> Iterator[Row]:
 # -- statistics ---------------------------------------------------------------------------------------------------
 
 
-def summary_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
+def summary_header(axes: Sequence[SweepAxis], condition_axes: Axes) -> Row:
     """Return the columns of ``summary.csv``.
 
     ``mu_sd`` is the spread between seeds, ``u_standard`` the root mean square of the runs' stated uncertainties,
@@ -62,7 +62,7 @@ def summary_header(axes: Sequence[SweepAxis], held: Axes) -> Row:
     ``with_care`` those of them whose value carries a doubt (its flags are in ``conditions.csv``).
     """
     mu = tuple(f"mu_{name}" for name in _STATISTICS[1:])
-    return (*head_of(axes), *_setpoint_header(held), "runs", "n", *mu, "u_standard", "sd_over_u", "with_care")
+    return (*head_of(axes), *_setpoint_header(condition_axes), "runs", "n", *mu, "u_standard", "sd_over_u", "with_care")
 
 
 def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
@@ -107,8 +107,8 @@ def totals_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
         yield (*point, len(group), len(done), other_outcomes, rows, missing, *seconds, *mounted)
 
 
-def _setpoint_header(held: Axes) -> Row:
-    return ("row", "compound", *(axis.column for axis in held))
+def _setpoint_header(condition_axes: Axes) -> Row:
+    return ("row", "compound", *(axis.column for axis in condition_axes))
 
 
 def _setpoints(row: RowResult) -> Row:

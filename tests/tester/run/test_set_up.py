@@ -33,7 +33,7 @@ def good(simulation: Simulation) -> GoodRun:
 
 def told(simulation: Simulation, before: GoodRun) -> str:
     engine = simulation.run.engine
-    return before.told(engine.ctx.rig, read_back(engine.ctx.rig, engine.devices, 1.0))
+    return before.differences(engine.ctx.rig, read_back(engine.ctx.rig, engine.devices, 1.0))
 
 
 def test_a_rig_as_it_was_is_not_spoken_of(connected: Simulation) -> None:

@@ -43,7 +43,7 @@ async def connected(gateway: GatewayLink, address: UnixAddress | TcpAddress | No
     """Connect while the owner goes on talking, as it does between two ticks."""
     where = address or gateway.config.address
     for _ in range(400):
-        gateway.hear()
+        gateway.receive()
         gateway.state(state(), ROW)
         try:
             return await Client.connect(where, name="test", control=True)
@@ -61,7 +61,7 @@ def test_a_gateway_process_that_dies_is_replaced_and_knows_what_was(gateway: Gat
         process.kill()
         async for _ in client:
             pass
-        gateway.hear()
+        gateway.receive()
         gateway.event("step", "while nobody was there")
         again = await connected(gateway)
         texts = [event.text for event in again.events]
@@ -170,7 +170,7 @@ def test_a_sign_of_life_of_whoever_controls_ends_the_silence(gateway: GatewayLin
         assert gateway.silent_s == float("inf")
         client.attend()
         for _ in range(1000):
-            gateway.hear()
+            gateway.receive()
             if gateway.silent_s < float("inf"):
                 break
             await asyncio.sleep(0.01)

@@ -31,9 +31,9 @@ def pair() -> Iterator[tuple[OwnerEnd, socket.socket]]:
 
 def test_lines_arrive_in_order(pair: tuple[OwnerEnd, socket.socket]) -> None:
     end, theirs = pair
-    end.say(b"e1 {}")
-    end.say_state(b"s{}")
-    end.say(b"e2 {}")
+    end.send(b"e1 {}")
+    end.send_state(b"s{}")
+    end.send(b"e2 {}")
     assert theirs.recv(100) == b"e1 {}\ns{}\ne2 {}\n"
 
 
@@ -42,8 +42,8 @@ def test_of_states_that_cannot_leave_only_the_newest_does_and_no_event_is_lost(
 ) -> None:
     end, theirs = pair
     for number in range(300):
-        end.say_state(b"s%d " % number + 10_000 * b"x")
-        end.say(b"e%d" % number)
+        end.send_state(b"s%d " % number + 10_000 * b"x")
+        end.send(b"e%d" % number)
     heard = b""
     theirs.setblocking(False)
     while not heard.endswith(b"e299\n") and b"\ns299 " not in heard[-20_000:]:
@@ -64,7 +64,7 @@ def test_a_gateway_that_does_not_read_is_given_up(
     end, _ = pair
     with pytest.raises(LinkLost, match="does not read"):
         for _ in range(1000):
-            end.say(100_000 * b"x")
+            end.send(100_000 * b"x")
 
 
 def test_nobody_can_hold_up_a_scan_by_talking(pair: tuple[OwnerEnd, socket.socket]) -> None:
@@ -72,7 +72,7 @@ def test_nobody_can_hold_up_a_scan_by_talking(pair: tuple[OwnerEnd, socket.socke
     order = FROM_GATEWAY.dump_json(Order(1, "x", 1, Stop())) + b"\n"
     theirs.sendall(50 * order)
     counts: list[int] = []
-    while found := end.hear():
+    while found := end.receive():
         counts.append(len(found))
     assert max(counts) == LINES_AT_ONCE and sum(counts) == 50
 
@@ -81,29 +81,29 @@ def test_half_a_line_waits_for_its_end(pair: tuple[OwnerEnd, socket.socket]) -> 
     end, theirs = pair
     line = FROM_GATEWAY.dump_json(Presence("me", 1, 0, False)) + b"\n"
     theirs.sendall(line[:20])
-    assert end.hear() == []
+    assert end.receive() == []
     theirs.sendall(line[20:])
-    assert end.hear() == [Presence("me", 1, 0, False)]
+    assert end.receive() == [Presence("me", 1, 0, False)]
 
 
 def test_the_end_of_the_gateway_is_noticed(pair: tuple[OwnerEnd, socket.socket]) -> None:
     end, theirs = pair
     theirs.close()
     with pytest.raises(LinkLost):
-        end.hear()
+        end.receive()
 
 
 def test_the_owner_says_how_much_it_has_looked_at(pair: tuple[OwnerEnd, socket.socket]) -> None:
     end, theirs = pair
     theirs.sendall(3 * (FROM_GATEWAY.dump_json(Order(1, "x", 1, Stop())) + b"\n"))
-    assert len(end.hear()) == 3 and theirs.recv(100) == b"k3\n"
+    assert len(end.receive()) == 3 and theirs.recv(100) == b"k3\n"
 
 
 def test_a_gateway_that_says_nonsense_is_given_up(pair: tuple[OwnerEnd, socket.socket]) -> None:
     end, theirs = pair
     theirs.sendall(b"what?\n")
     with pytest.raises(LinkLost, match="an unknown message"):
-        end.hear()
+        end.receive()
 
 
 def gateway_end() -> tuple[GatewayEnd, list[FromGateway]]:
