@@ -15,7 +15,7 @@ from typing import Literal, Self
 from tester.base.quantities import Quantities
 from tester.store import record_schema
 from tester.store.chain import Cell, ChainFound, inspect
-from tester.store.channels import recorded_channels
+from tester.store.kind_rows import recorded_channels
 from tester.store.record_schema import NotBegunError, StoreError
 from tester.store.sql import Record, Row, record, text, whole
 

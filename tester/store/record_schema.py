@@ -6,8 +6,8 @@ column names; rig time (``..._s``) is the run's own clock, ``..._utc`` is ISO 86
 does not exist is NULL (SQLite stores NaN as such, hence no NOT NULL on what is measured). Text holds what a person
 wrote, unescaped.
 
-Some tables get further columns as a run begins: ``condition`` one for each axis (tester.store.kind_rows), ``repeat``
-and ``tare`` one for each averaged channel (tester.store.channels).
+Some tables get further columns as a run begins (tester.store.kind_rows): ``condition`` one for each axis, ``repeat``
+and ``tare`` one for each averaged channel.
 
 The schema's number is SQLite's ``user_version``. Kept to what SQLite 3.34 knows: no STRICT tables, no RETURNING.
 """
@@ -89,10 +89,10 @@ _CHANNELS = (
         "u_per_kelvin_percent REAL NOT NULL", KnownSlope,
     )
 )  # fmt: skip
-"""Tables that make a record readable without its kind of rig: the axes of its conditions (tester.base.axes; ``field``
-is the column of ``condition`` with the value), its channels (tester.store.channels; those with a source are the columns
-of its samples, in order), the terms of its budgets (tester.analysis.terms; ``df`` NULL: taken as known), and the
-compounds' known sensitivity to temperature."""
+"""Tables that make a record readable without its kind of rig (tester.store.kind_rows): the axes of its conditions
+(``field`` is the column of ``condition`` with the value), its channels (those with a source are the columns of its
+samples, in order), the terms of its budgets (tester.analysis.terms; ``df`` NULL: taken as known), and the compounds'
+known sensitivity to temperature."""
 
 _PIECES = (
     create("specimen", "specimen INTEGER PRIMARY KEY", SpecimenInfo)

@@ -28,8 +28,8 @@ from tester.analysis.results import Burst, RepeatResult
 from tester.base.quantities import KEY, TIME, Quantities
 from tester.base.trouble import in_words
 from tester.store.chain import Chain
-from tester.store.channels import add_channels, recorded_channels
 from tester.store.disk import Reserve, file_identity, sync_folder
+from tester.store.kind_rows import add_channels, recorded_channels
 from tester.store.record_schema import StoreError, migrate, version_of
 from tester.store.recorder import NullRecorder, Recorder, no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack

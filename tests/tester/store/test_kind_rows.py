@@ -18,7 +18,7 @@ from tester.base import clock
 from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.recomputed import coefficient_problems
-from tester.store.channels import channel_rows, quantities_of
+from tester.store.kind_rows import channel_rows, quantities_of
 from tester.store.merge import Merge
 from tester.store.resumable import resume_point
 from tester.store.run_reader import RunReader
