@@ -99,18 +99,18 @@ class Stage(GatewayLink):
     def notify(self, event: str, text: str, run: str, folder: str) -> None:
         self.notes.append((event, text))
 
-    def hear(self) -> list[Order | Presence]:
+    def receive(self) -> list[Order | Presence]:
         assert self.service is not None
         self.polls += 1
         assert self.polls < MOST_POLLS, "the script does not come to its end"
         try:
-            heard = next(self._script)
+            message = next(self._script)
         except StopIteration:
             self.service.end()
             return []
-        if isinstance(heard, Presence):
-            self.presence = heard
-        return heard if isinstance(heard, list) else [] if heard is None else [heard]
+        if isinstance(message, Presence):
+            self.presence = message
+        return message if isinstance(message, list) else [] if message is None else [message]
 
     def wait(self, seconds: float) -> None:
         pass
