@@ -1,4 +1,4 @@
-"""The wheel on a belt with one axis more: a condition says whether the belt is dry or wet, and a person sees to it."""
+"""The wheel on a belt with one axis more: a condition has a dry or a wet belt, and a person wets it."""
 
 from dataclasses import replace
 
@@ -24,17 +24,17 @@ AXES = Axes((INTERFACE, *axes.AXES), blocks="temperature")
 
 
 class WetPart(WheelPart):
-    """Recipes may say it."""
+    """Recipes with the axis."""
 
     kind = NAME
     axes = AXES
 
 
 class WetProcedures(WheelProcedures):
-    """A person is asked before a condition that wants the belt otherwise than it is."""
+    """Ask a person before a condition with another state of the belt."""
 
     interface = "dry"
-    """What the belt is: a run begins, and goes on, with a dry one."""
+    """State of the belt; a run begins, and resumes, with a dry one."""
 
     def before(self, step: Step, ctx: Context) -> Unforeseen[Context] | None:
         """Ask for the belt first, then do what any condition needs."""
@@ -46,13 +46,13 @@ class WetProcedures(WheelProcedures):
 
 
 class WetRuns(WheelRuns):
-    """Runs are made of those procedures."""
+    """Runs with those procedures."""
 
     procedures = WetProcedures
 
 
 class WetService(WheelOnBelt):
-    """Screens tell the axis."""
+    """Screens show the axis."""
 
     machine = replace(MACHINE, axes=axis_views(AXES))
 
