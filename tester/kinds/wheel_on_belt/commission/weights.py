@@ -260,4 +260,4 @@ def _conclude(notes: Notes, channels: list[HungChannel], zero: list[float], weig
     notes.tell(f'    load_cell: "{due}"')
     notes.tell("    overdue: refuse               # or warn")
     notes.tell("    record: ...                   # the hash after \"on record\", below")
-    notes.tell(f"    cell_sensitivity: {100 * sensitivity:.3f} %     # Fx/Fz {100 * ratio:+.3f} %, with uncertainty")
+    notes.tell(f"    cell_sensitivity: {100 * sensitivity:.3f} %     # Fx/Fz off by {100 * ratio:+.3f} %, with U")
