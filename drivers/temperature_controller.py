@@ -89,8 +89,7 @@ class TemperatureController(Device):
         switch = self._switch = profile.switches["run"]
         self.has_lease = "lease" in profile.writes
         self.ends_s: float | None = commanding.lease_s if self.has_lease else profile.falls_back_s
-        self.counts = 0
-        self.status = 0
+        self.counts = self.status = 0
         self._status_s = -inf
         self.measured_c = self.output_percent = self.setpoint_c = nan
         self.sensor_break = self.out_of_range = self.lease_expired = False

@@ -193,8 +193,7 @@ class Plant(Rubbing):
             self._grow(self._flow.rubber_c)
         self.wheel_angle_rev = turns = self.wheel_angle_rev + wheel_rad_s * dt / _TURN
         wheel_m_s = 0.0005 * self.diameter_mm * wheel_rad_s
-        vx = wheel_m_s - belt_m_s * self._cos
-        vy = belt_m_s * self._sin
+        vx, vy = wheel_m_s - belt_m_s * self._cos, belt_m_s * self._sin
         self.slip_m_s = sqrt(vx * vx + vy * vy)
         power_w = load_n = 0.0
         depth_mm, swing, relaxation = press_mm - self._touch_mm, self._swing_mm, self._relaxation
