@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from tester.inputs.rig.parameter import Parameter
-from tester.machine.row import ACK, ENDING, FAST, POWER_OFF, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, ENDING, POWER_OFF, Compared, Interlock
 from tester.machine.watches import at_most, condition
 from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
 
@@ -45,7 +45,6 @@ def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[A
         ),
         applies=lambda v: v.demand.enabled and v.readings.drives_enabled,
         parameters=(STALE_CAN_SCANS, STALE_CAN_S),
-        reaction=FAST,
         reset=ACK,
     )
 
@@ -58,7 +57,6 @@ def drive_dropped_out(delay: Parameter) -> Interlock[Any]:
         watch=condition("not OPERATION_ENABLED although wanted", lambda v: not v.readings.drives_enabled),
         applies=lambda v: v.confirmed and v.demand.enabled,
         delay=delay,
-        reaction=FAST,
         reset=ACK,
     )
 
@@ -74,8 +72,6 @@ def not_stopping(
         applies=lambda v: _stops(v) and not standing(v),
         parameters=parameters,
         when=ENDING,
-        reaction=FAST,
-        reset=REPAIR,
     )
 
 
@@ -89,7 +85,6 @@ def quick_stop_failed(due_s: Seconds, standing: Tells, cause: str, level: str, m
         parameters=(margin,),
         when=ENDING,
         reaction=POWER_OFF,
-        reset=REPAIR,
     )
 
 
@@ -103,5 +98,4 @@ def stop_not_ended(cause: str, level: str, timeout: Parameter, *others: Paramete
         applies=_stops,
         when=ENDING,
         reaction=POWER_OFF,
-        reset=REPAIR,
     )

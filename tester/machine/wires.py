@@ -6,7 +6,7 @@ from math import nan
 from typing import Any, Final, TypeAlias
 
 from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter
-from tester.machine.row import ACK, CONTROLLED, EMERGENCY, FAST, REPAIR, WARN, Interlock
+from tester.machine.row import ACK, CONTROLLED, EMERGENCY, WARN, Interlock
 from tester.machine.watches import at_least, at_most, condition
 
 Row: TypeAlias = Interlock[Any]
@@ -49,7 +49,6 @@ CAN_SILENT: Final[Row] = Interlock(
     cause="CAN cable, its terminators or the drives' supply: no drive is heard",
     watch=condition("no frame for silent_can_scans periods (drives on), or silent_can_heartbeats", _nobody_heard),
     parameters=(SILENT_CAN_SCANS, SILENT_CAN_HEARTBEATS),
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -60,7 +59,6 @@ DRIVE_FAULT: Final[Row] = Interlock(
     watch=condition(
         "state FAULT, heartbeat missing 3 x 50 ms, boot-up, or EMCY", lambda v: v.readings.drive_fault != ""
     ),
-    reaction=FAST,
     reset="drive reset by the acknowledgement",
 )
 
@@ -69,7 +67,6 @@ BUS_LOST: Final[Row] = Interlock(
     name="bus lost",
     cause="CAN adapter or serial line gone, bus-off",
     watch=condition("the wire's port is lost: it is never reopened", lambda v: v.readings.bus_fault != ""),
-    reaction=FAST,
     reset="started anew",
 )
 
@@ -78,7 +75,6 @@ SECOND_MASTER: Final[Row] = Interlock(
     name="second master",
     cause="another master on the CAN bus",
     watch=condition("a frame only a master sends", lambda v: v.readings.foreign_master != ""),
-    reaction=FAST,
     reset="other master gone, started anew",
 )
 
@@ -87,7 +83,6 @@ CLOCK_JUMP: Final[Row] = Interlock(
     name="clock jump",
     cause="the scan's clock went back",
     watch=at_least("now < last scan", lambda v: v.readings.now_s - v.last_s, 0.0, "s"),
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -102,7 +97,6 @@ SCAN_LATE: Final[Row] = Interlock(
     cause="the controlling process was late",
     watch=at_most("scan later than {}", lambda v: v.late_s, LATE_SCAN_S),
     parameters=(LATE_WARN_S, LATE_SCAN_S),
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -113,7 +107,6 @@ GUARD_OPEN: Final[Row] = Interlock(
     watch=condition("input 0x60FD bit 17 = 0, drives wanted", lambda v: not v.readings.guard_closed),
     applies=lambda v: v.demand.enabled,
     unseen=True,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -128,7 +121,6 @@ INPUTS_STALE: Final[Row] = Interlock(
     name="inputs stale",
     cause="no fresh input word from the drive with the safety inputs",
     watch=at_most("age > {}", lambda v: v.readings.now_s - v.readings.inputs_at_s, STALE_INPUTS_S),
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -161,7 +153,6 @@ DEVICE_REFUSED: Final[Row] = Interlock(
     cause="a Modbus device refuses a request, or misses our commands",
     watch=condition("exception 01 to 03, or its lease ran out", lambda v: v.readings.device_fault != ""),
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 LINE_ERRORS: Final = Parameter(

@@ -18,7 +18,7 @@ from tester.machine.drive_rows import (
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import InterlockTable
 from tester.machine.plain.image import PlainDemand, PlainReadings
-from tester.machine.row import ACK, ENDING, FAST, LOADED, POWER_OFF, REPAIR, Interlock
+from tester.machine.row import ACK, ENDING, LOADED, POWER_OFF, Interlock
 from tester.machine.state import ControlState
 from tester.machine.watches import at_most, condition
 from tester.machine.wires import DEVICE_REFUSED, INPUTS_STALE, LINE_NOISY, WARNINGS
@@ -105,8 +105,6 @@ OVERSPEED: Final[Row] = Interlock(
     parameters=(OVERSPEED_SHARE,),
     applies=lambda v: not v.readings.drives_disabled,
     delay=OVERSPEED_DELAY_S,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 STALE_SENSOR_S: Final = Parameter(
@@ -120,7 +118,6 @@ SENSOR_SILENT: Final[Row] = Interlock(
     watch=at_most("age > {}, or invalid", lambda v: v.readings.now_s - v.readings.sensors_at_s, STALE_SENSOR_S),
     when=LOADED,
     unseen=True,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -183,7 +180,6 @@ MOVING_AT_REST: Final[Row] = Interlock(
     when=ENDING,
     at_rest=lambda v: not v.readings.drives_disabled,
     reaction=POWER_OFF,
-    reset=REPAIR,
 )
 
 HOLD_AT_MOST_S: Final = Parameter(

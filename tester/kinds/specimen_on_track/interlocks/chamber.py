@@ -7,7 +7,7 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
-from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
 from tester.machine.watches import at_most, condition, within
 from tester.machine.wires import answered_s
 
@@ -69,7 +69,6 @@ AIR_BROKEN: Final[Row] = Interlock(
     applies=lambda v: v.limits.air and not v.attended and not v.readings.air_silent,
     delay=BROKEN_DELAY_S,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 RANGE_K: Final = Parameter(
@@ -95,7 +94,6 @@ OUT_OF_RANGE: Final[Row] = Interlock(
     applies=lambda v: v.limits.chamber and v.readings.air_valid,
     delay=RANGE_DELAY_S,
     ends_lease=True,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -118,7 +116,6 @@ RUNAWAY: Final[Row] = Interlock(
     delay=RUNAWAY_DELAY_S,
     ends_lease=True,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 ALARM_DELAY_S: Final = Parameter(
@@ -133,7 +130,6 @@ CHAMBER_ALARM: Final[Row] = Interlock(
     unseen=True,
     delay=ALARM_DELAY_S,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 CHAMBER_OFF_S: Final = Parameter(
@@ -153,7 +149,6 @@ CHAMBER_NOT_OFF: Final[Row] = Interlock(
     parameters=(CHAMBER_OFF_S,),
     ends_lease=True,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 ROWS: Final[tuple[Row, ...]] = (

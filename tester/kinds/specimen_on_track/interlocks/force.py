@@ -6,7 +6,7 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
-from tester.machine.row import ACK, CONTROLLED, FAST, LOADED, REPAIR, Interlock
+from tester.machine.row import ACK, CONTROLLED, LOADED, Interlock
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
@@ -31,7 +31,6 @@ CELL_SILENT: Final[Row] = Interlock(
     watch=at_most("age > {} with the arm down", _cell_s, STALE_CELL_S),
     delay=STALE_CELL_DELAY_S,
     when=LOADED,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -46,8 +45,6 @@ CELL_INVALID: Final[Row] = Interlock(
     watch=condition("reading not valid", lambda v: not v.readings.cell_valid),
     applies=lambda v: not v.readings.cell_silent and not v.attended,
     delay=INVALID_DELAY_S,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 OVERLOAD_DELAY_S: Final = Parameter(
@@ -67,8 +64,6 @@ OVERLOAD: Final[Row] = Interlock(
     watch=at_most("|force| > {}", _force_n, "limits.force_n"),
     applies=lambda v: not v.attended and v.readings.cell_valid,
     delay=OVERLOAD_DELAY_S,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 FROZEN_CELL_S: Final = Parameter(
@@ -87,8 +82,6 @@ CELL_FROZEN: Final[Row] = Interlock(
     ),
     applies=lambda v: v.demand.track_m_s != 0.0,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 RAISED_N: Final = Parameter(
@@ -114,7 +107,6 @@ FORCE_RAISED: Final[Row] = Interlock(
     applies=_weighs_nothing,
     delay=RAISED_DELAY_S,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 LOST_SHARE: Final = Parameter(
@@ -150,8 +142,6 @@ CONTACT_LOST: Final[Row] = Interlock(
     applies=_slides,
     delay=LOST_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 FRICTION_SHARE: Final = Parameter(
@@ -180,8 +170,6 @@ BEYOND_LOAD: Final[Row] = Interlock(
     applies=lambda v: v.demand.tared and v.readings.lowered,
     delay=FRICTION_DELAY_S,
     when=LOADED,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 

@@ -8,7 +8,7 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import STANDING_SHARE, Row, TrackInputs, standing_m_s
 from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
-from tester.machine.row import ACK, CONTROLLED, FAST, REPAIR, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
 from tester.machine.watches import at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
 
@@ -49,7 +49,6 @@ OVERSPEED: Final[Row] = Interlock(
     parameters=(OVERSPEED_SHARE,),
     applies=lambda v: not v.readings.drives_disabled,
     delay=OVERSPEED_DELAY_S,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -84,7 +83,6 @@ TRACK_SPEED: Final[Row] = Interlock(
     parameters=(SPEED_SHARE, SPEED_FLOOR),
     applies=lambda v: v.confirmed,
     delay=SPEED_DELAY_S,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -105,7 +103,6 @@ END_OF_TRAVEL: Final[Row] = Interlock(
     watch=within("a linear track beyond limits.travel by beyond", _travel_mm, "mm"),
     parameters=(BEYOND_MM,),
     applies=lambda v: not v.readings.drives_disabled and v.limits.high_mm != inf,
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -126,7 +123,6 @@ ARM_WRONG: Final[Row] = Interlock(
         lambda v: Compared(_speed_m_s(v), standing_m_s(v), "m/s"),
     ),
     parameters=(STANDING_SHARE,),
-    reaction=FAST,
     reset=ACK,
 )
 
@@ -141,7 +137,6 @@ ARM_LATE: Final[Row] = Interlock(
     watch=at_most("arm off where it was sent for {}", lambda v: v.readings.now_s - v.arm_since_s, ARM_LATE_S),
     applies=lambda v: v.arm_since_s < inf,
     reaction=CONTROLLED,
-    reset=REPAIR,
 )
 
 ROWS: Final[tuple[Row, ...]] = (

@@ -8,7 +8,7 @@ from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import SPEEDS_OLD_S, STANDING_SHARE, Row, TrackInputs, standing
 from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
 from tester.machine.drive_rows import ACK_WAIT_S, not_stopping, quick_stop_failed, stop_not_ended
-from tester.machine.row import ENDING, FAST, POWER_OFF, REPAIR, Interlock
+from tester.machine.row import ENDING, POWER_OFF, Interlock
 from tester.machine.watches import condition
 
 STOP_MARGIN_S: Final = Parameter(
@@ -60,8 +60,6 @@ NOT_SWITCHED_OFF: Final[Row] = Interlock(
     parameters=(STANDING_SHARE,),
     applies=lambda v: not v.stopped_s >= 0.0,
     delay=OFF_DELAY_S,
-    reaction=FAST,
-    reset=REPAIR,
 )
 
 STOP_TIMEOUT_S: Final = Parameter(
@@ -96,7 +94,6 @@ MOVING_AT_REST: Final[Row] = Interlock(
     when=ENDING,
     at_rest=lambda v: not v.readings.drives_disabled,
     reaction=POWER_OFF,
-    reset=REPAIR,
 )
 
 ROWS: Final[tuple[Row, ...]] = (NOT_SWITCHED_OFF, QUICK_STOP_FAILED, NOT_STOPPING, STOP_NOT_ENDED, MOVING_AT_REST)
