@@ -1,4 +1,4 @@
-"""The twin of a plain machine: drives that turn, sensors that show numbers of its plant, on the wires of any rig."""
+"""The twin of a plain machine on the wires of any rig: turning drives, sensors that show quantities of its plant."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sim.wires.can_wire import CanWire
 
 
 class PlainPlant(Protocol):
-    """What is between the drives' shafts and the sensors: a kind's own."""
+    """The physics between the drives' shafts and the sensors: a kind's own."""
 
     @property
     def ambient_c(self) -> float:
@@ -20,11 +20,11 @@ class PlainPlant(Protocol):
         ...
 
     def advance(self, dt: float, speeds: Mapping[str, float]) -> None:
-        """Move on by ``dt`` s with each drive's speed, in the unit of its axis, as it is at the end."""
+        """Advance by ``dt`` s; ``speeds``: of each drive at the end, in the unit of its axis."""
         ...
 
     def install(self, specimen: int, compound: str) -> None:
-        """Put a new specimen on; ``specimen`` keys its scatter. Raises ValueError for an unknown compound."""
+        """Mount a new specimen; ``specimen`` keys its scatter. Raises ValueError for an unknown compound."""
         ...
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
@@ -44,7 +44,7 @@ class PlainTwin(SimRig):
     ) -> None:
         """Switch everything on at time 0.
 
-        ``shows``: the machine's own sensors by their names in the wiring; what number of the plant each channel shows.
+        ``shows``: quantities of the plant by channel, for each of the machine's own sensors by its name in the wiring.
         Raises UnknownQuantityError for one that the plant does not have.
         """
         self.plant = plant
@@ -66,11 +66,11 @@ class PlainTwin(SimRig):
         self.plant.advance(elapsed, {name: drive.axis.value for name, drive in self.axes.items()})
 
     def install(self, specimen: int, compound: str) -> None:
-        """Put a new specimen on."""
+        """Mount a new specimen."""
         self.plant.install(specimen, compound)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
+        """Restart the random streams and the sensors' dither for a repeat."""
         self.plant.begin_repeat(condition, repeat, attempt)
         self.restart_dither()
 

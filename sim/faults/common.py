@@ -1,6 +1,6 @@
-"""Rows of the fault catalogue that every machine on these wires has: of each drive, of the bus, of the computer.
+"""Rows of the fault catalogue for every machine on these wires: of each drive, the bus, the devices, the computer.
 
-Each machine passes the members of its own enumeration that say from when a fault can be noticed: ``always``,
+Each machine passes the members of its own enumeration of the times from which a fault shows: ``always``,
 ``connecting``, ``drives`` (once every drive is configured), ``enabled`` (while the drives are on). Budgets are those of
 docs/safety.md, with one scan at the slow rate on top.
 """
@@ -20,12 +20,12 @@ from sim.wires.modbus_wire import Kind
 
 OVERCURRENT: Final = 0x2310
 SCAN_S: Final = 0.05
-"""The slow scan's period: what is noticed by a scan is noticed this much later at most, s."""
+"""Period of the slow scan, s: the greatest delay until a scan notices a fault."""
 _TRIP: Final = Expected.TRIP
 
 
 def drive_rows(axis: str, drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield what any drive can do."""
+    """Yield the faults of any drive."""
     for what, make, budget_s in (
         ("fault", partial(drives.drive_fault, axis, OVERCURRENT), 0.02),
         ("heartbeat lost", partial(drives.heartbeat_lost, axis), 0.2),
@@ -40,13 +40,13 @@ def drive_rows(axis: str, drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]
 
 
 def left_operation_rows(axis: str, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield how a drive leaves operation without a fault."""
+    """Yield the ways in which a drive leaves operation without a fault."""
     yield FaultKind(f"{axis} drive in local mode", partial(drives.local, axis), enabled, _TRIP, 0.1 + SCAN_S)
     yield FaultKind(f"{axis} drive torque off", partial(drives.torque_off, axis), enabled, _TRIP, 0.1 + SCAN_S)
 
 
 def connecting_rows(axis: str, connecting: Enum) -> Iterator[FaultKind]:
-    """Yield what the next connection finds."""
+    """Yield the faults that the next connection finds."""
     yield FaultKind(f"{axis} drive of another make", partial(drives.wrong_identity, axis), connecting, _TRIP, 3.0)
     yield FaultKind(f"{axis} drive SDO abort", partial(drives.sdo_spoiled, axis, "abort"), connecting, _TRIP, 3.0)
 
@@ -57,14 +57,14 @@ _SPOILED: Final[tuple[tuple[str, Kind], ...]] = (
 
 
 def device_rows(device: str, needed: Enum, budget_s: float) -> Iterator[FaultKind]:
-    """Yield how a Modbus device stops answering; ``needed``: from when on its readings are."""
+    """Yield the ways in which a Modbus device stops answering; ``needed``: the time from which its readings are."""
     for what, kind in _SPOILED:
         yield FaultKind(f"{device} {what}", partial(modbus.Impaired, device, kind), needed, _TRIP, budget_s)
     yield FaultKind(f"{device} without supply", partial(modbus.device_off, device), needed, _TRIP, budget_s)
 
 
 def bus_rows(drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield how the bus and the safety inputs fail."""
+    """Yield the faults of the bus and the safety inputs."""
     yield FaultKind("CAN adapter gone", can.adapter_gone, drives_on, _TRIP, SCAN_S)
     yield FaultKind("CAN bus off", can.bus_silent, drives_on, _TRIP, 0.2 + SCAN_S)
     yield FaultKind("safety chain opened", cabinet.chain_open, drives_on, _TRIP, SCAN_S)
@@ -72,7 +72,7 @@ def bus_rows(drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
 
 
 def computer_rows(always: Enum, drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield what the computer and its operator do."""
+    """Yield the faults of the computer and the requests of its operator."""
     yield FaultKind("scan stalled", cabinet.stalled, enabled, _TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
                     note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
     yield FaultKind("process killed", cabinet.killed, always, Expected.DEVICES, 0.25)
@@ -88,7 +88,7 @@ PLAIN_STEPS: Final = ("connect", "mount", "settle", "slide")
 
 
 class PlainExposure(Enum):
-    """When a fault can be noticed at all."""
+    """The earliest time at which a fault shows."""
 
     ALWAYS = "at once, once the run has begun"
     DRIVES = "at once, once every drive is configured"
@@ -101,7 +101,7 @@ _ENABLED, _MOVING = PlainExposure.ENABLED, PlainExposure.MOVING
 
 
 def plain_language(axes: Iterable[str], sensors: Iterable[str], *own: FaultKind) -> FaultLanguage:
-    """Return what the scripts of a plain machine can say; ``sensors`` by the names that people use of them."""
+    """Return the language of a plain machine's fault scripts; ``sensors``: by their names for people."""
     rows = [*own, *bus_rows(_DRIVES, _ENABLED), *computer_rows(_ALWAYS, _DRIVES, _ENABLED)]
     for axis in axes:
         rows += [*drive_rows(axis, _DRIVES, _ENABLED), *left_operation_rows(axis, _ENABLED)]

@@ -14,7 +14,7 @@ from tester.machine.row import ACK, ENDING, POWER_OFF, Compared, Interlock
 from tester.machine.watches import at_most, condition
 from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
 
-Tells = Callable[[Any], bool]
+Predicate = Callable[[Any], bool]
 """Predicate over a kind's inputs."""
 Seconds = Callable[[Any], float]
 
@@ -62,7 +62,7 @@ def drive_dropped_out(delay: Parameter) -> Interlock[Any]:
 
 
 def not_stopping(
-    due_s: Seconds, standing: Tells, cause: str, level: str, parameters: tuple[Parameter, ...]
+    due_s: Seconds, standing: Predicate, cause: str, level: str, parameters: tuple[Parameter, ...]
 ) -> Interlock[Any]:
     """Return the row for a controlled stop that does not bring the drives to rest ``due_s`` after its begin."""
     return Interlock(
@@ -75,7 +75,7 @@ def not_stopping(
     )
 
 
-def quick_stop_failed(due_s: Seconds, standing: Tells, cause: str, level: str, margin: Parameter) -> Interlock[Any]:
+def quick_stop_failed(due_s: Seconds, standing: Predicate, cause: str, level: str, margin: Parameter) -> Interlock[Any]:
     """Return the row for a quick stop that does not bring the drives to rest ``due_s`` after its begin."""
     return Interlock(
         name="quick stop failed",

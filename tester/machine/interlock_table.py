@@ -88,7 +88,7 @@ class Group:
 
 
 class InterlockTable:
-    """Rows, the bounds that belong to no row, and what both are asked in a scan. It never changes."""
+    """Rows, the bounds that belong to no row, and their evaluation in a scan. It never changes."""
 
     def __init__(self, rows: Iterable[Interlock[Any]], operation: Iterable[Parameter] = ()) -> None:
         """Take the rows in their order; ``operation``: parameters of the section ``interlocks`` that no row has."""
@@ -106,9 +106,9 @@ class InterlockTable:
             (self.bit(row.name), there) for row in self.rows if (there := row.still_there()) is not None
         )
         self.at_rest = sum(self.bit(row.name) for row in self.rows if row.at_rest is not None)
-        """Rows that trip in idle, too."""
+        """Rows that also trip in idle."""
         self.warnings = sum(self.bit(row.name) for row in self.rows if row.reaction is WARN)
-        """Rows that stop nothing: they do not stand in the way of arming or acknowledging."""
+        """Rows that stop nothing: they do not prevent arming or acknowledging."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> InterlockTable:
         """Return itself: copies of a running machine share its table."""

@@ -82,7 +82,7 @@ class Ask:
         self.near = near
         self.number = 0
         self.record = 0
-        self.heard = False
+        self.recorded = False
 
     def step(self, ctx: AnyContext) -> bool:
         """Return True once it is answered; journal question and answer."""
@@ -96,8 +96,8 @@ class Ask:
             return False
         # With automatic answers an open guard is a fault: it trips when the next drive is switched on.
         closed = ctx.readings.guard_closed or alone
-        if not self.heard:
-            self.heard = True
+        if not self.recorded:
+            self.recorded = True
             ctx.journal.prompt_answered(self.record, ctx.now, answer, asked.by)
             if closed:
                 ctx.demand.attended = False
@@ -110,7 +110,7 @@ class Ask:
     def _put(self, ctx: AnyContext, text: str) -> None:
         self.number = ctx.prompts.ask(ctx.now, text, near=self.near).number
         self.record = ctx.journal.prompt(ctx.now, text)
-        self.heard = False
+        self.recorded = False
 
 
 class Settle:

@@ -69,7 +69,7 @@ class WatchdogProof:
         raise NotImplementedError
 
     def move(self, now: float, elapsed: float) -> bool:
-        """Go on for ``elapsed`` s since ``begin``; tell whether the drives creep, and were seen to follow if asked."""
+        """Continue for ``elapsed`` s since ``begin``; return whether the drives creep, and follow if asked."""
         raise NotImplementedError
 
     def stand(self) -> None:

@@ -32,7 +32,7 @@ NOTHING_COMPARED: Final = Compared(nan, nan, "")
 
 
 class Reaction(Enum):
-    """What a condition leads to that has held for its delay. From the mildest to the hardest."""
+    """The consequence of a condition that has held for its delay, from the mildest to the hardest."""
 
     WARN = "warning"
     """An event in the journal."""
@@ -46,7 +46,7 @@ class Reaction(Enum):
 
 
 class When(Enum):
-    """In which scans a row is evaluated; its condition need not ask for that again."""
+    """The scans in which a row is evaluated; its condition need not test for that again."""
 
     ALWAYS = "always"
     LOADED = "loaded"
@@ -71,7 +71,7 @@ REPAIR: Final = "repaired, acknowledged"
 
 
 class Form(Enum):
-    """How a row's number is compared."""
+    """The comparison of a row's number."""
 
     STATE = "state"
     AT_MOST = "at most"
@@ -101,11 +101,11 @@ class Interlock(Generic[V]):
 
     name: str
     cause: str
-    """What an operator reads when it trips."""
+    """Text for the operator when it trips."""
     watch: Watch[V]
     reaction: Reaction = FAST
     reset: str = REPAIR
-    """What has to be the case before a run may begin again."""
+    """Condition for the next run to begin."""
     parameters: tuple[Parameter, ...] = ()
     """What the row compares with beside the limit of its watch, in the order of the rig file (which may name the limit
     too, to place it); a parameter that several rows use is listed once in the section, with the first of them."""
@@ -121,7 +121,7 @@ class Interlock(Generic[V]):
     """For a row that is watched only while something is wanted (drives, load, heat): is its cause still there? Called
     before a trip of this row is acknowledged. True: its watch, whether or not the row applies."""
     at_rest: Callable[[V], bool] | None = None
-    """Whether the row trips in idle, too: nothing is left to stop then, but something to take the power off."""
+    """Whether the row also trips in idle: nothing is left to stop then, but some power to take off."""
     ends_lease: bool = False
     """A device that is still on when it trips is left to its lease: its setpoint is not renewed any more."""
 

@@ -55,18 +55,18 @@ class Run:
 
     @property
     def connected(self) -> bool:
-        """Every device has answered and was read back; the recipe is under way, or over."""
+        """Whether every device has answered and was read back; then the recipe is under way, or over."""
         return self._started
 
     @property
     def waiting(self) -> bool:
-        """A prompt waits for its answer."""
+        """Whether a prompt waits for its answer."""
         return self.engine.ctx.prompts.waiting is not None and not self.engine.control.state.stop_requested
 
-    # Each command may be given at any time and any number of times; "" or why it had no effect is returned.
+    # A request is possible at any time, any number of times; it returns "", or the reason why it had no effect.
 
     def request_stop(self, why: str, *, fast: bool = False, cool: bool = True) -> None:
-        """Stop the run: a controlled stop, or a fast one. ``cool``: turn on, unloaded, while it is too hot to stand."""
+        """Stop the run, controlled or fast. ``cool``: keep turning, unloaded, while it is too hot to stop."""
         self.reason = self.reason or why
         if not self._started:
             self.outcome = Outcome.STOPPED
@@ -76,7 +76,7 @@ class Run:
         self.engine.control.request_stop(self.engine.ctx.now, why, fast=fast, cool=cool)
 
     def request_hold(self, why: str = "held by the operator") -> str:
-        """Hold: open the contact, keep the heat; the repeat under way will be done again."""
+        """Hold: open the contact, keep the heat. The repeat under way is repeated."""
         engine = self.engine
         if not self._started:
             return "the rig is not up yet"
@@ -104,15 +104,15 @@ class Run:
         return refused
 
     def abandon(self) -> None:
-        """Leave the rig at once, because the program cannot go on: safe outputs are sent once, without looking.
+        """Leave the rig at once, because the program cannot continue: send safe outputs once, without reading.
 
-        Nobody scans after that: drives and devices end by their own watchdogs whatever has not arrived
+        No scan follows. Where an output has not arrived, drives and devices stop by their own watchdogs
         (``Engine.abandon``).
         """
         self.engine.abandon()
 
     def tick(self, now: float) -> float:
-        """Do what is due at ``now``; return when to be called again at the latest (s)."""
+        """Do everything due at ``now``; return the latest time of the next call (s)."""
         if self._started:
             due = self.engine.tick(now)
             self._supervise(now)
@@ -134,7 +134,7 @@ class Run:
         return due
 
     def _arm(self, now: float, due: float) -> None:
-        """Enter RUN, or refuse to where a level of the interlock table holds."""
+        """Enter RUN, or refuse if a level of the interlock table holds."""
         engine = self.engine
         engine.next_scan_s = due
         ctx: AnyContext = engine.ctx
@@ -152,9 +152,9 @@ class Run:
             ctx.journal.event(now, "arming", refused, "alarm")
 
     def _lose(self, lost: BusLost) -> None:
-        """End: nothing reaches the drives any more, and those that move stop without our heartbeat.
+        """End the run: nothing reaches the drives any more, and those that move stop without our heartbeat.
 
-        A lost serial line does not come here: the connector fails by it, and stops them.
+        A lost serial line is not handled here: the connector fails and stops the drives.
         """
         self.outcome, self.finished = Outcome.UNREACHABLE, True
         self.reason = f"bus lost: {lost}" if "lost" not in str(lost) else str(lost)
@@ -164,7 +164,7 @@ class Run:
         state = engine.control.state
         self._trip = state.trip or self._trip
         if state.mode is Mode.RUN or state.mode is Mode.HOLD:
-            # In a hold no recipe comes to its end, but whoever moves the rig by hand may have ended it.
+            # A recipe does not end in a hold, but manual mode may have ended there.
             if engine.executor.finished:
                 engine.control.request_stop(now, engine.executor.failed or "recipe finished")
             return

@@ -1,11 +1,11 @@
-"""Where a run is, and how long it still takes: the one place where steps, conditions and times to come are counted.
+"""The position of a run and its time left: the only place that counts steps, conditions and times to come.
 
-The steps are those of the plan, and after each part of it the way to standstill. The time left is the sum of what the
-steps to come are expected to take and of what is left of the present one, each in whole seconds, so that a list of the
-steps adds up to it. Only work counts: while the rig is held, or a person is waited for, neither the share nor the time
-left moves; once the run has been given up (a trip, a stop, a failure) nothing of the plan is left to be done, and there
-is no time left to tell. Each kind of step has a pace of its own: rests that last as long as planned say nothing of
-conditions that take twice what was estimated. Times in s of rig time.
+The steps are those of the plan and, after each part of it, the way to standstill. The time left is the sum of the
+expected durations of the steps to come and of the rest of the present step, each in whole seconds, so that a list of
+the steps adds up to it. Only work counts: in a hold, or while a prompt waits, neither the share nor the time left
+changes. Once the run has been given up (a trip, a stop, a failure) there is no time left to show. Each kind of step has
+its own pace: rests that last as planned do not shorten conditions that take twice their estimate. Times in s of rig
+time.
 """
 
 from __future__ import annotations

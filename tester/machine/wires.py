@@ -31,7 +31,7 @@ SILENT_CAN_HEARTBEATS: Final = Parameter(
 )  # fmt: skip
 
 
-def _nobody_heard(v: Any) -> bool:
+def _bus_silent(v: Any) -> bool:
     r, p = v.readings, v.parameters
     allowed_s = p[SILENT_CAN_HEARTBEATS] * v.limits.heartbeat_s
     # Enabled drives answer every scan's SYNC; without power they only send their heartbeats.
@@ -47,7 +47,7 @@ def _nobody_heard(v: Any) -> bool:
 CAN_SILENT: Final[Row] = Interlock(
     name="CAN silent",
     cause="CAN cable, its terminators or the drives' supply: no drive is heard",
-    watch=condition("no frame for silent_can_scans periods (drives on), or silent_can_heartbeats", _nobody_heard),
+    watch=condition("no frame for silent_can_scans periods (drives on), or silent_can_heartbeats", _bus_silent),
     parameters=(SILENT_CAN_SCANS, SILENT_CAN_HEARTBEATS),
     reset=ACK,
 )
@@ -186,7 +186,7 @@ ROWS: Final[tuple[Row, ...]] = (
     SAFETY_CHAIN, BUS_LOST, CAN_SILENT, DRIVE_FAULT, SECOND_MASTER, CLOCK_JUMP, SCAN_LATE, GUARD_OPEN,
 )  # fmt: skip
 WARNINGS: Final[tuple[Row, ...]] = (SCAN_DELAYED,)
-"""Only said: they stand last in the table."""
+"""Rows that only warn: the last of the table."""
 
 
 def answered_s(silent: bool, now_s: float, at_s: float) -> float:

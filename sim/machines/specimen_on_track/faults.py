@@ -1,4 +1,4 @@
-"""What can go wrong with a specimen on a track: the catalogue, its effects, and the language of its scripts.
+"""Faults of a specimen on a track: the catalogue, its effects, and the language of its scripts.
 
 Budgets count from the onset, or from when the fault can be noticed, to the safe commands, with one scan of 50 ms at the
 slow rate on top; all are [A].
@@ -34,7 +34,7 @@ AXES: Final = ("track", "lift")
 
 
 class Onset(Enum):
-    """When a fault of this machine can be noticed at all: its budget counts from then on."""
+    """The earliest time at which a fault of this machine shows: its budget counts from then on."""
 
     ALWAYS = "at once, once the run has begun"
     DRIVES = "at once, once every drive is configured"

@@ -1,6 +1,6 @@
-"""The rig of a specimen on a track: which drive moves what, what stands at the ends of its travel, who reads what.
+"""The rig of a specimen on a track: drives, end switches and stops of the travel, and the sensors on their wires.
 
-A linear track stands between two stops. Its end switches, a little before them, open the safety chain at the drive with
+A linear track runs between two stops. Its end switches, a little before them, open the safety chain at the drive with
 the inputs; an attendant moves the track back by hand.
 """
 
@@ -29,14 +29,14 @@ _METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
 WORDS: Final = {
     "load_cell": "load cell", "chamber": "chamber", "pyrometer": "pyrometer", "thermometer": "thermometer",
 }  # fmt: skip
-"""What people call the devices, by their keys in the wiring."""
+"""Names of the devices for people, by their keys in the wiring."""
 
 
 class AmbientAir:
-    """What a thermometer beside the rig sees."""
+    """The air that a thermometer beside the rig measures."""
 
     def __init__(self, plant: TrackPlant) -> None:
-        """Of the air of this plant."""
+        """``plant``: the one whose room it is."""
         self._plant = plant
 
     def surface_measured_c(self, t: float) -> float:
@@ -62,7 +62,7 @@ class TrackRig(SimRig):
         self.plant = TrackPlant(parameters, seed)
         self._raised_mm = parameters.contact.lift_travel
         self.hand_mm = self._raised_mm
-        """Where an arm without a drive is, mm."""
+        """Place of an arm without a drive, mm."""
         can = can_wire(spec.bitrate)
         axes = {name: self._drive(name, config, can) for name, config in spec.axes.items()}
         wired = {name: self._device(name, spec.devices[name]) for name in WORDS if name in spec.devices}
@@ -76,10 +76,10 @@ class TrackRig(SimRig):
         """Metres in the track's unit of length."""
         self._linear = parameters.motion == "linear"
         self.switches_work = True
-        """The end switches do what they should."""
+        """The end switches work."""
         self.beyond_switch = False
         self.hit_stop = False
-        """The track has run into a stop of its travel."""
+        """The track has hit a stop of its travel."""
         self._plant_s = 0.0
 
     def _drive(self, name: str, config: AxisConfig, can: CanWire) -> Cia402Slave:
@@ -115,16 +115,16 @@ class TrackRig(SimRig):
 
     @property
     def track_m_s(self) -> float:
-        """How fast the track moves under the specimen, m/s."""
+        """Speed of the track under the specimen, m/s."""
         return self.metres * self._track.axis.value
 
     @property
     def lift_mm(self) -> float:
-        """Where the arm is, mm: 0 lowered."""
+        """Place of the arm, mm: 0 lowered."""
         return self._lift.axis.position if self._lift is not None else self.hand_mm
 
     def follow(self, t1: float, still: bool) -> None:
-        """Let the plant follow its drives to ``t1`` s, and load the track's."""
+        """Advance the plant with its drives to ``t1`` s, and load the track's drive."""
         elapsed = t1 - self._plant_s
         self._plant_s = t1
         chamber = self.chamber
@@ -136,7 +136,7 @@ class TrackRig(SimRig):
             self._look_at_the_ends()
 
     def _look_at_the_ends(self) -> None:
-        """Let the end switches do what they do."""
+        """Open or close the end switches, and note a stop that was hit."""
         p = self.plant.parameters
         at_mm = self._track.axis.position * self.metres * 1e3
         if at_mm <= 0.0 or at_mm >= p.travel:
@@ -151,11 +151,11 @@ class TrackRig(SimRig):
 
     @property
     def of_materials(self) -> bool:
-        """Tell whether friction is made of a rubber and a surface, which ``take`` says where to find."""
+        """Whether friction is made of a rubber and a surface, whose place ``take`` sets."""
         return self.plant.parameters.of_materials
 
     def take(self, setting: LawSetting) -> None:
-        """Take where materials are found, before a specimen is put in."""
+        """Set the place of the materials, before a specimen is mounted."""
         self.plant.setting = setting
 
     # -- the attendant's hands ------------------------------------------------------------------------------------
@@ -189,6 +189,6 @@ class TrackRig(SimRig):
             drive.set_torque_off(False)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Begin a repeat: the random streams, and the sensors' dither, start anew with it."""
+        """Restart the random streams and the sensors' dither for a repeat."""
         self.plant.begin_repeat(condition, repeat, attempt)
         self.restart_dither()

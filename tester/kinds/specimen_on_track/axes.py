@@ -22,7 +22,7 @@ AXES: Final = Axes(
     ),
     blocks="temperature",
 )  # fmt: skip
-"""All axes in the order in which they are told; weights and interface, which a person changes, before the speed.
+"""All axes in the order of people's texts: weights and interface, which a person changes, before the speed.
 
 Track speed is that of the track under the standing specimen, load what the weights on the arm press with, temperature
 that of the air around the specimen, interface what is between specimen and track.
@@ -30,7 +30,7 @@ that of the air around the specimen, interface what is between specimen and trac
 
 
 class TrackHeld(NamedTuple):
-    """What a setpoint holds on this machine."""
+    """The values of a setpoint of this machine."""
 
     track_m_s: float
     load_n: float
@@ -39,6 +39,6 @@ class TrackHeld(NamedTuple):
 
 
 def held_by(setpoint: Setpoint) -> TrackHeld:
-    """Return what a setpoint of this machine's axes holds."""
+    """Return the values of a setpoint by their names."""
     number = setpoint.number
     return TrackHeld(number("track_speed"), number("load"), number("temperature"), str(setpoint.value("interface")))

@@ -1,4 +1,4 @@
-"""What this machine's measuring chain may be off by."""
+"""The possible errors of this machine's measuring chain, and the budget of an expected coefficient."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ TERMS: Final[tuple[Term, ...]] = (
 
 
 def instruments_budget(mu: float, load_n: float, track_m_s: float, slope: Slope) -> Budget:
-    """Return what the measuring chain adds to the uncertainty of a coefficient that is expected.
+    """Return the measuring chain's part of the uncertainty of an expected coefficient.
 
-    ``slope``: what is known of the sensitivity to temperature.
+    ``slope``: the known sensitivity to temperature.
     """
     means = {"load_n": load_n, "sliding_m_s": track_m_s}
     return expected_budget(TERMS, BudgetPoint(mu, load_n, track_m_s, means, slope.per_kelvin), slope)

@@ -1,4 +1,4 @@
-"""What a step of this machine may see and do: the specimen on the arm, weights, the cell's zero, the gates."""
+"""The context of this machine's steps: the specimen on the arm, weights, the cell's zero, the gates."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SAMPLES = 40.0
 
 
 class TrackAttendant(Protocol):
-    """The hands at the rig: what a person does there. A simulated rig is told; at a real one nothing happens."""
+    """The hands at the rig: a person's work. A simulated rig does it itself; on a real one the calls do nothing."""
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Put a specimen of ``compound`` on the arm."""
@@ -57,7 +57,7 @@ class TrackAttendant(Protocol):
 
 @dataclass(slots=True)
 class MountedSpecimen:
-    """The specimen on the arm, what presses it, and what is between it and the track."""
+    """The specimen on the arm, the weights on it, and the interface between it and the track."""
 
     number: int = 0
     specimen: int = 0
@@ -69,19 +69,19 @@ class MountedSpecimen:
 
 @dataclass(slots=True)
 class TrackTarget:
-    """What the gates compare with; written by the activity that measures."""
+    """The values that the gates compare with; the activity that measures writes them."""
 
     track_m_s: float = 0.0
     temperature_c: float = nan
     band_k: float = nan
     stretch_m: float = 0.0
-    """Way that is one stretch; 0 = none is counted."""
+    """Length of a stretch of the way; 0: none is counted."""
     stationary: bool = False
-    """Friction stands still since the track began to go this way."""
+    """Friction has become stationary since the track began to move in this direction."""
 
 
 class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
-    """One per run; activities read and write it, nothing else."""
+    """One per run; only activities read and write it."""
 
     def __init__(
         self,
@@ -110,7 +110,7 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         return self.on.number, nan, self.on.sliding_m
 
     def after_reading(self) -> None:
-        """Work out what follows from the readings: friction against the way, way slid, load, stretches."""
+        """Derive values from the readings: friction against the motion, distance slid, load, stretches."""
         r, demand, on = self.readings, self.demand, self.on
         way = 1.0 if demand.track_m_s > 0.0 else -1.0 if demand.track_m_s < 0.0 else 0.0
         r.load_n = on.weights_n if r.lowered else 0.0
@@ -126,7 +126,7 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         r.stretch = r.way_m / stretch_m if stretch_m > 0.0 else 0.0
 
     def closed_gates(self) -> int:
-        """Evaluate the gates: NaN closes."""
+        """Return the mask of the closed gates; NaN closes one."""
         r, target = self.readings, self.target
         mask = 0
         if not abs(r.track_m_s - target.track_m_s) <= 0.01 * self.rig.gates.speed_percent * abs(target.track_m_s):
@@ -140,7 +140,7 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         return mask
 
     def touching(self) -> bool:
-        """Tell whether this scan is recorded: with the arm down, as often as a stretch needs."""
+        """Return whether to record this scan: with the arm down, as often as a stretch needs."""
         if not self.readings.lowered:
             return False
         speed_m_s, stretch_m = abs(self.target.track_m_s), self.target.stretch_m

@@ -1,7 +1,7 @@
-"""One control step of this machine: what it commands in each mode, within which bounds. No I/O, no clock.
+"""The commands of this machine in each mode, and their bounds. No I/O, no clock.
 
-A stop brings the track to standstill and leaves the arm where it is: weights that rest on a standing track do no harm,
-and the next connection raises the arm before anything else moves.
+A stop brings the track to standstill and leaves the arm where it is: weights on a track at rest do no harm, and
+the next connection raises the arm before anything else moves.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from tester.machine.standstill import StandstillControl
 from tester.machine.state import ControlState
 
 ARRIVED_K = 2.0
-"""Air within this of the chamber's setpoint has been there, K [A]."""
+"""Air that came this near to the chamber's setpoint has reached it, K [A]."""
 
 
 LATE_S = 0.1
-"""A row has tripped this long after its time, s: two slow scans."""
+"""Longest time from the end of a row's delay to its trip, s: two slow scans."""
 
 
 TrackState = ControlState[TrackSetpoints]
@@ -33,7 +33,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
     """The control of a specimen on a track."""
 
     def __init__(self, rig: TrackConfig, most_m_s: float = inf) -> None:
-        """``most_m_s``: the most that the recipe asks for; commands stay within it and the rig's own bound."""
+        """``most_m_s``: greatest speed in the recipe; commands stay within it and the rig's own bound."""
         state, view = TrackState(TrackSetpoints(lift_mm=rig.arm.raised_mm)), TrackInputs()
         view.setpoints = state.setpoints
         view.limits = _limits(rig)
@@ -47,7 +47,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
     # -- the inputs of the rows -----------------------------------------------------------------------------
 
     def look(self, demand: TrackDemand, readings: TrackReadings, scan_s: float, dt: float) -> None:
-        """Take this scan's demand and readings, and work out what several conditions ask for."""
+        """Update the inputs of the rows from this scan's demand and readings."""
         view, r, state = self.view, readings, self.state
         view.readings, view.demand = r, demand
         view.note_times(state, r.now_s, scan_s)
@@ -78,7 +78,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
             view.arrived_c = out.chamber_c if abs(r.air_c - out.chamber_c) <= ARRIVED_K else inf
 
     def detail(self, readings: TrackReadings) -> str:
-        """Name the values a reader of the journal wants first."""
+        """Return force, speed, place of the arm and temperature of the air."""
         r = readings
         return (
             f"force {r.force_n:.2f} N, track {1e3 * r.track_now_m_s:.4g} mm/s, arm {r.lift_mm:.1f} mm,"
@@ -93,7 +93,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         held.tared, held.chamber_c = demand.tared, demand.chamber_c
 
     def run_outputs(self, demand: TrackDemand, readings: TrackReadings, dt: float) -> None:
-        """Command track, arm and chamber as they are wanted, within the bounds."""
+        """Command the demand of track, arm and chamber within the bounds."""
         out, r = self.state.setpoints, readings
         self.enable(demand, r)
         out.track_m_s = bounded(demand.track_m_s, self.bound_m_s) if self._may_go(demand, r) else 0.0
@@ -108,7 +108,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
             out.chamber_c = min(max(demand.chamber_c, limits.air_low_c), limits.air_high_c)
 
     def _may_go(self, demand: TrackDemand, r: TrackReadings) -> bool:
-        """Tell whether the track may go: arm in place, force known, and not over the end of its travel."""
+        """Return whether the track may move: arm in place, force known, end of the travel not reached."""
         if demand.track_m_s == 0.0 or not r.drives_enabled:
             return False
         placed = (r.lowered and demand.tared) if demand.lowered else r.raised
@@ -127,23 +127,23 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         out.track_m_s, out.chamber = 0.0, False
 
     def withdraw_escalation(self) -> None:
-        """Let drives and chamber hear from us again."""
+        """Resume heartbeats to the drives and setpoints to the chamber."""
         super().withdraw_escalation()
         self.state.setpoints.chamber_silent = False
 
     def end_lease(self, readings: TrackReadings) -> None:
-        """Renew the chamber's setpoint no more."""
+        """Stop renewing the chamber's setpoint: its lease ends its output."""
         self.state.setpoints.chamber_silent = True
 
     def note_stop(self) -> None:
-        """Note the track's speed; the arm stays where it is."""
+        """Record the track's speed at the begin of a stop; the arm stays where it is."""
         lift_mm = self.view.readings.lift_mm
         if isfinite(lift_mm):
             self.state.setpoints.lift_mm = lift_mm
         self.view.stop_start.speed_m_s = self._speed_m_s()
 
     def note_fast_stop(self) -> None:
-        """Note the track's speed as its quick stop begins."""
+        """Record the track's speed at the begin of its quick stop."""
         self.view.stop_start.fast_speed_m_s = self._speed_m_s()
 
     def _speed_m_s(self) -> float:
@@ -152,12 +152,12 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         return min(speed, most) if isfinite(speed) else most
 
     def stop_ended(self) -> bool:
-        """Tell whether the track stands with the chamber off, or the time for it is over ("stop not ended")."""
+        """Return whether the track is at rest with the chamber off, or the time for that is over ("stop not ended")."""
         view = self.view
         since_s = view.readings.now_s - self.state.mode_since_s
         if since_s > view.parameters[STOP_TIMEOUT_S]:
             return True
-        # Once its time is over the chamber's own row has tripped, and its lease ends it.
+        # Later the row "chamber not off" has tripped, and the chamber's lease ends its output.
         off = not view.limits.chamber or view.readings.chamber_percent == 0.0
         late = since_s > view.parameters[CHAMBER_OFF_S] + LATE_S
         return standing(view) and (off or late)

@@ -1,6 +1,6 @@
 """This machine's devices: track and lift on CAN; load cell, chamber, pyrometer and thermometer on Modbus.
 
-Inputs fill the process image from the drivers, outputs hand setpoints to them. Nothing here decides.
+``fill`` copies readings into the process image, ``apply`` hands setpoints to the drivers. No decisions are made here.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ CELL_CHANNELS: Final = ("fx",)
 SURFACE_CHANNELS: Final = ("surface",)
 """Temperature of what a pyrometer looks at (degC)."""
 SPEED_S: Final = 0.5
-"""The speed of a track that tells its position is taken over this, s [A]: 500 increments at 1 um/s."""
+"""Time over which the speed of a track with position feedback is taken, s [A]: 500 increments at 1 um/s."""
 
 
 class TrackDevices(DeviceList):
-    """The devices of this machine; ``metres``: in the unit of length of the track's drive.
+    """The devices of this machine; ``metres``: of the track drive's unit of length.
 
-    ``by_hand_mm``: where a person was asked to bring an arm without a drive; NaN before that.
+    ``by_hand_mm``: requested place of an arm without a drive; NaN before the first request.
     """
 
     def __init__(self, rig: TrackConfig, ports: Ports) -> None:
@@ -54,7 +54,7 @@ class TrackDevices(DeviceList):
         self._track_s: float = NEVER
 
     def receive(self, now: float) -> None:
-        """Take in everything that arrived; the track is followed from the first reading on, while connecting, too."""
+        """Take in everything that has arrived; count the track's way from its first reading, also while connecting."""
         super().receive(now)
         track = self.track
         if track.stamp_s > self._track_s:
@@ -74,7 +74,7 @@ class TrackDevices(DeviceList):
         self._fill_temperatures(r)
 
     def _follow_track(self, stamp_s: float, actual: float) -> None:
-        """Take in a reading of the track: its place (m), or its speed (m/s)."""
+        """Update way and speed from a reading of the track: its place (m), or its speed (m/s)."""
         before_s, self._track_s = self._track_s, stamp_s
         if not self._places:
             if before_s != NEVER:

@@ -1,4 +1,4 @@
-"""What a person may move by hand on this machine, how far a step goes, and when it is refused."""
+"""Manual mode of this machine: its axes, the size of a step, and the reasons for refusing one."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ CHAMBER_STEP_K: Final = 1.0
 
 
 class TrackHand:
-    """Turns steps into demands."""
+    """Turns a person's steps into demands."""
 
     def __init__(self, rig: TrackConfig) -> None:
-        """Nothing is wanted: standing, raised, chamber off."""
+        """Begin at rest, raised, with the chamber off."""
         self.rig = rig
         self.track_m_s = 0.0
         self.lowered = False
@@ -28,11 +28,11 @@ class TrackHand:
 
     @property
     def busy(self) -> str:
-        """Why no step is taken at present."""
+        """Why no step is possible at present, "" if one is."""
         return "the load cell is being tared" if self.taring is not None else ""
 
     def demand(self, ctx: TrackContext) -> None:
-        """Demand what is wanted."""
+        """Write the demand of the steps so far."""
         demand = ctx.demand
         demand.track_m_s, demand.lowered, demand.chamber_c = self.track_m_s, self.lowered, self.chamber_c
         taring = self.taring
@@ -43,7 +43,7 @@ class TrackHand:
             self.taring = None
 
     def tare(self, ctx: TrackContext) -> str:
-        """Begin a tare; return "" or why not."""
+        """Begin a tare; return "", or the reason for refusing."""
         if self.lowered or not ctx.readings.raised:
             return "the arm is not raised"
         if self.track_m_s or abs(ctx.readings.track_now_m_s) > still_m_s(ctx):
@@ -52,7 +52,7 @@ class TrackHand:
         return ""
 
     def step(self, ctx: TrackContext, axis: str, sign: float) -> str:
-        """Take one step of an axis; return "" or why not."""
+        """Take one step of an axis; return "", or the reason for refusing."""
         limits = self.rig.limits
         if axis == "track":
             if self.lowered or not ctx.readings.raised:

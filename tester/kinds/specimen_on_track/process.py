@@ -22,27 +22,27 @@ class TrackReadings(BaseReadings):
     """
 
     track_m_s: float = NAN
-    """Speed of the track under the specimen, above 0 forward; where its position is told, over half a second."""
+    """Speed of the track under the specimen, above 0 forward; from its position, over half a second."""
     track_now_m_s: float = NAN
     """The same from one reading to the next."""
     track_mm: float = NAN
     """Place of a linear track in its travel."""
     way_m: float = 0.0
-    """Way of the track since the connection, less where it goes back."""
+    """Way of the track since the connection; motion backward reduces it."""
     track_at_s: float = NEVER
     lift_mm: float = NAN
-    """Where the arm is: 0 lowered. Of an arm without a drive what a person was asked for; NaN before that."""
+    """Place of the arm, 0 lowered. Without a drive, the place requested of a person; NaN before that."""
     lift_at_s: float = NEVER
     lowered: bool = False
     raised: bool = False
     force_n: float = NAN
-    """Tangential force on the specimen, tare applied, above 0 where the track goes forward."""
+    """Tangential force on the specimen, tare applied, above 0 where the track moves forward."""
     friction_n: float = NAN
-    """The force against the way of the track: below 0 only where nothing slides."""
+    """The force against the motion of the track: below 0 only where nothing slides."""
     sliding_m_s: float = NAN
-    """Speed of the track the way that it is to go."""
+    """Speed of the track in the demanded direction."""
     load_n: float = 0.0
-    """What the weights press with: 0 while the arm is not lowered."""
+    """Load of the weights: 0 while the arm is not lowered."""
     cell_valid: bool = False
     cell_silent: bool = False
     """The load cell has not answered several requests in a row, and is not set up again yet."""
@@ -55,38 +55,38 @@ class TrackReadings(BaseReadings):
     air_silent: bool = False
     air_at_s: float = NEVER
     chamber_percent: float = NAN
-    """What the chamber does to the air, below 0 cooling."""
+    """Output of the chamber, below 0 cooling."""
     chamber_alarm: bool = False
-    """The chamber has stood by itself: beyond its own limits, or its lease ran out."""
+    """The chamber has gone to standby by itself: beyond its own limits, or its lease ran out."""
     exit_c: float = NAN
-    """Track where it leaves the contact, by the pyrometer."""
+    """Surface of the track behind the contact, by the pyrometer."""
     exit_valid: bool = False
     exit_silent: bool = False
     exit_at_s: float = NEVER
     contact_c: float = NAN
-    """What friction is told with: the pyrometer's temperature where there is one, else the air's."""
+    """Temperature recorded with friction: the pyrometer's, else the air's."""
     stretch: float = 0.0
-    """Way counted in stretches of the condition."""
+    """Way in stretches of the condition."""
 
 
 @dataclass(slots=True)
 class TrackDemand(BaseDemand):
-    """What the running step wants; control bounds it and may refuse it."""
+    """The demand of the running step; control bounds it and may refuse it."""
 
     track_m_s: float = 0.0
     lowered: bool = False
-    """The arm is to be down."""
+    """The arm is wanted down."""
     tared: bool = False
-    """The cell has been tared with the specimen that is on: only then the track moves with the arm down."""
+    """The cell has been tared with this specimen: only then may the track move with the arm down."""
     sliding_m: float = 0.0
-    """Way since the track began to go this way with the arm down."""
+    """Way since the track began to move in this direction with the arm down."""
     chamber_c: float = NAN
     """Temperature of the air to hold; NaN = chamber off."""
 
 
 @dataclass(slots=True)
 class TrackSetpoints(BaseSetpoints):
-    """What goes to the devices at the end of a scan, already inside every limit."""
+    """Setpoints for the devices at the end of a scan, within every limit."""
 
     track_m_s: float = 0.0
     lift_mm: float = 0.0
@@ -94,4 +94,4 @@ class TrackSetpoints(BaseSetpoints):
     chamber: bool = False
     """Chamber in run (True) or standby."""
     chamber_silent: bool = False
-    """Its setpoint is not renewed any more: its lease ends what standby does not."""
+    """The chamber's setpoint is not renewed any more: its lease ends an output that standby has not ended."""

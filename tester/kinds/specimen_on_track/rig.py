@@ -109,17 +109,17 @@ else:
     TrackInterlocksConfig = section_of("TrackInterlocksConfig", TABLE.parameters, __name__)
 
 CEILINGS: Final = (
-    Ceiling("limits.force", "N", LOWER, "195 N", "the cell ends at 200 N: beyond it nobody sees the force any more"),
+    Ceiling("limits.force", "N", LOWER, "195 N", "the cell ends at 200 N: it does not see a greater force"),
     Ceiling("limits.track_speed", "m/s", LOWER, "2.1 m/s",
-            "a disc at 2.1 m/s stands within 1.1 s; what does not must lose its power 3 s after a trip"),
-    Ceiling("limits.air_low", "degC", HIGHER, "-50 degC", "the chamber's own limiter stands by at -55 degC"),
-    Ceiling("limits.air_high", "degC", LOWER, "100 degC", "the chamber's own limiter stands by at 105 degC"),
+            "a disc at 2.1 m/s stands within 1.1 s; one that does not must lose its power 3 s after a trip"),
+    Ceiling("limits.air_low", "degC", HIGHER, "-50 degC", "the chamber's own limiter acts at -55 degC"),
+    Ceiling("limits.air_high", "degC", LOWER, "100 degC", "the chamber's own limiter acts at 105 degC"),
     Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
             "without it there is no proof that the drives stop when this program does"),
     Ceiling("arming.unloaded", "N", LOWER, "10 N", "half of the least weight: an arm that is down must not pass"),
-    Ceiling("can.consumer_heartbeat", "s", LOWER, "250 ms", "a drive goes on for so long when this program is gone"),
+    Ceiling("can.consumer_heartbeat", "s", LOWER, "250 ms", "a drive continues for this long without this program"),
     Ceiling(f"{AXES}rpdo_deadline", "s", LOWER, "250 ms",
-            "a drive goes on for so long when its setpoints do not come", zero_is_off=True),
+            "a drive continues for this long without setpoints", zero_is_off=True),
     *ceilings_of(SECTION, TABLE.parameters),
 )  # fmt: skip
 """Every key on which safety hangs, in the order of the kind's page."""

@@ -1,4 +1,4 @@
-"""What the screens show of this machine: its tables, and a look at a run of it between two ticks."""
+"""The screens of this machine: its tables, and the view of a run between two ticks."""
 
 from __future__ import annotations
 
@@ -39,20 +39,20 @@ MACHINE: Final = MachineView(
 
 
 class TrackPanel(RunPanel):
-    """One run on this machine, to look at."""
+    """The view of one run on this machine."""
 
     gates_of: ClassVar[Mapping[str, int]] = {
         "speed": GATE_SPEED, "temperature": GATE_TEMPERATURE, "contact": GATE_CONTACT, "settling": GATE_SETTLING,
     }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
-        """Look only."""
+        """Read only."""
         super().__init__(engine)
         limits = engine.ctx.rig.interlocks
         self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_air_s, limits.stale_exit_s)
 
     def news(self) -> dict[str, News]:
-        """Return the news of the devices; the drives' are those of the one that was heard of least lately."""
+        """Return the news of the devices; for the drives, that of the drive with the oldest data."""
         r, (cell_s, can_s, air_s, exit_s) = self.engine.ctx.readings, self._stale_s
         air = News(r.air_at_s, r.air_valid, air_s)
         pyrometer = self.engine.ctx.devices.pyrometer is not None
@@ -64,7 +64,7 @@ class TrackPanel(RunPanel):
         }
 
     def wanted(self) -> dict[str, Wanted]:
-        """Return setpoints and gates of the values that have one."""
+        """Return setpoints and gates of the values that have them."""
         ctx, out = self.engine.ctx, self.engine.control.state.setpoints
         target = ctx.target
         mm_s = 1e3 * out.track_m_s
@@ -90,7 +90,7 @@ class TrackPanel(RunPanel):
         )  # fmt: skip
 
     def checks(self) -> tuple[Check, ...]:
-        """Return what the connected rig says of its readiness."""
+        """Return the connected rig's own checks before a start."""
         on = self.engine.ctx.on
         specimen = f"{on.compound}, {1e3 * on.sliding_m:.1f} mm slid" if on.number else "none on"
         return (*super().checks(), Check("specimen", None, specimen))

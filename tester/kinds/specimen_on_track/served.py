@@ -27,21 +27,21 @@ from tester.store.recorder import Recorder
 
 
 class SpecimenOnTrack(ServedKind):
-    """Answers what a service asks of the kind."""
+    """The kind's answers to a service."""
 
     machine: MachineView = MACHINE
     quantities: Quantities = QUANTITIES
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step does."""
+        """Return a description of a step, in a line."""
         return title(step)
 
     def panel(self, engine: Engine) -> TrackPanel:
-        """Look at a run."""
+        """Return the view of a run."""
         return TrackPanel(engine)
 
     def alone(self, rig: Rig) -> str:
-        """Return what drives and chamber do by themselves."""
+        """Return the reactions of drives and chamber without a program, in words."""
         own = TrackConfig.of(rig)
         also = ("The chamber stands by itself (30 s without a setpoint).",) if own.chamber else ()
         return drives_alone(own, "The arm stays where it is, with its weights.", *also)

@@ -1,7 +1,7 @@
-"""What a plain machine asks of its devices, and shows, before a run may begin: every drive's watchdog is tried out.
+"""The proof of a plain machine before a run may begin: the watchdog of every drive is tried.
 
-CiA 301 starts watching a heartbeat only with the first one it hears, and a wrong parameter shows only when it is
-needed. The drives are enabled for that and stand: nothing has to be lifted, and nothing moves.
+A drive watches a heartbeat only from the first one it receives (CiA 301), and a wrong parameter shows only when it
+matters. The drives are enabled at standstill: nothing is lifted, and nothing moves.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tester.machine.proof import WatchdogProof
 
 
 class NothingToLift:
-    """A machine on which nothing is lifted is ready to be shown as it is."""
+    """The lift of a machine on which nothing is lifted: done at once."""
 
     done = True
     failure = ""
@@ -25,18 +25,18 @@ class NothingToLift:
         """Do nothing: nothing has been moved."""
 
     def trouble(self, now: float) -> str:
-        """Return that there is none."""
+        """Return "": no load can come on."""
         return ""
 
 
 class StandingProof(WatchdogProof):
-    """Tries the watchdogs out with the drives enabled and standing."""
+    """Tries the watchdogs with the drives enabled at standstill."""
 
     def begin(self, now: float) -> None:
-        """Begin nothing: the drives stand."""
+        """Move nothing."""
 
     def move(self, now: float, elapsed: float) -> bool:
-        """Go on at once."""
+        """Return True: nothing has to move."""
         return True
 
     def stand(self) -> None:
@@ -45,18 +45,18 @@ class StandingProof(WatchdogProof):
             drive.target = 0.0
 
     def still(self) -> bool:
-        """Tell whether everything stands."""
+        """Return whether every drive is at rest."""
         return all(abs(drive.actual) <= STANDING_SHARE * drive.config.max_speed for drive in self.devices.drives)
 
 
 class PlainArming(Arming[PlainDevices, PlainRig]):
-    """Tries out the drives' watchdogs; nothing is lifted."""
+    """Tries the drives' watchdogs; lifts nothing."""
 
     def lift(self) -> NothingToLift:
         """Lift nothing."""
         return NothingToLift()
 
     def prove(self) -> StandingProof:
-        """Try out the drives' watchdogs."""
+        """Begin to try the drives' watchdogs."""
         arming = self.rig.arming
         return StandingProof(self.devices, follow=False, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)

@@ -1,4 +1,4 @@
-"""What a step of a plain machine may see and do, and the hands at the rig."""
+"""The context of a plain machine's steps, and the hands at the rig."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from tester.machine.prompts import Prompts
 from tester.store.recorder import Recorder
 
 SPEED_SHARE: Final = 0.02
-"""A drive has its speed within this share of it; the gate is closed while one has not [A]."""
+"""Greatest deviation of a drive from its demanded speed with an open gate, as a share [A]."""
 GATE_SPEED: Final = 1
 """Bit of that gate."""
 
 
 class PlainAttendant(Protocol):
-    """The hands at the rig. A simulated rig is told; at a real one nothing happens."""
+    """The hands at the rig: a person's work. A simulated rig does it itself; on a real one the calls do nothing."""
 
     def install(self, specimen: int, compound: str) -> None:
         """Put a new specimen on."""
@@ -34,7 +34,7 @@ class PlainAttendant(Protocol):
 
 
 class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
-    """What a step may see and do."""
+    """One per run; only activities read and write it."""
 
     def __init__(
         self,
@@ -46,7 +46,7 @@ class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
         quantities: Quantities,
         sensors: Mapping[str, Sensor],
     ) -> None:
-        """``sensors``: the machine's own, to be zeroed."""
+        """``sensors``: the machine's own."""
         super().__init__(rig, readings, PlainDemand(), prompts, journal)
         self.attendant = attendant
         self.quantities = quantities
@@ -57,14 +57,14 @@ class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
         return (self.mounted.piece if self.mounted is not None else 0), nan, self.readings.slid_m
 
     def at_speed(self) -> bool:
-        """Tell whether every drive has the speed that is wanted of it."""
+        """Return whether every drive has its demanded speed."""
         drives = self.readings.drives
         return all(abs(drives[name] - v) <= SPEED_SHARE * abs(v) for name, v in self.demand.speeds.items())
 
     def closed_gates(self) -> int:
-        """Close the gate while a drive has not its speed."""
+        """Return the mask: the gate is closed while a drive does not have its speed."""
         return 0 if self.at_speed() else GATE_SPEED
 
     def touching(self) -> bool:
-        """Record every scan while something is to move."""
+        """Return whether a motion is demanded: then every scan is recorded."""
         return bool(self.demand.speeds)

@@ -1,4 +1,4 @@
-"""What a plain machine commands in each mode: what is wanted in RUN, standstill in everything else."""
+"""The commands of a plain machine in each mode: the demand in RUN, standstill in every other."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ State = ControlState[PlainSetpoints]
 
 
 class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInputs[PlainReadings]]):
-    """The control of drives that are given speeds."""
+    """The control of drives with speeds."""
 
     def __init__(self, rig: PlainRig, table: InterlockTable, readings: PlainReadings) -> None:
-        """``readings``: the kind's, as they are before anything was read."""
+        """``readings``: the kind's, before anything has been read."""
         view = PlainInputs(rig=rig, readings=readings)
         state = ControlState(PlainSetpoints())
         super().__init__(rig, state, view, table, (PlainDemand(), PlainDemand()), HOLD_AT_MOST_S)
@@ -25,15 +25,15 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
         self.stand()
 
     def look(self, demand: PlainDemand, readings: PlainReadings, scan_s: float, dt: float) -> None:
-        """Bring the inputs of the rows up to date."""
+        """Update the inputs of the rows."""
         self.view.look(self.state, demand, readings, scan_s)
 
     def detail(self, readings: PlainReadings) -> str:
-        """Return how fast the drives are."""
+        """Return the speeds of the drives."""
         return ", ".join(f"{name} {value:.4g} {self.axes[name].unit}" for name, value in readings.drives.items())
 
     def run_outputs(self, demand: PlainDemand, readings: PlainReadings, dt: float) -> None:
-        """Command what is wanted; nothing moves before every drive is in operation."""
+        """Command the demand within the bounds; nothing moves before every drive is in operation."""
         self.enable(demand, readings)
         self.stand()
         if readings.drives_enabled:
@@ -41,7 +41,7 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
                 self.state.setpoints.speeds[name] = bounded(wanted, self.axes[name].max_speed)
 
     def keep(self, held: PlainDemand, demand: PlainDemand) -> None:
-        """Stand."""
+        """Demand standstill."""
         held.speeds.clear()
 
     def stand(self) -> None:
@@ -50,7 +50,7 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
             self.state.setpoints.speeds[name] = 0.0
 
     def stop_ended(self) -> bool:
-        """Tell whether every drive stands, or the time for it is over."""
+        """Return whether every drive is at rest, or the time for that is over."""
         v = self.view
         over = v.readings.now_s - self.state.mode_since_s > v.parameters[STOP_TIMEOUT_S]
         return over or (v.readings.standing and v.readings.now_s - v.readings.drives_at_s <= self._fresh_s)

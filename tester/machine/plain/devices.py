@@ -14,11 +14,11 @@ from tester.machine.rig_drivers import RigDrivers
 from tester.machine.rig_ports import Ports
 
 STANDING_SHARE: Final = 0.01
-"""A drive slower than this share of its greatest speed stands [A]."""
+"""Speed below which a drive counts as standing, as a share of its greatest [A]."""
 
 
 class PlainDevices(DeviceList):
-    """Drivers by their names in the rig file. ``own``: the sensors that are the machine's, as its kind says."""
+    """Drivers by their names in the rig file. ``own``: the machine's own sensors (``Rig.own``)."""
 
     def __init__(self, rig: PlainRig, ports: Ports) -> None:
         """Build drivers on these wires; nothing is sent."""
@@ -32,7 +32,7 @@ class PlainDevices(DeviceList):
         }
 
     def fill(self, r: PlainReadings, now: float) -> None:
-        """Bring the readings up to date; the kind's own channels last (``PlainReadings.update``)."""
+        """Update the readings, the kind's own channels last (``PlainReadings.update``)."""
         dt = now - r.now_s
         r.now_s = now
         at_s, standing = inf, True

@@ -15,29 +15,29 @@ class PlainReadings(BaseReadings):
     drives: dict[str, float] = field(default_factory=dict[str, float])
     """Actual speed of each drive, in the unit of its axis."""
     drives_at_s: float = NEVER
-    """When the drive was heard that was heard of least lately."""
+    """Time stamp of the drive with the oldest data."""
     standing: bool = False
     """Every drive is known to stand."""
     sensors: dict[str, Sequence[float]] = field(default_factory=dict[str, Sequence[float]])
-    """What each of the machine's own sensors measures, in the order of its profile; NaN where it is not valid."""
+    """Values of each of the machine's own sensors, in the order of its profile; NaN where not valid."""
     sensors_at_s: float = NEVER
-    """When the sensor answered that answered least lately; ``NEVER`` where one says that it is not valid."""
+    """Time stamp of the sensor with the oldest data; ``NEVER`` while one is not valid."""
     slid_m: float = 0.0
-    """How far the specimen that is on has slid."""
+    """Sliding distance of the mounted specimen."""
 
     def update(self, dt: float) -> None:
-        """Work out the kind's channels from ``drives`` and ``sensors``; ``dt``: since the scan before, s."""
+        """Derive the kind's channels from ``drives`` and ``sensors``; ``dt``: time since the scan before, s."""
 
 
 @dataclass(slots=True)
 class PlainDemand(BaseDemand):
-    """What a step wants of the drives; one that is not named stands."""
+    """The demand of a step on the drives; one that is not listed stands."""
 
     speeds: dict[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(slots=True)
 class PlainSetpoints(BaseSetpoints):
-    """What every drive is told."""
+    """The setpoints of every drive."""
 
     speeds: dict[str, float] = field(default_factory=dict[str, float])

@@ -1,4 +1,4 @@
-"""The steps of a plain machine: a specimen is put on, its sensors are zeroed, a condition is measured in repeats."""
+"""The activities of a plain machine: mount a specimen, zero the sensors, measure a condition in repeats."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ from tester.machine.result_keeping import StoredResults
 from tester.store.records import PieceInfo
 
 MOVE_AT_MOST_S: Final = 15.0
-"""Drives are on and have their speed, or stand, by then, s [A]."""
+"""Longest time for drives to reach their speed, or standstill, s [A]."""
 BLIND_S: Final = 20.0
-"""A repeat in which nothing has counted for this long is given up, s [A]."""
+"""Longest time of a repeat without a counted block, s [A]."""
 ZERO_S: Final = 1.0
-"""A zero is the mean over this long, s [A]."""
+"""Averaging time of a zero, s [A]."""
 
 SpeedsOf = Callable[[Setpoint, PlainReadings], Mapping[str, float]]
-"""What a condition demands of the drives, asked for each repeat as it begins."""
+"""Returns the speeds that a condition demands of the drives, at the begin of each repeat."""
 
 
 class Standstill:
-    """Drives on, or off, and everything known to stand."""
+    """Switch the drives on or off, and wait for standstill."""
 
     def __init__(self, *, enabled: bool) -> None:
-        """With the drives ``enabled``, or without power."""
+        """``enabled``: with or without power."""
         self.enabled = enabled
         self.since_s = nan
 
     def step(self, ctx: PlainContext) -> bool:
-        """Done when it is measured; raises MoveFailedError after ``MOVE_AT_MOST_S``."""
+        """Done when standstill is measured; raises MoveFailedError after ``MOVE_AT_MOST_S``."""
         ctx.moving, r = True, ctx.readings
         ctx.demand.enabled = self.enabled
         ctx.demand.speeds.clear()
@@ -56,10 +56,10 @@ class Standstill:
 
 
 class PutOn:
-    """Stand without power, ask a person to put a specimen on, then zero the sensors."""
+    """Come to standstill without power, ask a person to mount a specimen, then zero the sensors."""
 
     def __init__(self, step: Mount, title: str) -> None:
-        """``title``: what the person is asked."""
+        """``title``: the question to the person."""
         self.mount = step
         self.stand = Standstill(enabled=False)
         self.ask = Ask(title)
@@ -68,11 +68,11 @@ class PutOn:
         """Of the sensors that are zeroed, by their names."""
 
     def resume(self, ctx: PlainContext) -> None:
-        """Come to a stand anew."""
+        """Come to standstill again."""
         self.stand = Standstill(enabled=False)
 
     def step(self, ctx: PlainContext) -> bool:
-        """Done when it is on and zeroed."""
+        """Done when it is mounted and the sensors are zeroed."""
         if not self.answered:
             if not self.stand.step(ctx) or not self.ask.step(ctx):
                 return False
@@ -170,7 +170,7 @@ class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat])
         self.stand = Standstill(enabled=True)
 
     def resume(self, ctx: PlainContext) -> None:
-        """Come to a stand anew."""
+        """Come to standstill again."""
         super().resume(ctx)
         self.stand = Standstill(enabled=True)
 
@@ -179,33 +179,33 @@ class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat])
         return self.stand.step(ctx)
 
     def begin(self, ctx: PlainContext, attempt: int) -> SteadyRepeat:
-        """Return the repeat, at the speeds that the kind says."""
+        """Return the repeat, at the kind's speeds for its setpoint."""
         step = self.condition
         ctx.attendant.begin_repeat(step.row, self.repeat, attempt)
         return SteadyRepeat(step, self.speeds(step.setpoint, ctx.readings), self.settle_s, ctx.quantities)
 
     def finish(self, ctx: PlainContext, measured: SteadyRepeat) -> None:
-        """Stand while the repeat is committed."""
+        """Come to standstill while the repeat is committed."""
         super().finish(ctx, measured)
         ctx.demand.speeds.clear()
         self.stand = Standstill(enabled=True)
 
 
 class PlainProcedures(Procedures[PlainContext]):
-    """Which activity serves which step."""
+    """The activities of the steps."""
 
     def __init__(self, part: PlainPart, results: StoredResults[PlainContext], speeds: SpeedsOf) -> None:
-        """``speeds``: the kind's word for what a condition demands."""
+        """``speeds``: returns the speeds that a condition demands."""
         self.part = part
         self.results = results
         self.speeds = speeds
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step does."""
+        """Return a description of a step, in a line."""
         return self.part.title(step)
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: PlainContext) -> Activity[PlainContext]:
-        """Return what serves a step."""
+        """Return the activity of a step."""
         if isinstance(step, Mount):
             return PutOn(step, self.part.title(step))
         if isinstance(step, ConditionStep):
@@ -213,5 +213,5 @@ class PlainProcedures(Procedures[PlainContext]):
         raise TypeError(f"{step.kind}: no step of this machine")
 
     def measuring(self, activity: Activity[PlainContext]) -> bool:
-        """Tell whether repeats are made."""
+        """Return whether an activity is measuring repeats."""
         return isinstance(activity, MeasureSteady)

@@ -1,4 +1,4 @@
-"""The interlock rows that every plain machine has, and what they look at. A kind puts its own rows before them."""
+"""The interlock rows of every plain machine, and their inputs. A kind puts its own rows before them."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ ReadingsT = TypeVar("ReadingsT", bound=PlainReadings)
 
 @dataclass(frozen=True, slots=True)
 class PlainLimits:
-    """What conditions compare with beside their parameters, from the rig file's other sections."""
+    """Limits of the conditions beside their parameters, from the rig file's other sections."""
 
     heartbeat_s: float
     """``can.drive_heartbeat``."""
     ramp_s: float
     quick_stop_s: float
-    """From its greatest speed every drive stands after this, by its ramp, and by its quick stop."""
+    """Longest times of a drive from its greatest speed to standstill, by its ramp and by its quick stop."""
 
 
 @dataclass(slots=True)
 class PlainInputs(ScanInputs, Generic[ReadingsT]):
-    """One scan, as the rows of a plain machine see it. ``loaded`` stays true: a contact cannot be excluded."""
+    """One scan, as the rows of a plain machine see it. ``loaded`` stays True: contact cannot be excluded."""
 
     rig: PlainRig = field(kw_only=True)
     readings: ReadingsT = field(kw_only=True)
@@ -48,7 +48,7 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
     limits: PlainLimits = field(init=False)
 
     def __post_init__(self) -> None:
-        """Take over what conditions compare with."""
+        """Read the limits from the rig file."""
         axes = self.rig.axes.values()
         self.limits = PlainLimits(
             self.rig.can.drive_heartbeat_s,
@@ -57,7 +57,7 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
         )
 
     def look(self, state: ControlState[Any], demand: PlainDemand, readings: ReadingsT, scan_s: float) -> None:
-        """Take this scan's demand and readings."""
+        """Update from this scan's demand and readings."""
         self.readings, self.demand = readings, demand
         self.note_times(state, readings.now_s, scan_s)
         self.attended = demand.attended
@@ -88,7 +88,7 @@ OVERSPEED_DELAY_S: Final = Parameter(
 
 
 def _fastest(v: AnyInputs) -> float:
-    """Return the greatest speed as a share of what its axis may do; NaN where one is not known."""
+    """Return the greatest speed as a share of its axis's limit; NaN where one is unknown."""
     shares = [
         abs(v.readings.drives.get(name, float("nan"))) / axis.max_speed
         for name, axis in v.rig.axes.items()
@@ -188,7 +188,7 @@ HOLD_AT_MOST_S: Final = Parameter(
 )  # fmt: skip
 OPERATION: Final = (HOLD_AT_MOST_S, ACK_WAIT_S)
 ABOUT: Final = "holds and acknowledgements"
-"""Parameters of no row, and what they are for."""
+"""Parameters that belong to no row, and their purpose."""
 
 ROWS: Final[tuple[Interlock[Any], ...]] = (
     INPUTS_STALE, DEVICE_REFUSED, LINE_NOISY, DRIVE_DATA_STALE, DRIVE_DROPPED_OUT, OVERSPEED, NOT_STOPPING,
@@ -199,6 +199,6 @@ ROWS: Final[tuple[Interlock[Any], ...]] = (
 def plain_table(*own: Interlock[Any]) -> InterlockTable:
     """Return the interlock table of a kind with rows of its own.
 
-    A sensor that says nothing is told as such: its row comes before those that look at what it measures.
+    The row of a silent sensor comes before the rows that watch its values: a trip then names the silence.
     """
     return InterlockTable((*WIRE_ROWS, SENSOR_SILENT, *own, *ROWS, *WARNINGS), OPERATION)

@@ -1,4 +1,4 @@
-"""A plain machine, for a run (``tester.machine.run_parts.KindRun``). A kind says its twin, its table and its speeds."""
+"""A plain machine, for a run (``tester.machine.run_parts.KindRun``). A kind defines twin, table and speeds."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ class PlainRuns(KindRun):
     table: InterlockTable
 
     def readings(self, rig: PlainRig) -> PlainReadings:
-        """Return the kind's readings before anything was read."""
+        """Return the kind's readings before anything has been read."""
         raise NotImplementedError
 
     def speeds(self, setpoint: Setpoint, readings: PlainReadings) -> Mapping[str, float]:
-        """Return what a condition demands of the drives; asked for each repeat as it begins."""
+        """Return the speeds that a condition demands of the drives; called at the begin of each repeat."""
         raise NotImplementedError
 
     def split(self, plan: Plan) -> tuple[Part, ...]:

@@ -24,16 +24,16 @@ from tester.machine.wires import STALE_INPUTS_S
 from tester.store.recorder import Recorder
 
 STEPS_TO_TOP: Final = 20
-"""By hand a drive gets to its greatest speed in this many steps [A]."""
+"""Steps by hand from standstill to a drive's greatest speed [A]."""
 
 
 class PlainPanel(RunPanel):
-    """One run on a plain machine, to look at."""
+    """The view of one run on a plain machine."""
 
     gates_of: ClassVar[Mapping[str, int]] = {"speed": GATE_SPEED}
 
     def __init__(self, engine: Engine) -> None:
-        """Look only."""
+        """Read only."""
         super().__init__(engine)
         self._ctx: PlainContext = engine.ctx
         self._stale_s = self._ctx.rig.values()[STALE_INPUTS_S]
@@ -47,13 +47,13 @@ class PlainPanel(RunPanel):
         }
 
     def mounted(self) -> tuple[int, str]:
-        """Return the specimen that is on."""
+        """Return number and compound of the mounted specimen."""
         mount = self._ctx.mounted
         return (mount.specimen, mount.compound) if mount is not None else (0, "")
 
 
 class SpeedHand:
-    """A person gives drives speeds, in steps."""
+    """Changes the speeds of drives in a person's steps."""
 
     busy = ""
     tare_text = ""
@@ -64,24 +64,24 @@ class SpeedHand:
         self.wanted = dict.fromkeys(tops, 0)
 
     def demand(self, ctx: PlainContext) -> None:
-        """Demand what was asked for so far."""
+        """Write the demand of the steps so far."""
         for name, steps in self.wanted.items():
             ctx.demand.speeds[name] = self.tops[name] * steps / STEPS_TO_TOP
 
     def step(self, ctx: PlainContext, axis: str, sign: float) -> str:
-        """Take one step of a drive, up or down; return "" or why not."""
+        """Take one step of a drive, up or down; return "", or the reason for refusing."""
         if axis not in self.wanted:
             return f"there is no drive {axis} (expected {', '.join(self.wanted)})"
         self.wanted[axis] = max(-STEPS_TO_TOP, min(STEPS_TO_TOP, self.wanted[axis] + (1 if sign > 0.0 else -1)))
         return ""
 
     def tare(self, ctx: PlainContext) -> str:
-        """Refuse: a zero is taken when a specimen is put on."""
+        """Refuse: sensors are zeroed when a specimen is mounted."""
         return "sensors are zeroed when a specimen is put on"
 
 
 class PlainServed(ServedKind):
-    """Answers what a service asks of a plain kind."""
+    """A plain kind's answers to a service."""
 
     def __init__(
         self,
@@ -93,7 +93,7 @@ class PlainServed(ServedKind):
         plots: tuple[PlotView, ...] = (),
         compound: str = "1#",
     ) -> None:
-        """``drives``: what people call each; ``plots``: trends to draw; ``compound``: of a specimen by hand."""
+        """``drives``: name of each for people; ``plots``: trends to draw; ``compound``: of a specimen by hand."""
         self.runs = runs
         self.quantities = quantities
         self.compound = compound
@@ -108,15 +108,15 @@ class PlainServed(ServedKind):
         )
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step does."""
+        """Return a description of a step, in a line."""
         return self.runs.part.title(step)
 
     def panel(self, engine: Engine) -> PlainPanel:
-        """Look at a run."""
+        """Return the view of a run."""
         return PlainPanel(engine)
 
     def alone(self, rig: Rig) -> str:
-        """Return what the drives do by themselves."""
+        """Return the reactions of the drives without a program, in words."""
         return drives_alone(rig)
 
     def by_hand(

@@ -17,7 +17,7 @@ STALE_AIR_S: Final = Parameter(
 )  # fmt: skip
 STALE_EXIT_S: Final = Parameter(
     "stale_exit_s", "s", "2 s", "age of the pyrometer's temperature [A]",
-    hardest="10 s", because="it is recorded and not controlled by: what is older says nothing of the present contact",
+    hardest="10 s", because="it is recorded, and controls nothing: older data do not describe the present contact",
 )  # fmt: skip
 STALE_DELAY_S: Final = Parameter(
     "stale_delay_s", "s", "200 ms", "for both [A]", NOT_NEGATIVE,
@@ -37,7 +37,7 @@ def _exit_s(v: TrackInputs) -> float:
 
 AIR_SILENT: Final[Row] = Interlock(
     name="air silent",
-    cause="chamber or thermometer does not answer: nobody knows the temperature of the specimen",
+    cause="chamber or thermometer does not answer: the temperature of the specimen is unknown",
     watch=at_most("age > {}", _air_s, STALE_AIR_S),
     applies=lambda v: v.limits.air and not v.attended,
     delay=STALE_DELAY_S,
@@ -57,7 +57,7 @@ EXIT_SILENT: Final[Row] = Interlock(
 
 BROKEN_DELAY_S: Final = Parameter(
     "broken_delay_s", "s", "1 s", "a temperature that its device denies, for this long [A]", NOT_NEGATIVE,
-    hardest="5 s", because="a chamber with a broken sensor stands by on its own; in 5 s its air changes by 0.3 K",
+    hardest="5 s", because="a chamber with a broken sensor goes to standby by itself; in 5 s its air changes by 0.3 K",
 )  # fmt: skip
 
 AIR_BROKEN: Final[Row] = Interlock(
@@ -99,7 +99,7 @@ OUT_OF_RANGE: Final[Row] = Interlock(
 
 RUNAWAY_K: Final = Parameter(
     "runaway_k", "K", "10 K", "air off a setpoint that it has been at, by this ... [A]",
-    hardest="15 K", because="a chamber that has lost its loop goes on at 3.6 K a minute",
+    hardest="15 K", because="a chamber that has lost its loop continues at 3.6 K a minute",
 )  # fmt: skip
 RUNAWAY_DELAY_S: Final = Parameter(
     "runaway_delay_s", "s", "2 s", "... for this long [A]", NOT_NEGATIVE,
@@ -119,12 +119,12 @@ RUNAWAY: Final[Row] = Interlock(
 )
 
 ALARM_DELAY_S: Final = Parameter(
-    "alarm_delay_s", "s", "1500 ms", "the chamber says so in more than two polls [A]", NOT_NEGATIVE,
-    hardest="5 s", because="it has stood by already: nothing gets worse meanwhile",
+    "alarm_delay_s", "s", "1500 ms", "the chamber reports it in more than two polls [A]", NOT_NEGATIVE,
+    hardest="5 s", because="it is in standby already: nothing gets worse meanwhile",
 )  # fmt: skip
 CHAMBER_ALARM: Final[Row] = Interlock(
     name="chamber alarm",
-    cause="the chamber has stood by itself: its own limiter, or it misses our setpoint",
+    cause="the chamber has gone to standby by itself: its own limiter, or it misses our setpoint",
     watch=condition("its alarm word, while it is to run", lambda v: v.readings.chamber_alarm),
     applies=lambda v: v.setpoints.chamber,
     unseen=True,
@@ -133,7 +133,7 @@ CHAMBER_ALARM: Final[Row] = Interlock(
 )
 
 CHAMBER_OFF_S: Final = Parameter(
-    "chamber_off_s", "s", "3 s", "told to stand by, the chamber gives no output after this [A]: six polls",
+    "chamber_off_s", "s", "3 s", "in standby the chamber gives no output after this [A]: six polls",
     hardest="30 s", because="30 s is its lease: later it would have ended by itself",
 )  # fmt: skip
 
@@ -144,7 +144,7 @@ def _still_on(v: TrackInputs) -> bool:
 
 CHAMBER_NOT_OFF: Final[Row] = Interlock(
     name="chamber not off",
-    cause="the chamber heats or cools although it is to stand by",
+    cause="the chamber heats or cools although it should be in standby",
     watch=condition("output after chamber_off", _still_on, lambda v: Compared(v.readings.chamber_percent, 0.0, "%")),
     parameters=(CHAMBER_OFF_S,),
     ends_lease=True,

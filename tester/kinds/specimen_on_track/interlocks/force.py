@@ -1,4 +1,4 @@
-"""The tangential force: what the cell says, whether it says anything, and whether it can be."""
+"""The tangential force: a cell that is silent, frozen or beyond its range, and forces that cannot be friction."""
 
 from __future__ import annotations
 

@@ -16,25 +16,25 @@ from tester.machine.inputs import ScanInputs
 from tester.machine.row import Interlock
 
 WINDOW_S = 1.0
-"""Over this time the track's way is held against what its commands allow, s [A]: at 1 um/s it goes 1000 increments."""
+"""Time over which the track's way is compared with its commands, s [A]: at 1 um/s it covers 1000 increments."""
 LAG_S = 0.15
-"""By this the way may lag behind a change of its command, s [A]: two slow scans and the drive's ramp loop."""
+"""Time by which the way may lag behind a change of its command, s [A]: two slow scans and the drive's ramp loop."""
 
 
 @dataclass(slots=True)
 class TrackLimits:
-    """What conditions compare with beside their own parameters: numbers from the rig file's other sections."""
+    """Limits of the conditions beside their own parameters, from the rig file's other sections."""
 
     heartbeat_s: float
     force_n: float
     track_m_s: float
     fastest_m_s: float
-    """``axes.track.max_speed``: what of the track counts as standing, and as its least speed, is a share of it."""
+    """``axes.track.max_speed``: the speeds that count as standstill and as least motion are shares of it."""
     deceleration_m_s2: float
     quick_stop_m_s2: float
     low_mm: float
     high_mm: float
-    """Between these a linear track may be; infinite on a disc."""
+    """Range of a linear track's place; infinite on a disc."""
     air_low_c: float
     air_high_c: float
     chamber: bool
@@ -44,7 +44,7 @@ class TrackLimits:
 
 
 class WayMonitor:
-    """How far the way that the track has gone in the last second is off what its commands allow."""
+    """Deviation of the track's way in the last second from its commands."""
 
     def __init__(self, ramp_m_s2: float) -> None:
         """``ramp_m_s2``: the drive's acceleration."""
@@ -52,20 +52,20 @@ class WayMonitor:
         self.begin(0.0)
 
     def begin(self, speed_m_s: float) -> None:
-        """Begin anew with a track that has this speed."""
+        """Begin again with a track at this speed."""
         self.speed_m_s = speed_m_s
         self.expected_m = 0.0
         self.changed_m_s = 0.0
-        """By how much the command has changed, until the track has followed."""
+        """Change of the command that the track has not followed yet."""
         self.until_s = -inf
         self.seen: deque[tuple[float, float, float]] = deque()
         self.off_m = 0.0
-        """Way in the window beyond what was commanded, less where it is short of it."""
+        """Way in the window beyond the commanded one; negative where it is short of it."""
         self.due_m = 0.0
-        """Way that was commanded in the window, either way."""
+        """Commanded way in the window, with its sign."""
 
     def follow(self, now: float, way_m: float, command_m_s: float, dt: float) -> None:
-        """Take in a scan: the command that was in force in it, and the way at its end."""
+        """Take in a scan: its command, and the way at its end."""
         speed, most = self.speed_m_s, self.ramp_m_s2 * dt
         step = command_m_s - speed
         if step != 0.0:
@@ -73,7 +73,7 @@ class WayMonitor:
             self.until_s = now + LAG_S
         elif self.changed_m_s and now >= self.until_s:
             self.changed_m_s = 0.0
-            self.seen.clear()  # what lagged is no deviation: the window begins anew
+            self.seen.clear()  # a lag is no deviation: the window begins again
         self.speed_m_s = speed + (step if -most <= step <= most else most if step > 0.0 else -most)
         self.expected_m += 0.5 * (speed + self.speed_m_s) * dt
         seen = self.seen
@@ -85,13 +85,13 @@ class WayMonitor:
         self.off_m = way_m - way0_m - self.due_m
 
     def allowed_m(self, share: float, floor_m_s: float) -> float:
-        """Return how far off the way may be."""
+        """Return the allowed deviation of the way, m."""
         return share * abs(self.due_m) + floor_m_s * WINDOW_S + LAG_S * self.changed_m_s
 
 
 @dataclass(slots=True)
 class TrackStopStart:
-    """How fast the track was as a stop began, and as its quick stop did; what is not known counts as the most."""
+    """Speed of the track at the begin of a stop, and of its quick stop; an unknown one counts as the greatest."""
 
     speed_m_s: float = 0.0
     fast_speed_m_s: float = 0.0
@@ -99,21 +99,21 @@ class TrackStopStart:
 
 @dataclass(slots=True)
 class TrackInputs(ScanInputs):
-    """One scan, as conditions see it."""
+    """One scan, as the conditions see it."""
 
     limits: TrackLimits = field(init=False)
     readings: TrackReadings = field(init=False)
     demand: TrackDemand = field(init=False)
     setpoints: TrackSetpoints = field(init=False)
-    """What the scan before has commanded."""
+    """Commands of the scan before."""
     track: WayMonitor = field(init=False)
     stop_start: TrackStopStart = field(default_factory=TrackStopStart)
     arm_since_s: float = inf
-    """Since when the arm has not been where it is told to be."""
+    """Since when the arm has not been at its commanded place; infinite while it is."""
     arrived_c: float = inf
-    """The chamber's setpoint that its air has been at; infinite where it has not got there yet."""
+    """The chamber's setpoint that its air has reached; infinite before that."""
     off_since_s: float = inf
-    """Since when the chamber is to stand by and still gives output."""
+    """Since when the chamber has given output although it should be in standby; infinite while it gives none."""
 
 
 Row: TypeAlias = Interlock[TrackInputs]
@@ -131,11 +131,11 @@ SPEEDS_OLD_S: Final = Parameter(
 
 
 def standing_m_s(v: TrackInputs) -> float:
-    """Return the speed below which the track stands, m/s."""
+    """Return the speed below which the track counts as standing, m/s."""
     return v.parameters[STANDING_SHARE] * v.limits.fastest_m_s
 
 
 def standing(v: TrackInputs) -> bool:
-    """Tell whether the track is known to stand."""
+    """Return whether the track is known to stand."""
     r, slow = v.readings, standing_m_s(v)
     return r.track_at_s >= r.now_s - v.parameters[SPEEDS_OLD_S] and -slow < r.track_now_m_s < slow

@@ -1,4 +1,4 @@
-"""Track and arm: their data, the track's speed and travel, the arm's place."""
+"""Track and arm: age of their data, the track's speed and travel, the arm's place."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.track_at_s, r.lift_at_s)
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,
-    hardest="200 ms", because="the other drive goes on meanwhile: 200 ms is what a drive takes to miss our heartbeat",
+    hardest="200 ms", because="the other drive continues meanwhile: 200 ms is what a drive takes to miss our heartbeat",
 )  # fmt: skip
 
 
@@ -54,7 +54,7 @@ OVERSPEED: Final[Row] = Interlock(
 
 SPEED_SHARE: Final = Parameter(
     "speed_share", "1", "0.3", "way of a second off what is commanded by this share of it ... [A]", SHARE,
-    hardest="0.5", because="at half the way the friction that is told for a speed is that of another one",
+    hardest="0.5", because="at half the way the friction recorded for a speed is that of another one",
 )  # fmt: skip
 SPEED_FLOOR: Final = Parameter(
     "speed_floor", "1", "0.00002", "... and this share of axes.track.max_speed, times a second [A] ...", SHARE,
@@ -73,7 +73,7 @@ def _allowed_m(v: TrackInputs) -> float:
 
 TRACK_SPEED: Final[Row] = Interlock(
     name="track speed",
-    cause="the track does not go as it is told: stalled, slipping, running away, wrong scale",
+    cause="the track does not follow its command: stalled, slipping, running away, wrong scale",
     watch=at_most(
         "way of the last second off its command by > speed_share and speed_floor",
         lambda v: abs(v.track.off_m),

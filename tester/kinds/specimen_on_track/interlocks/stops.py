@@ -12,7 +12,7 @@ from tester.machine.row import ENDING, POWER_OFF, Interlock
 from tester.machine.watches import condition
 
 STOP_MARGIN_S: Final = Parameter(
-    "stop_margin_s", "s", "600 ms", "the track may stand this much later than its ramp says [A]; seen late, too",
+    "stop_margin_s", "s", "600 ms", "the track may stop this much later than its ramp [A]; it is also seen late",
     hardest="800 ms",
     because="a track that does not stop loses its power after two of these; a rig is to be safe 3 s after its trip",
 )  # fmt: skip
@@ -25,7 +25,7 @@ def _ramp_s(v: TrackInputs) -> float:
 NOT_STOPPING: Final = not_stopping(
     _ramp_s,
     standing,
-    cause="the track goes on longer than its ramp allows",
+    cause="the track moves longer than its ramp allows",
     level="speed >= standing_share at v / deceleration + stop_margin",
     parameters=(STOP_MARGIN_S, STANDING_SHARE, SPEEDS_OLD_S),
 )
@@ -38,21 +38,21 @@ def _quick_s(v: TrackInputs) -> float:
 QUICK_STOP_FAILED: Final = quick_stop_failed(
     _quick_s,
     standing,
-    cause="the track goes on longer than its quick stop allows",
+    cause="the track moves longer than its quick stop allows",
     level="speed >= standing_share at v / quick-stop deceleration + stop_margin",
     margin=STOP_MARGIN_S,
 )
 
 OFF_DELAY_S: Final = Parameter(
-    "off_delay_s", "s", "500 ms", "the drives told to switch off, the track goes on for this long [A]", NOT_NEGATIVE,
+    "off_delay_s", "s", "500 ms", "with its drive commanded off the track moves for this long [A]", NOT_NEGATIVE,
     hardest="1 s",
-    because="the track stands before it is told to: what goes on obeys nothing, and a person is about to come near",
+    because="the track is at rest before: one that moves obeys nothing, and a person is about to come near",
 )  # fmt: skip
 
 
 NOT_SWITCHED_OFF: Final[Row] = Interlock(
     name="not switched off",
-    cause="the track goes on though the drives are told to switch off",
+    cause="the track moves although the drives are commanded off",
     watch=condition(
         "in a run, drives not wanted, power still on and speed >= standing_share",
         lambda v: not (v.resting or v.demand.enabled or v.readings.drives_disabled or standing(v)),
@@ -70,7 +70,7 @@ STOP_TIMEOUT_S: Final = Parameter(
 
 
 STOP_NOT_ENDED: Final = stop_not_ended(
-    "a stop has not come to its end: nobody sees that the track stands, or that the chamber is off",
+    "a stop has not ended: the track is not known to stand, or the chamber to be off",
     "stop_timeout after it began, and once more after the power was taken",
     STOP_TIMEOUT_S,
 )
@@ -86,7 +86,7 @@ def _moving(v: TrackInputs) -> bool:
 
 MOVING_AT_REST: Final[Row] = Interlock(
     name="moving at rest",
-    cause="the track goes, or a drive has power, although everything is to rest",
+    cause="the track moves, or a drive has power, although everything should be at rest",
     watch=condition("speed >= standing_share or unknown; in a run: power that is not wanted", _moving),
     parameters=(STANDING_SHARE, SPEEDS_OLD_S),
     applies=lambda v: v.resting or v.unpowered,

@@ -1,7 +1,7 @@
-"""What this machine asks of its devices, and shows, before a run may begin.
+"""The checks and proofs of this machine before a run may begin.
 
-An arm with a drive is raised by homing it; before the track creeps the load cell, asked without tare, has to be without
-force, and it is watched while the track creeps: an arm that a person has left down would draw on it.
+Homing raises an arm that has a drive. Before the track creeps, the load cell must show no force without a tare, and it
+is watched while the track creeps: an arm that a person has left down would load it.
 """
 
 from __future__ import annotations
@@ -14,24 +14,24 @@ from tester.machine.connect import Arming
 from tester.machine.proof import WatchdogProof
 
 BUMP_S = 0.6
-"""Ramp and lag are over by then [A]."""
+"""Time after which ramp and lag are over, s [A]."""
 BUMP_SHARE = 0.3
-"""A speed within this share of its target follows [A]."""
+"""Greatest deviation of a following speed, as a share of its target [A]."""
 SILENT_S = 1.0
-"""The cell is read with every tick: one that gives no valid reading for this long will not [A]."""
+"""Longest time without a valid reading of the cell, s [A]: it is read in every tick."""
 
 
 class TrackUnloaded:
-    """Asks the cell for a valid reading, and from then on watches that it goes on giving them without a force."""
+    """Waits for a valid reading of the cell, then watches that its readings stay valid and without force."""
 
     def __init__(self, devices: TrackDevices, rig: TrackConfig) -> None:
-        """Nothing moves: homing raises the arm."""
+        """Move nothing: homing raises the arm."""
         self.devices, self.rig = devices, rig
         self.failure = ""
         self.since_s = nan
         self.done = False
         self.raised = False
-        """The arm is raised: no force may be on the cell from now on."""
+        """The arm is raised: from now on the cell must show no force."""
 
     def step(self, now: float) -> None:
         """Advance by one scan at ``now`` s."""
@@ -43,7 +43,7 @@ class TrackUnloaded:
             self.failure = f"the load cell gave no valid reading for {SILENT_S:g} s"
 
     def trouble(self, now: float) -> str:
-        """Return "" or why the rig is not known to be unloaded."""
+        """Return "", or why the rig is not known to be unloaded."""
         cell = self.devices.cell
         if self.done and not (cell.valid and now - cell.stamp_s <= SILENT_S):
             return "load cell silent: nobody sees whether the specimen touches"
@@ -62,12 +62,12 @@ class TrackUnloaded:
 
 
 class TrackProof(WatchdogProof):
-    """The track creeps, its speed is looked at, and every drive stops without our heartbeat."""
+    """Proves that the track follows at creep speed, and that every drive stops without our heartbeat."""
 
     unloaded = ("no force on the load cell",)
 
     def __init__(self, devices: TrackDevices, rig: TrackConfig) -> None:
-        """Nothing moves before the first ``step``."""
+        """Move nothing before the first ``step``."""
         arming = rig.arming
         super().__init__(devices, follow=arming.bump_test, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)
         self.track, self.places = devices.track, rig.linear
@@ -77,7 +77,7 @@ class TrackProof(WatchdogProof):
         self.middle = 0.5 * (rig.limits.travel_low_mm + rig.limits.travel_high_mm)
 
     def step(self, now: float) -> None:
-        """Advance by one scan; the speed of a track that tells its place is taken from one scan to the next."""
+        """Advance by one scan; with position feedback the speed is taken from one scan to the next."""
         track = self.track
         if not self.places:
             self.speed = track.actual
@@ -91,15 +91,15 @@ class TrackProof(WatchdogProof):
         self.track.target = 0.0
 
     def still(self) -> bool:
-        """Tell whether the track stands."""
+        """Return whether the track is at rest."""
         return abs(self.speed) < 0.1 * self.creep
 
     def begin(self, now: float) -> None:
-        """Let the track creep, away from the nearer end of its travel."""
+        """Start creeping, away from the nearer end of the travel."""
         self.track.target = self.creep if not self.places or self.track.actual < self.middle else -self.creep
 
     def move(self, now: float, elapsed: float) -> bool:
-        """See that it follows."""
+        """Check that the track follows."""
         if elapsed < BUMP_S:
             return False
         if self.follow and not abs(self.speed - self.track.target) <= BUMP_SHARE * self.creep:
@@ -109,20 +109,20 @@ class TrackProof(WatchdogProof):
 
 
 class TrackArming(Arming[TrackDevices, TrackConfig]):
-    """Watches the cell, homes the arm upwards, lets the track creep. The chamber stays in standby."""
+    """Watches the cell, homes the arm upwards, then creeps. The chamber stays in standby."""
 
     def __init__(self, devices: TrackDevices, rig: TrackConfig) -> None:
-        """Nothing is sent."""
+        """Send nothing."""
         super().__init__(devices, rig)
         self._lifting: TrackUnloaded | None = None
 
     def lift(self) -> TrackUnloaded:
-        """Ask the load cell."""
+        """Begin to watch the load cell."""
         self._lifting = TrackUnloaded(self.devices, self.rig)
         return self._lifting
 
     def prove(self) -> TrackProof:
-        """Let the track creep: the arm is raised."""
+        """Begin the proof of the drives: the arm is raised."""
         if self._lifting is not None:
             self._lifting.raised = True
         return TrackProof(self.devices, self.rig)

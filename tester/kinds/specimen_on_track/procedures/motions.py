@@ -11,7 +11,7 @@ from tester.machine.motions import Ask, Move, Power, Sequence, ZeroOfCell
 TARE_S: Final = 1.0
 """Averaging time of the cell's zero, s [A]."""
 NEAR_MM: Final = 0.5
-"""A track that was sent to a place is there within this, mm [A]."""
+"""Greatest distance of a track that has arrived from its place, mm [A]."""
 
 
 class ComeToStand(Move):
@@ -21,19 +21,19 @@ class ComeToStand(Move):
     name = "stopping the track"
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when it is seen to stand."""
+        """Done when its speed is that of standstill."""
         ctx.demand.track_m_s = 0.0
         ctx.moving = True
         return abs(ctx.readings.track_now_m_s) <= still_m_s(ctx)
 
 
 def still_m_s(ctx: TrackContext) -> float:
-    """Return the speed below which the track stands, m/s."""
+    """Return the speed below which the track counts as standing, m/s."""
     return ctx.rig.interlocks.standing_share * ctx.rig.axes.track.max_speed * ctx.rig.metres
 
 
 class GoTo(Move):
-    """Bring a linear track to a place in its travel, the arm raised."""
+    """Bring a linear track to a place in its travel, with the arm raised."""
 
     limit_s = 120.0  # [A]; 270 mm at 10 mm/s take 27 s
     name = "bringing the track to its place"
@@ -43,26 +43,26 @@ class GoTo(Move):
         self.place_mm = place_mm
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when it is there; Stand follows."""
+        """Done when it is there; ``ComeToStand`` follows."""
         far_mm = self.place_mm - ctx.readings.track_mm
         if abs(far_mm) <= NEAR_MM:
             ctx.demand.track_m_s = 0.0
             return True
         most = 0.5 * ctx.rig.limits.track_speed_m_s
-        speed = min(most, 1e-3 * abs(far_mm))  # the last millimetres ever slower
+        speed = min(most, 1e-3 * abs(far_mm))  # slower over the last millimetres
         ctx.demand.track_m_s = speed if far_mm > 0.0 else -speed
         ctx.moving = True
         return False
 
 
 class MoveArm(Move):
-    """Lower or raise the arm: by its drive, or by a person who is asked to."""
+    """Lower or raise the arm by its drive."""
 
     limit_s = 20.0  # [A]; 1.2 s by the drive
     name = "moving the arm"
 
     def __init__(self, *, lowered: bool) -> None:
-        """``lowered``: where it is to be."""
+        """``lowered``: the wanted place."""
         self.lowered = lowered
 
     def step(self, ctx: TrackContext) -> bool:
@@ -86,16 +86,16 @@ class WithoutPower(Move):
 
 
 class AskBesideTrack:
-    """Put a question that asks a person to come near: track standing, drives off; an arm with a drive is raised."""
+    """Ask a person to come near: with the track at rest and the drives off, an arm with a drive raised first."""
 
     def __init__(self, text: str) -> None:
-        """The question as a person reads it."""
+        """``text``: the question."""
         self.text = text
         self.moves: Sequence | None = None
         self.ask: Ask | None = None
 
     def resume(self, ctx: TrackContext) -> None:
-        """Come to a stand again."""
+        """Come to standstill again."""
         if self.ask is None:
             self.moves = None
 
@@ -121,12 +121,12 @@ class ArmByHand(AskBesideTrack):
     """Ask a person to raise or lower an arm that has no drive."""
 
     def __init__(self, *, lowered: bool) -> None:
-        """``lowered``: where it is to be."""
+        """``lowered``: the wanted place."""
         super().__init__(f"{'lower' if lowered else 'raise'} the arm")
         self.lowered = lowered
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when a person says so."""
+        """Done when a person has done it."""
         if ctx.readings.lowered if self.lowered else ctx.readings.raised:
             ctx.demand.lowered = self.lowered
             return True
@@ -143,14 +143,14 @@ class ArmByHand(AskBesideTrack):
 
 
 def arm(ctx: TrackContext, *, lowered: bool) -> tuple[MoveArm, ...] | tuple[ArmByHand, Power]:
-    """Return the moves that bring the arm where it is to be, with the drives on at the end."""
+    """Return the moves that bring the arm to its wanted place and leave the drives on."""
     if ctx.rig.axes.lift is not None:
         return (MoveArm(lowered=lowered),)
     return ArmByHand(lowered=lowered), Power(True)
 
 
 class TakeTrackTare(ZeroOfCell):
-    """Average the cell with the arm raised and make that its zero; ``failed``: why it is not to be trusted."""
+    """Average the cell with the arm raised and make that its zero; ``failed``: why it is not trustworthy."""
 
     def __init__(self, kind: str) -> None:
         """``kind``: "reference" for a specimen's first, else "repeat"."""

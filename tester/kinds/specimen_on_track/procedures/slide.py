@@ -1,10 +1,9 @@
 """One condition, the air at its temperature before each repeat; and one repeat: tare with the arm raised, lower, slide
 until stationary for a stated way, there and back, raise.
 
-On a linear track the way is gone in both directions, which takes a zero of the cell that has moved out of the mean; the
-track turns back before the end of its travel. On a disc it is gone one way. The way counts in stretches of it: friction
-that differs by less than ``gates.stationary`` from stretch to stretch, three times, is stationary, and from there on
-samples count.
+A linear track slides forward and back, so that a zero of the cell that has moved cancels in the mean; it turns back
+before the end of its travel. A disc slides one way. The way is counted in stretches. Friction is stationary, and
+samples count, once its means of three stretches in a row differ by less than ``gates.stationary``.
 """
 
 from __future__ import annotations
@@ -26,19 +25,19 @@ from tester.machine.motions import Power, Sequence, Settle
 from tester.machine.result_keeping import StoredResults
 
 ALIKE: Final = 2
-"""Differences in a row, of three stretches, that have to be small."""
+"""Small differences in a row, of three stretches, that make friction stationary."""
 LONGEST: Final = 60
-"""Stretches one way in which friction has not come to a stand: the rest is collected as it is [A]."""
+"""Stretches after which friction is collected although it is not stationary [A]."""
 MOST_WAYS: Final = 8
-"""Ways there and back that a repeat takes at most [A]."""
+"""Most ways, forward and back, of a repeat [A]."""
 STOP_MM: Final = 5.0
-"""The track turns back this far before its soft end, mm [A]: its ramp from 10 mm/s takes 2.5 mm, two scans 1 mm."""
+"""Distance before its soft end at which the track turns back, mm [A]: its ramp takes 2.5 mm, two scans 1 mm."""
 BLIND: Final = 5.0
-"""Nothing has counted for so many stretches' time: the repeat ends incomplete [A]."""
+"""Time without a counted block, in stretches, after which a repeat ends incomplete [A]."""
 
 
 class SlidePhase(Enum):
-    """Where a repeat is."""
+    """Phase of a repeat."""
 
     TARE = "tare"
     LOWER = "lower"
@@ -48,22 +47,22 @@ class SlidePhase(Enum):
 
 
 class Stationary:
-    """Tells when the mean friction of consecutive stretches of one way stands still."""
+    """Finds when the mean friction of consecutive stretches of one way is stationary."""
 
     def __init__(self, percent: float) -> None:
-        """``percent``: what they may differ by."""
+        """``percent``: their greatest difference."""
         self.share = 0.01 * percent
         self.begin(nan)
 
     def begin(self, stretch: float) -> None:
-        """Begin a way at this count of stretches."""
+        """Begin a way at this count of stretches (NaN: at the first reading)."""
         self.origin = stretch
         self.number = 0
         self.total = self.before = 0.0
         self.count = self.alike = 0
 
     def add(self, stretch: float, friction_n: float) -> bool:
-        """Take in a reading; tell whether friction stands still."""
+        """Take in a reading; return whether friction is stationary."""
         number = int(abs(stretch - self.origin))
         if number > self.number:
             mean = self.total / self.count if self.count else nan
@@ -83,7 +82,7 @@ class MeasureTrackRepeat:
     holdable_band_k = nan
 
     def __init__(self, step: TrackCondition, ctx: TrackContext, tare_kind: str) -> None:
-        """``tare_kind``: how the zero is recorded."""
+        """``tare_kind``: kind of the zero in the record."""
         self.condition = step
         held = held_by(step.setpoint)
         self.speed_m_s = held.track_m_s
@@ -96,7 +95,7 @@ class MeasureTrackRepeat:
         self.both = ctx.rig.linear
         wanted = REPEAT_WINDOWS * STRETCHES
         self.a_way = ceil(wanted / 2.0) if self.both else ceil(wanted)
-        """Stretches that are to count one way."""
+        """Stretches to count one way."""
         self.tare = TakeTrackTare(tare_kind)
         self.phase = SlidePhase.TARE
         self.moves = self._tare(ctx)
@@ -109,7 +108,7 @@ class MeasureTrackRepeat:
         self.detail = ""
 
     def step(self, ctx: TrackContext) -> bool:
-        """Advance by one scan; done when raised with ``ending`` set."""
+        """Advance by one scan; done when the arm is raised and ``ending`` is set."""
         progress = ctx.progress
         progress.phase, progress.burst = self.phase.value, self.way
         progress.revolutions = float(len(self.counter.blocks))
@@ -119,7 +118,7 @@ class MeasureTrackRepeat:
             return self._next(ctx)
         return False
 
-    # -- what comes when --------------------------------------------------------------------------------------
+    # -- the phases -------------------------------------------------------------------------------------------
 
     def _tare(self, ctx: TrackContext) -> Sequence:
         going: list[Activity[TrackContext]] = []
@@ -131,7 +130,7 @@ class MeasureTrackRepeat:
         return Sequence(*arm(ctx, lowered=False), Power(True), ComeToStand(), *going, Settle(0.3), self.tare)
 
     def _next(self, ctx: TrackContext) -> bool:
-        """Go on to the next phase; tell whether there is none."""
+        """Begin the next phase; return whether there is none."""
         if self.phase is SlidePhase.TARE:
             if self.tare.failed:
                 self._end(ctx, Ending.ZERO_DRIFT, self.tare.failed)
@@ -148,7 +147,7 @@ class MeasureTrackRepeat:
         return False
 
     def _go(self, ctx: TrackContext) -> None:
-        """Begin to go a way: forward, then back, and so on."""
+        """Begin a way: forward, then back, in turns."""
         self.way += 1
         ctx.burst = self.way
         speed = self.speed_m_s if self.way % 2 or not self.both else -self.speed_m_s
@@ -194,7 +193,7 @@ class MeasureTrackRepeat:
         self.counted_s = ctx.now
 
     def _at_end(self, ctx: TrackContext, place_mm: float) -> bool:
-        """Tell whether the track has to turn back, before the end of its travel."""
+        """Return whether the track must turn back before the end of its travel."""
         limits = ctx.rig.limits
         if self.target.track_m_s > 0.0:
             return place_mm >= limits.travel_high_mm - STOP_MM
@@ -212,12 +211,12 @@ class MeasureTrackCondition(MeasureCondition[TrackContext, TrackCondition, Measu
     """State object of one condition."""
 
     def __init__(self, step: TrackCondition, results: StoredResults[TrackContext]) -> None:
-        """``results``: where repeats go."""
+        """``results`` takes the repeats."""
         super().__init__(step, results)
         self.waits_since_s = inf
 
     def ready(self, ctx: TrackContext) -> bool:
-        """Return whether the air is at the condition's temperature; end the condition where it does not get there."""
+        """Return whether the air is at the condition's temperature; end the condition if it does not get there."""
         step, r = self.condition, ctx.readings
         wanted_c = held_by(step.setpoint).temperature_c
         if ctx.rig.chamber:

@@ -1,4 +1,4 @@
-"""Which activity serves which step of a plan: a specimen put on, weights and interface, the air, conditions."""
+"""The activities of a plan's steps: mount a specimen, change weights and interface, temper the air, measure."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tester.machine.result_keeping import StoredResults
 from tester.store.records import PieceInfo
 
 SHOW_S: Final = 1.0
-"""How often people are told how far a wait has come, s."""
+"""Period at which the progress of a wait is shown, s."""
 
 
 class InstallSpecimen(AskBesideTrack):
@@ -33,7 +33,7 @@ class InstallSpecimen(AskBesideTrack):
         super().__init__(text)
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when it is on."""
+        """Done when it is mounted."""
         ctx.demand.tared = False
         if not super().step(ctx):
             return False
@@ -52,7 +52,7 @@ class InstallSpecimen(AskBesideTrack):
 
 
 class PrepareTrack(AskBesideTrack):
-    """Ask a person for other weights or another interface, where they are other ones."""
+    """Ask a person to change weights or interface."""
 
     def __init__(self, step: Prepare) -> None:
         """The step of the plan."""
@@ -60,7 +60,7 @@ class PrepareTrack(AskBesideTrack):
         self.prepare = step
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when both are as they are to be."""
+        """Done when both are prepared."""
         if not super().step(ctx):
             return False
         one = self.prepare
@@ -71,7 +71,7 @@ class PrepareTrack(AskBesideTrack):
 
 
 class TemperAir:
-    """Bring the air to a temperature and let the specimen follow; where it is not reached the conditions say so."""
+    """Bring the air to a temperature and let the specimen follow. Conditions that need it report one not reached."""
 
     def __init__(self, step: Temper) -> None:
         """The step of the plan."""
@@ -80,7 +80,7 @@ class TemperAir:
         self.since_s = float("inf")
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when the air has been near for long enough, or has not come near in time."""
+        """Done when the air has been near long enough, or has not come near in time."""
         step, r = self.temper, ctx.readings
         ctx.demand.chamber_c = step.temperature_c if ctx.rig.chamber else float("nan")
         if self.began_s == float("-inf"):
@@ -101,19 +101,19 @@ class TrackProcedures(Procedures[TrackContext]):
         self.results = results
 
     def title(self, step: Step) -> str:
-        """Return a line that says what a step does."""
+        """Return a description of a step, in a line."""
         return title(step)
 
     def resumed(self, ctx: TrackContext) -> None:
-        """Stand, with the arm raised."""
+        """Resume at rest, with the arm raised."""
         ctx.demand.track_m_s, ctx.demand.lowered = 0.0, False
 
     def measuring(self, activity: Activity[TrackContext]) -> bool:
-        """Tell whether a condition makes its repeats."""
+        """Return whether a condition is measuring a repeat."""
         return isinstance(activity, MeasureTrackCondition) and activity.measuring is not None
 
     def activity(self, step: Step, to_come: Steps[Step], ctx: TrackContext) -> Activity[TrackContext]:
-        """Return what serves a step."""
+        """Return the activity of a step."""
         match step:
             case MountSpecimen():
                 return InstallSpecimen(step)
@@ -131,14 +131,14 @@ class TrackProcedures(Procedures[TrackContext]):
     def after(
         self, activity: Activity[TrackContext], to_come: Steps[Step], ctx: TrackContext
     ) -> Unforeseen[TrackContext] | None:
-        """End the run where the cell's zero is not to be trusted."""
+        """End the run if the cell's zero is not trustworthy."""
         if isinstance(activity, MeasureTrackCondition) and activity.failed:
             return Unforeseen(failed=activity.failed)
         return None
 
 
 def title(step: Step) -> str:
-    """Return a line that says what a step does."""
+    """Return a description of a step, in a line."""
     match step:
         case MountSpecimen():
             return f"install specimen {step.piece} ({step.compound})"

@@ -1,4 +1,4 @@
-"""How long steps take on a specimen on a track, and how warm friction gets."""
+"""Durations of the steps of a specimen on a track, and the heat of friction."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prep
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 PERSON_S: Final = 300.0
-"""A person does what a prompt asks [A]; nobody waits on a simulated rig."""
+"""Time of a person for a prompt, s [A]; none on a simulated rig."""
 REPEAT_S: Final = 5.0
-"""Tare, lowering, swinging out, raising, as simulated runs show [A]."""
+"""Time for tare, lowering, settling and raising, s, from simulated runs [A]."""
 SETTLES: Final = {"linear": 1.7, "disc": 0.35}
-"""Windows that go by until friction is stationary, on a linear track there and back, as simulated runs show [A]."""
+"""Windows until friction is stationary, on a linear track forward and back, from simulated runs [A]."""
 CHAMBER_K_S: Final = 0.045
-"""The chamber goes from one temperature to another this fast [A]."""
+"""Rate of the chamber from one temperature to another, K/s [A]."""
 LIKELY_MU: Final = 1.0
-"""Where no law is known [A]."""
+"""Coefficient without a known law [A]."""
 
 
 class TrackEstimator(Estimator):
@@ -45,7 +45,7 @@ class TrackEstimator(Estimator):
     ) -> None:
         """``repeatability``: standard deviation between repeats, per cent of the coefficient, by compound.
 
-        ``surface`` and ``recipe``: the track's name, and beside which file materials are looked for first.
+        ``surface``: name of the track's covering; ``recipe``: the file beside which materials are looked up first.
         """
         super().__init__(repeatability)
         self.rig = rig
@@ -54,18 +54,18 @@ class TrackEstimator(Estimator):
         self._laws: dict[tuple[str, str, str], FrictionLaw] = {}
 
     def mu(self, setpoint: Setpoint) -> float:
-        """Return the coefficient expected at a setpoint."""
+        """Return the expected coefficient at a setpoint."""
         return self.mu_of(setpoint.compound, held_by(setpoint))
 
     def mu_of(self, compound: str, held: TrackHeld) -> float:
-        """Return the coefficient that is expected, by the simulated rig's law where there is one."""
+        """Return the expected coefficient, by the simulated rig's law if it has one."""
         try:
             return self.law(compound, held.interface).mu(held.temperature_c, held.load_n, held.track_m_s)
         except (ValueError, InvalidSource):
             return LIKELY_MU
 
     def law(self, compound: str, interface: str) -> FrictionLaw:
-        """Return the simulated rig's law of a rubber. Raises ValueError, InvalidSource where it has none."""
+        """Return the simulated rig's law of a rubber; raises ValueError or InvalidSource if it has none."""
         key = compound, interface, self.surface
         if key not in self._laws:
             sim = self.rig.sim
@@ -75,7 +75,7 @@ class TrackEstimator(Estimator):
         return self._laws[key]
 
     def rise_k(self, compound: str, held: TrackHeld) -> float:
-        """Return by how much friction warms the contact in the end, K."""
+        """Return the final warming of the contact by friction, K."""
         return self.rig.heat.rise * self.mu_of(compound, held) * held.load_n * held.track_m_s
 
     def walk(self, plan: Plan) -> Sequence[StepEstimate]:

@@ -26,9 +26,9 @@ LOW: Final = 0.9
 def out_of_reach(
     rig: TrackConfig, temperatures_c: Sequence[float], within_k: float, at: Location, tree: Tree
 ) -> Iterator[Problem]:
-    """Yield temperatures that the air of a room cannot have, on a rig that nothing heats or cools.
+    """Yield temperatures that a rig without a chamber cannot reach in the air of its room.
 
-    ``within_k``: how near the air has to come before a condition begins (soak.within).
+    ``within_k``: greatest distance of the air from a condition's temperature (soak.within).
     """
     if rig.chamber:
         return
@@ -45,9 +45,9 @@ def out_of_reach(
 
 
 def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
-    """Yield the conditions of each compound whose expected friction counts as a lost contact, the lowest told."""
+    """Yield, for each compound, the conditions whose expected friction counts as a lost contact, naming the lowest."""
     if not rig.simulated:
-        return  # nobody knows the friction that is to be measured
+        return  # the friction of a real specimen is unknown
     surface = recipe.abrasive.name if recipe.abrasive is not None else ""
     estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
     lost = rig.interlocks.lost_share
@@ -69,24 +69,24 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
 
 
 def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
-    """Yield every compound of which the law cannot be made on the recipe's surface."""
+    """Yield every compound for which the simulated law cannot be made on the recipe's surface."""
     sim = rig.sim
     surface = recipe.abrasive.name if recipe.abrasive is not None else ""
     setting = law_setting(surface, Path(tree.name)) if sim.of_materials else NO_SETTING
-    told: set[str] = set()
+    checked: set[str] = set()
     for number, specimen in enumerate(recipe.specimens):
-        if specimen.compound in told:
+        if specimen.compound in checked:
             continue
-        told.add(specimen.compound)
+        checked.add(specimen.compound)
         try:
             sim.known_everywhere(specimen.compound, setting)
         except OutsideError as error:
-            said = f"{error}; a simulated track slides from standstill on (expected moduli with beyond: hold)"
+            fault = f"{error}; a simulated track slides from standstill on (expected moduli with beyond: hold)"
         except InvalidSource as error:
             yield from error.problems
             continue
         except ValueError as error:
-            said = str(error)
+            fault = str(error)
         else:
             continue
-        yield tree.problem(("specimens", number, "compound"), f"compound: sim.law {sim.law}: {said}")
+        yield tree.problem(("specimens", number, "compound"), f"compound: sim.law {sim.law}: {fault}")

@@ -1,4 +1,4 @@
-"""What this machine says about recipes (``tester.inputs.recipe.recipe_part``)."""
+"""This machine's part of the recipe reader (``tester.inputs.recipe.recipe_part``)."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from tester.kinds.specimen_on_track.recipe.schema import (
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 UNUSED: Final = ("window", "extend_to")
-"""Keys of the common sections that say nothing here: a condition slides for a ``distance``."""
+"""Keys of the common sections without effect here: a condition slides for a ``distance``."""
 
 
 class TrackPart(SpecimenPart):
@@ -52,11 +52,11 @@ class TrackPart(SpecimenPart):
     begins: ClassVar[str] = "measure: {repeats: REPEATS, distance: 0.5 mm, at_least: 5 s}"
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> Settings:
-        """Return how the conditions of a grid are measured."""
+        """Return the settings of a grid's conditions."""
         return track_settings(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-        """Yield what says nothing on this machine."""
+        """Yield also the keys without effect on this machine."""
         yield from super().whole(recipe, tree)
         top = tree.data if isinstance(tree.data, dict) else {}
         grids = top.get("grids")
@@ -69,11 +69,11 @@ class TrackPart(SpecimenPart):
                     yield tree.problem((*at, key), f"{key}: this machine slides for a way (expected distance)")
 
     def terms(self, rig: Rig) -> tuple[Term, ...]:
-        """Return what the measuring chain may be off by."""
+        """Return the possible errors of the measuring chain."""
         return TERMS
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield what the rig cannot do, and where friction would heat the contact of a tempered specimen."""
+        """Yield values that the rig cannot reach, and speeds at which friction would heat a tempered contact."""
         own = TrackConfig.of(rig)
         measure = recipe.measure
         if own.simulated:
@@ -89,7 +89,7 @@ class TrackPart(SpecimenPart):
             yield from self._heat(own, recipe, measure, grid, at, tree)
 
     def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield conditions at which the contact is expected to count as lost."""
+        """Yield conditions at which the contact is expected to count as lost, because friction is low."""
         yield from low_friction(TrackConfig.of(rig), recipe, tree)
 
     def _heat(
@@ -97,7 +97,7 @@ class TrackPart(SpecimenPart):
     ) -> Iterator[Problem]:
         """Yield the least speed of a grid at which friction would warm a tempered contact beyond its band."""
         if not rig.chamber:
-            return  # a contact in the room's air warms as it does: the plan says by how much
+            return  # nothing tempers a contact in the room's air: the plan shows by how much it warms
         surface = recipe.abrasive.name if recipe.abrasive is not None else ""
         estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
         band_k = track_settings(measure, grid).temperature_band_k
@@ -118,7 +118,7 @@ class TrackPart(SpecimenPart):
             )
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> TrackEstimator:
-        """Return what tells how long steps take on a rig."""
+        """Return the estimator of durations on a rig."""
         return TrackEstimator(TrackConfig.of(rig), repeatability)
 
     def before_block(self, index: int, value: float, settings: Settings) -> tuple[Temper]:
@@ -137,7 +137,7 @@ class TrackPart(SpecimenPart):
         return {"distance_m": settings.way_m(held_by(setpoint).track_m_s)}
 
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
-        """Return the plan of what is left: conditions that are not over, and what has to be done again before them."""
+        """Return the plan of the rest: conditions that are not over, and the steps to repeat before them."""
         mounted_before = {mounted.number: mounted for mounted in stand.mounted}
         steps: list[Step] = []
         due: dict[str, Step] = {}
@@ -159,7 +159,7 @@ class TrackPart(SpecimenPart):
         return replace(plan, steps=tuple(steps))
 
     def words(self, step: Step, one: StepEstimate) -> str:
-        """Return what a step does, in a line."""
+        """Return the work of a step, as a line."""
         match step:
             case MountSpecimen():
                 return f"put specimen {step.piece} on the arm"
@@ -168,24 +168,24 @@ class TrackPart(SpecimenPart):
             case Temper():
                 return f"temper to {step.temperature_c:g} degC, {rough_duration(step.for_s)} within {step.within_k:g} K"
             case TrackCondition():
-                told = condition_words(step.setpoint, compound=False)
+                words = condition_words(step.setpoint, compound=False)
                 rise_k = one.peak_c - held_by(step.setpoint).temperature_c
                 warm = "" if one.held else f", friction warms it by {rise_k:.0f} K"
-                return f"{step.condition:>4}  {told}  {step.repeats_words} x {1e3 * step.distance_m:g} mm{warm}"
+                return f"{step.condition:>4}  {words}  {step.repeats_words} x {1e3 * step.distance_m:g} mm{warm}"
             case PromptStep():
                 return f"ask: {step.text}"
             case _:
                 return step.kind
 
     def heading(self, plan: Plan, step: Step) -> str:
-        """Return what specimen begins with a step."""
+        """Return the specimen that begins with a step; "" for none."""
         if not isinstance(step, MountSpecimen):
             return ""
         note = f" ({step.note})" if step.note else ""
         return f"specimen {step.piece}: {step.compound}{note}"
 
     def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
-        """Yield where friction heat matters."""
+        """Yield the peak temperature, and the conditions that friction warms beyond their band."""
         if math.isfinite(estimate.peak_c):
             yield f"peak temperature  {estimate.peak_c:.0f} degC at the contact"
         if estimate.not_held:
@@ -193,7 +193,7 @@ class TrackPart(SpecimenPart):
             yield f"friction warms the contact beyond its band: conditions {listed}"
 
     def step_fields(self, step: Step, one: StepEstimate) -> dict[str, object]:
-        """Return what a plan's JSON says of a step that is no condition."""
+        """Return the fields of a step other than a condition in a plan's JSON."""
         match step:
             case MountSpecimen():
                 return {"specimen": step.specimen, "replicate": step.replicate, "number": step.piece,
@@ -215,7 +215,7 @@ def _prepared(setpoint: Setpoint) -> tuple[float, str]:
 
 
 def _prepare(index: int, before: tuple[float, str] | None, now: tuple[float, str]) -> Prepare:
-    """Return the step that asks for what is other than before."""
+    """Return the step that asks for the changes since ``before``; None: for everything."""
     load_n, interface = now
     asked = [f"hang {load_n:g} N of weights on the arm"] if before is None or before[0] != load_n else []
     asked += [f"make the track {_MADE[interface]}"] if before is None or before[1] != interface else []
@@ -226,23 +226,23 @@ _MADE: Final = {"dry": "clean and dry", "wet": "wet", "talc": "white with talc"}
 
 
 def _limits(rig: TrackConfig, values: Mapping[str, tuple[float, ...]], at: Location, tree: Tree) -> Iterator[Problem]:
-    """Yield what is beyond the rig's limits, with the source of each."""
+    """Yield values beyond the rig's limits, with the source of each limit."""
     limits, of = rig.limits, f'of rig "{rig.name}"'
     for index, speed in enumerate(values["track_speed"]):
         if not limits.slowest_m_s <= speed <= limits.track_speed_m_s:
             bounds = f"{show(limits.slowest_m_s, 'm/s')} to {show(limits.track_speed_m_s, 'm/s')}"
-            said = f"track_speed: {show(speed, 'm/s')} is beyond what the track does"
-            yield tree.problem((*at, "track_speed", index), f"{said} (limits.slowest and track_speed {of}: {bounds})")
+            fault = f"track_speed: {show(speed, 'm/s')} is beyond what the track does"
+            yield tree.problem((*at, "track_speed", index), f"{fault} (limits.slowest and track_speed {of}: {bounds})")
     for index, load in enumerate(values["load"]):
         if load not in rig.weights:
             listed = ", ".join(f"{one:g} N" for one in rig.weights)
-            said = f"load: no weights make {show(load, 'N')}"
-            yield tree.problem((*at, "load", index), f"{said} (weights {of}: {listed})")
+            fault = f"load: no weights make {show(load, 'N')}"
+            yield tree.problem((*at, "load", index), f"{fault} (weights {of}: {listed})")
     for index, air_c in enumerate(values["temperature"]):
         if not limits.air_low_c <= air_c <= limits.air_high_c:
             bounds = f"{limits.air_low_c:g} to {limits.air_high_c:g} degC"
-            said = f"temperature: {show(air_c, 'degC')} is beyond the air's range"
-            yield tree.problem((*at, "temperature", index), f"{said} (limits.air_low and air_high {of}: {bounds})")
+            fault = f"temperature: {show(air_c, 'degC')} is beyond the air's range"
+            yield tree.problem((*at, "temperature", index), f"{fault} (limits.air_low and air_high {of}: {bounds})")
 
 
 PART: Final = TrackPart()
