@@ -12,7 +12,7 @@ from pathlib import Path
 from tester.inputs.rig.ceilings import ceiling_table
 from tester.kinds import PACKAGED, find
 from tester.kinds.kind import Kind
-from tester.machine.interlock_sheet import HEADER
+from tester.machine.interlock_table import HEADER
 
 ROOT = Path(__file__).resolve().parents[1]
 

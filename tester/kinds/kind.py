@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig
     from tester.machine.commission.commission_step import CommissionPart
-    from tester.machine.interlock_sheet import InterlockSheet
+    from tester.machine.interlock_table import InterlockSheet
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
     from tester.results.run_results import RingPart

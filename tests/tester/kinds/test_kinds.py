@@ -20,7 +20,7 @@ from tester.kinds import (
     packaged_text,
 )
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.interlock_sheet import InterlockSheet
+from tester.machine.interlock_table import InterlockSheet
 
 
 @pytest.mark.parametrize("name", PACKAGED)

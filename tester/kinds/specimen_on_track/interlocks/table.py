@@ -6,8 +6,7 @@ from typing import Final
 
 from tester.kinds.specimen_on_track.interlocks import chamber, force, motion, stops
 from tester.machine import wires
-from tester.machine.interlock_sheet import InterlockSheet
-from tester.machine.interlock_table import InterlockTable
+from tester.machine.interlock_table import InterlockSheet, InterlockTable
 
 TABLE: Final = InterlockTable(
     (

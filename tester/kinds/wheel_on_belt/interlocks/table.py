@@ -7,8 +7,7 @@ from typing import Any, Final
 from tester.inputs.rig.parameter import Parameter
 from tester.kinds.wheel_on_belt.interlocks import friction, hub, load, motion, operation, stops, surface, witness
 from tester.machine import wires
-from tester.machine.interlock_sheet import InterlockSheet
-from tester.machine.interlock_table import InterlockTable
+from tester.machine.interlock_table import InterlockSheet, InterlockTable
 from tester.machine.row import Interlock
 
 TABLE: Final = InterlockTable(

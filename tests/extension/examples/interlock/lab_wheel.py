@@ -11,8 +11,7 @@ from tester.kinds.wheel_on_belt.interlocks import operation
 from tester.kinds.wheel_on_belt.interlocks.inputs import Row
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.kinds.wheel_on_belt.rig.wheel_rig import RigConfig
-from tester.machine.interlock_sheet import SECTION, InterlockSheet
-from tester.machine.interlock_table import InterlockTable
+from tester.machine.interlock_table import SECTION, InterlockSheet, InterlockTable
 from tester.machine.row import ACK, CONTROLLED, Interlock
 from tester.machine.watches import at_most
 

@@ -12,7 +12,7 @@ from tester.inputs.rig.ceilings import Ceiling, ceilings_of
 from tester.inputs.rig.config import OwnDevice, section_of
 from tester.inputs.rig.parameter import SECTION, Parameter
 from tester.inputs.rig.plain_rig import PlainRig
-from tester.machine.interlock_sheet import InterlockSheet
+from tester.machine.interlock_table import InterlockSheet
 from tester.machine.plain.rows import ABOUT, PlainInputs, plain_table
 from tester.machine.row import FAST, LOADED, REPAIR, Interlock
 from tester.machine.watches import at_most
