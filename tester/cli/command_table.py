@@ -35,9 +35,9 @@ BUS = CommandGroup(
 RESULTS = CommandGroup(
     "Stored results: exclude, include, slip-ring.",
     {
-        "exclude": CommandEntry("exclude_command", "exclude", "Leave a repeat out of the means."),
-        "include": CommandEntry("exclude_command", "include", "Take an excluded repeat back into the means."),
-        "slip-ring": CommandEntry("slip_ring_command", "slip_ring", "Analyse the slip ring's errors."),
+        "exclude": CommandEntry("results_group", "exclude", "Leave a repeat out of the means."),
+        "include": CommandEntry("results_group", "include", "Take an excluded repeat back into the means."),
+        "slip-ring": CommandEntry("results_group", "slip_ring", "Analyse the slip ring's errors."),
     },
 )
 SECTIONS: Mapping[str, Mapping[str, Listed]] = {

@@ -9,7 +9,8 @@ import click
 
 from tester.base.axes import ListWords
 from tester.base.words import Json
-from tester.cli.options import command, json_option, results_named
+from tester.cli.options import command, json_option
+from tester.cli.stored_runs import results_named
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:

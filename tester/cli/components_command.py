@@ -10,7 +10,8 @@ import click
 
 from tester.base.axes import ListWords
 from tester.base.words import Json, coefficient, finite
-from tester.cli.options import command, json_option, results_named
+from tester.cli.options import command, json_option
+from tester.cli.stored_runs import results_named
 from tester.cli.text_table import dump, plain_lines, shown
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.cli.law_parts import OVERS, At, parts_chart
-from tester.cli.options import QuantityType, command, results_named, run_folder
+from tester.cli.options import QuantityType, command
+from tester.cli.stored_runs import results_named, run_folder
 from tester.cli.text_table import shown
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def _draw(figures: Sequence[Figure], names: Sequence[str], target: Path, ending:
 
 def figures_of(folder: Path, results: RunResults, law: str, published: bool) -> list[Figure]:
     """Return a run's figures."""
-    from tester.cli.kind_words import kind_of, material_of
+    from tester.cli.stored_runs import kind_of, material_of
     from tester.report.charts import charts_of, control_chart, repeats_chart
     from tester.report.overview import overview_chart
 

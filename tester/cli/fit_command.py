@@ -9,8 +9,8 @@ import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.base.words import Json
-from tester.cli.measured_sources import of_one_kind, print_left_out
 from tester.cli.options import command, json_option
+from tester.cli.stored_runs import of_one_kind, print_left_out
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
@@ -48,16 +48,9 @@ class Conditions(NamedTuple):
 @click.option("--check", is_flag=True, help="Hold the paper's own table against what has to come out.")
 @json_option
 def fit(
-    sources: Sequence[str],
-    validation: Sequence[str],
-    law_name: str | None,
-    holds: Sequence[str],
-    surface: str,
-    givens: Sequence[str],
-    force: bool,
-    check: bool,
-    as_json: bool,
-) -> int:
+    sources: Sequence[str], validation: Sequence[str], law_name: str | None, holds: Sequence[str], surface: str,
+    givens: Sequence[str], force: bool, check: bool, as_json: bool,
+) -> int:  # fmt: skip
     """Fit a law of friction to the conditions of SOURCES: runs, or the paper's appendix-a and appendix-b.
 
     All parameters at once, a compound at a time (on a track, an interface and a surface, too), at the measured

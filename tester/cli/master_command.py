@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
-from tester.cli.measured_sources import of_one_kind, print_left_out
-from tester.cli.options import QuantityType, command, json_option, run_folder
+from tester.cli.options import QuantityType, command, json_option
+from tester.cli.stored_runs import of_one_kind, print_left_out, run_folder
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:

@@ -15,8 +15,6 @@ from tester.base.units import UnitError, parse
 
 if TYPE_CHECKING:
     from tester.inputs.rig import Rig
-    from tester.kinds.kind import Kind
-    from tester.results.run_results import RunResults
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -154,32 +152,3 @@ def rig_options(function: Callable[..., Any]) -> Callable[..., Any]:
 def print_json(data: object) -> None:
     """Print data as one line of JSON, numbers in full precision; not-a-number is refused (ValueError)."""
     click.echo(json.dumps(data, ensure_ascii=False, allow_nan=False))
-
-
-def run_folder(name: str) -> Path:
-    """Return the folder of a run; a name that is none is a usage error."""
-    from tester.store.record_schema import StoreError
-    from tester.store.run_folders import find_run
-
-    try:
-        return find_run(name)
-    except StoreError as error:
-        raise click.UsageError(str(error)) from error
-
-
-def results_named(run: str) -> RunResults:
-    """Return a run's results; raises StoreError."""
-    from tester.results.run_results import results_of
-    from tester.store.run_reader import RunReader
-
-    with RunReader(run_folder(run)) as reader:
-        return results_of(reader)
-
-
-def kind_in(folder: Path) -> Kind:
-    """Return the kind of a run's rig; raises StoreError, UnknownKindError."""
-    from tester.kinds import find
-    from tester.store.run_reader import RunReader
-
-    with RunReader(folder) as reader:
-        return find(reader.run().info.kind)

@@ -50,19 +50,9 @@ from tester.inputs.rig.profiles import extension_law
 )
 @json_option
 def predict(
-    compound: str,
-    slip: float,
-    load: float,
-    temperature: float,
-    sideslip: float,
-    wheel_speed: float,
-    law: str,
-    surface: str,
-    area: float,
-    components: bool,
-    table: bool,
-    as_json: bool,
-) -> int:
+    compound: str, slip: float, load: float, temperature: float, sideslip: float, wheel_speed: float, law: str,
+    surface: str, area: float, components: bool, table: bool, as_json: bool,
+) -> int:  # fmt: skip
     """Print the friction coefficient that a law gives for one condition.
 
     The laws paper and v2 are the thermo-coupled model of Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY

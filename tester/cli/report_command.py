@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.cli.options import command, run_folder
+from tester.cli.options import command
+from tester.cli.stored_runs import kind_of, material_of, run_folder
 
 if TYPE_CHECKING:
     from tester.report.charts import Material
-    from tester.report.record_section import RunRecord
+    from tester.report.record_section import MachineWords, RunRecord
+    from tester.store.records import RunInfo
 
 
 @command()
@@ -30,7 +32,6 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     The file holds everything, fetches nothing and has no script. A browser prints it, on paper or as PDF. Several runs
     are held against each other. The file's name is printed.
     """
-    from tester.cli.kind_words import material_of
     from tester.report.page import page_of
     from tester.report.report_build import report_of
     from tester.results.run_files import write_file
@@ -49,10 +50,24 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
 
 def _record(folder: Path) -> RunRecord:
     """Return the data of a run for a report; raises StoreError."""
-    from tester.cli.kind_words import words_of
     from tester.report.record_section import read_record
     from tester.store.run_reader import RunReader
 
     with RunReader(folder) as reader:
         info = reader.run().info
-    return read_record(folder, words_of(info))
+    return read_record(folder, _words_of(info))
+
+
+def _words_of(info: RunInfo) -> MachineWords:
+    """Return a kind's words for itself, and the packaged rig file most like the run's, or the kind's first."""
+    from tester.kinds import load_rig, packaged_rigs, packaged_text
+    from tester.report.record_section import MachineWords
+
+    kind = kind_of(info)
+    if kind is None:
+        return MachineWords(info.kind, "")
+    ring = kind.ring() if kind.ring is not None else None
+    like = info.rig_source if info.rig_source in kind.rigs else next(iter(kind.rigs), "")
+    if like not in packaged_rigs():  # the assumptions of a laboratory's own kind are in its own files
+        return MachineWords(kind.title, kind.measurand, ring=ring)
+    return MachineWords(kind.title, kind.measurand, packaged_text(like), load_rig(like).text, ring)

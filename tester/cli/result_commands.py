@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.words import Json, duration, finite
-from tester.cli.options import command, json_option, run_folder
+from tester.cli.options import command, json_option
+from tester.cli.stored_runs import run_folder
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:

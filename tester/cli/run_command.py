@@ -17,12 +17,12 @@ from tester.cli.options import (
     operator_option,
     rig_options,
     risk_option,
-    run_folder,
     runs_option,
     seed_option,
     yes_option,
 )
 from tester.cli.recipe_commands import recipe_file
+from tester.cli.stored_runs import run_folder
 
 NOT_DETACHED = {
     "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",

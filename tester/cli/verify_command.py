@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
-from tester.cli.options import command, json_option, print_json, run_folder
+from tester.cli.options import command, json_option, print_json
+from tester.cli.stored_runs import run_folder
 
 if TYPE_CHECKING:
     from tester.results.verify import Verification

@@ -114,7 +114,7 @@ def test_a_run_on_a_track_has_its_master_curve_and_logarithmic_speeds(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from tester.cli.figure_command import figures_of
-    from tester.cli.options import results_named
+    from tester.cli.stored_runs import results_named
     from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 
     folder = made_track_run(home / "track")

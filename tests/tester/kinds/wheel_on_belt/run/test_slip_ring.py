@@ -12,7 +12,7 @@ from sim.faults.scene import Scene
 from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
 from sim.machines.wheel_on_belt.faults.heat import WornSector
 from tester.analysis.ring_errors import sector_of
-from tester.cli.slip_ring_command import slip_ring
+from tester.cli.results_group import slip_ring
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
 from tests.tester.kinds.wheel_on_belt.image.test_joined_cell import Unattended
