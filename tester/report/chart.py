@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 Look = Literal["measured", "published", "law", "left out", "limit"]
 """Style of a series: filled marks with bars; hollow marks; a line alone; crosses; a grey line alone."""
@@ -24,6 +25,25 @@ class Series:
     """Half the extent of each point along x, such as its duration."""
     names: tuple[str, ...] = ()
     """Label of each point, in words, for drawings with tooltips; without it, its place on the axes."""
+
+
+class Mark(NamedTuple):
+    """A point of a series: its place, its bar, its extent along x and its label, as in Series."""
+
+    x: float
+    y: float
+    bar: float | None = None
+    width: float | None = None
+    name: str = ""
+
+
+def series_of(label: str, marks: Iterable[Mark], look: Look, style: int) -> Series:
+    """Return the series of marks, all of which have a bar, a width or a name if the first does."""
+    x, y, bars, widths, names = zip(*marks, strict=True)
+    return Series(
+        label, x, y, look, style,
+        bars if bars[0] is not None else (), widths if widths[0] is not None else (), names if names[0] else (),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,10 @@ from itertools import permutations
 from math import isfinite
 
 from tester.analysis.reference import ControlChart, ControlPoint
+from tester.analysis.results import RepeatResult
 from tester.base.axes import Axis, AxisValue, Setpoint, condition_words, plain
 from tester.base.words import coefficient
-from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
+from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Look, Mark, Series, series_of
 from tester.report.layout import labelled, name_of
 from tester.results.columns import unit_of
 from tester.results.run_results import RunResults
@@ -210,12 +211,13 @@ def _fixed(values: Sequence[ChartValue], fixed: Mapping[str, AxisValue]) -> list
     return [value for value in values if all(value.held.axes[name].of(value.held) == at for name, at in fixed.items())]
 
 
-def _points(label: str, values: Sequence[ChartValue], along: Axis, look: str, style: int) -> Series:
+def _points(label: str, values: Sequence[ChartValue], along: Axis, look: Look, style: int) -> Series:
     ordered = sorted(values, key=lambda value: along.number(value.held))
-    x, y = tuple(along.number(value.held) for value in ordered), tuple(value.mu for value in ordered)
-    bars = tuple(value.u for value in ordered) if look == "measured" else ()
-    names = tuple(value.named if look == "measured" else f"as published: {value.named}" for value in ordered)
-    return Series(label, x, y, "measured" if look == "measured" else "published", style, bars, names=names)
+    if look == "measured":
+        marks = [Mark(along.number(value.held), value.mu, value.u, name=value.named) for value in ordered]
+    else:
+        marks = [Mark(along.number(v.held), v.mu, name=f"as published: {v.named}") for v in ordered]
+    return series_of(label, marks, look, style)
 
 
 def _curve(law: Law, values: Sequence[ChartValue], along: Axis, style: int) -> Series:
@@ -252,18 +254,12 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
 
 def repeats_chart(measured: Measured) -> Chart:
     """Return the repeats of a condition: each at its time, over its duration, with the scatter of its batch means."""
-    counted: list[int] = []
-    left_out: list[int] = []
-    for i, repeat in enumerate(measured.repeats):
-        if isfinite(repeat.result.mu_resultant):
-            (left_out if measured.exclusion(repeat) else counted).append(i)
+    finite = [repeat for repeat in measured.repeats if isfinite(repeat.result.mu_resultant)]
+    counted = [_window(repeat.result) for repeat in finite if not measured.exclusion(repeat)]
+    left_out = [_window(repeat.result) for repeat in finite if measured.exclusion(repeat)]
     series = [
-        _windows(label, [measured.repeats[i].result for i in places], look, style)
-        for label, places, look, style in (
-            ("in the mean", counted, "measured", 0),
-            ("left out", left_out, "left out", 1),
-        )
-        if places
+        *([series_of("in the mean", counted, "measured", 0)] if counted else []),
+        *([series_of("left out", left_out, "left out", 1)] if left_out else []),
     ]
     result = measured.result
     title = f"repeats of {condition_words(measured.info.setpoint)}"
@@ -274,23 +270,11 @@ def repeats_chart(measured: Measured) -> Chart:
                  (ChartPanel("", tuple(series)),), note, from_zero=False)  # fmt: skip
 
 
-def _windows(label: str, results: Sequence[object], look: str, style: int) -> Series:
-    from tester.analysis.results import RepeatResult
-
-    repeats = [result for result in results if isinstance(result, RepeatResult)]
-    begin, end = [result.started_s / 60.0 for result in repeats], [result.ended_s / 60.0 for result in repeats]
-    return Series(
-        label,
-        tuple(0.5 * (a + b) for a, b in zip(begin, end, strict=True)),
-        tuple(result.mu_resultant for result in repeats),
-        "measured" if look == "measured" else "left out",
-        style,
-        tuple(0.01 * result.fluctuation_percent * result.mu_resultant for result in repeats),
-        tuple(0.5 * (b - a) for a, b in zip(begin, end, strict=True)),
-    )
-
-
-LABEL = "friction coefficient"
+def _window(repeat: RepeatResult) -> Mark:
+    """Return a repeat at the middle of its duration, minutes, with the standard deviation of its batch means."""
+    begin, end = repeat.started_s / 60.0, repeat.ended_s / 60.0
+    spread = 0.01 * repeat.fluctuation_percent * repeat.mu_resultant
+    return Mark(0.5 * (begin + end), repeat.mu_resultant, spread, 0.5 * (end - begin))
 
 
 def control_chart(charts: Sequence[ControlChart]) -> Chart:
@@ -300,7 +284,7 @@ def control_chart(charts: Sequence[ControlChart]) -> Chart:
         "control",
         "reference condition in the order in which it was measured",
         "turn of the reference condition",
-        LABEL,
+        Y_LABEL,
         panels,
         "bars: expanded repeatability (95 %); dashed: limits about the first",
         from_zero=False,
@@ -309,27 +293,17 @@ def control_chart(charts: Sequence[ControlChart]) -> Chart:
 
 def _series(chart: ControlChart) -> tuple[Series, ...]:
     valued = [point for point in chart.points if isfinite(point.mu)]
-    inside = [point for point in valued if point.within]
-    outside = [point for point in valued if not point.within]
+    inside = [_turn(point) for point in valued if point.within]
+    outside = [_turn(point) for point in valued if not point.within]
     along = tuple(float(point.number) for point in chart.points)
     return (
-        *([_turn_points("in control", inside, 0)] if inside else []),
-        *([_turn_points("out of control", outside, 1)] if outside else []),
+        *([series_of("in control", inside, "measured", 0)] if inside else []),
+        *([series_of("out of control", outside, "left out", 1)] if outside else []),
         Series("limits", along, (chart.low,) * len(along), "limit", 1),
         Series("", along, (chart.high,) * len(along), "limit", 1),
     )
 
 
-def _turn_points(label: str, points: Sequence[ControlPoint], style: int) -> Series:
-    return Series(
-        label,
-        tuple(float(point.number) for point in points),
-        tuple(point.mu for point in points),
-        "left out" if style else "measured",
-        style,
-        tuple(point.expanded for point in points),
-        names=tuple(
-            f"turn {point.number}: {coefficient(point.mu)}\u00a0±\u00a0{coefficient(point.expanded)}"
-            for point in points
-        ),
-    )
+def _turn(point: ControlPoint) -> Mark:
+    value = f"{coefficient(point.mu)}\u00a0±\u00a0{coefficient(point.expanded)}"
+    return Mark(float(point.number), point.mu, point.expanded, name=f"turn {point.number}: {value}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from tester.analysis.results import NOT_TRUSTED, WITH_CARE, mark_of
 from tester.base.axes import condition_words
@@ -16,6 +16,7 @@ from tester.report.layout import (
     ReportTable,
     Tone,
     heads,
+    listed,
     rendered,
 )
 from tester.report.record_section import RunRecord
@@ -51,24 +52,17 @@ def conditions_section(record: RunRecord, key: str) -> ReportSection:
         ),
         rendered(shown, f"Conditions of {record.name}", COUNTS_NOTE, tone=tone_of),
     ]
-    advised, flags = [*_advice(results)], [*flag_lines(results)]
+    advised = [row.advise() for row in results.rows if not row.result.ok or row.result.doubts]
     parts += [Listing(advised, "care")] if advised else []
-    parts += [Paragraph("Flags:"), Listing(flags)] if flags else []
+    parts += listed("Flags:", flag_lines(results))
     again = [line for setting in results.settings for line in setting.lines(results.worn)]
     tone = "care" if any(setting.disagrees for setting in results.settings) else ""
-    parts += [Paragraph("Settings that were measured several times:"), Listing(again, tone)] if again else []
-    worn = [*results.wear_lines()]
-    parts += [Paragraph("Diameters that were checked, with the wear rate:"), Listing(worn)] if worn else []
+    parts += listed("Settings that were measured several times:", again, tone)
+    parts += listed("Diameters that were checked, with the wear rate:", results.wear_lines())
     return ReportSection(key, "Conditions", parts)
 
 
 COUNTS_NOTE = "valid: in the mean, of those asked for; s: standard deviation between them"
-
-
-def _advice(results: RunResults) -> Iterator[str]:
-    for row in results.rows:
-        if not row.result.ok or row.result.doubts:
-            yield row.advise()
 
 
 def short_table(results: RunResults) -> ReportTable:
@@ -121,27 +115,20 @@ def drift_section(record: RunRecord, key: str) -> ReportSection:
     out = record.left_out()
     if out:
         rows = [
-            ReportRow(
-                (
-                    f"{repeat.condition}/{repeat.repeat}",
-                    condition_words(condition.info.setpoint),
-                    decimal(repeat.result.mu_resultant, 3),
-                    reason,
-                )
-            )
+            ReportRow((f"{repeat.condition}/{repeat.repeat}", condition_words(condition.info.setpoint),
+                       decimal(repeat.result.mu_resultant, 3), reason))
             for condition, repeat, reason in out
-        ]
+        ]  # fmt: skip
         titles = heads("repeat", "condition", "mu as measured", "why it is in no mean", text=(0, 1, 3))
         parts.append(ReportTable("Repeats that are left out", titles, rows))
     else:
         parts.append(Paragraph("No repeat is left out: every one that was made is in its mean.", "good"))
-    if record.said:
-        lines = [
-            f"{condition.condition}/{condition.repeat} {'left out' if condition.excluded else 'taken in again'} by "
-            f"{condition.operator or 'an unnamed person'}, {condition.utc}: {condition.reason}"
-            for condition in record.said
-        ]
-        parts += [Paragraph("Decisions of people on single repeats:"), Listing(lines)]
+    lines = (
+        f"{word.condition}/{word.repeat} {'left out' if word.excluded else 'taken in again'} by "
+        f"{word.operator or 'an unnamed person'}, {word.utc}: {word.reason}"
+        for word in record.said
+    )
+    parts += listed("Decisions of people on single repeats:", lines)
     return ReportSection(key, "Drift, repeats, exclusions", parts)
 
 

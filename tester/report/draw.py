@@ -104,13 +104,13 @@ def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: di
         for place in flat[len(figure.panels) :]:
             place.set_axis_off()
         columns = 2 if stacked else across
-        canvas.suptitle(fill(_drawable(figure.title), TITLE_WIDTH * columns), fontsize=9.0)
+        canvas.suptitle(fill(drawable(figure.title), TITLE_WIDTH * columns), fontsize=9.0)
         if figure.note:
-            canvas.supxlabel(fill(_drawable(figure.note), NOTE_WIDTH * columns), fontsize=7.0, color="#404040")
+            canvas.supxlabel(fill(drawable(figure.note), NOTE_WIDTH * columns), fontsize=7.0, color="#404040")
         canvas.savefig(target, format=ending, dpi=dpi, metadata=NO_DATES[ending])
 
 
-def _drawable(text: str, longest: int = LONGEST) -> str:
+def drawable(text: str, longest: int = LONGEST) -> str:
     """Return text in drawable form: people's text may be long, and hold characters without a glyph."""
     plain = harmless(text).replace("\n", " ").replace("\t", " ")
     return plain if len(plain) <= longest else f"{plain[: longest - 1]}…"
@@ -147,7 +147,7 @@ def _draw_panel(panel: ChartPanel, place: Any, number: int) -> None:
         drawn = _draw_series(series, place, joined=panel.joined and not series.widths and series.style not in lined)
         drawn.set_gid(f"{MARKED}-{number}-{turn}")
     if panel.title:
-        place.set_title(fill(_drawable(panel.title), TITLE_WIDTH), fontsize=8.0)
+        place.set_title(fill(drawable(panel.title), TITLE_WIDTH), fontsize=8.0)
     if any(series.label for series in panel.series):
         place.legend()
 
@@ -159,7 +159,7 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     """
     i = series.style % len(COLOURS)
     colour = COLOURS[i]
-    label = _drawable(series.label, LONGEST_LABEL) or None
+    label = drawable(series.label, LONGEST_LABEL) or None
     if series.look == "law":
         return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0, label=label)[0]
     if series.look == "limit":

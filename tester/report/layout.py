@@ -6,7 +6,7 @@ All text is as people and devices wrote it; the page makes it harmless (tester.r
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -128,6 +128,12 @@ class Report:
 def heads(*texts: str, text: Sequence[int] = (0,)) -> tuple[ReportHead, ...]:
     """Return heads of columns; those at the places ``text`` hold words, the others numbers."""
     return tuple(ReportHead(title, number=i not in text) for i, title in enumerate(texts))
+
+
+def listed(title: str, lines: Iterable[str], tone: Tone = "") -> list[Part]:
+    """Return a paragraph and the lines below it; nothing without lines."""
+    found = [*lines]
+    return [Paragraph(title), Listing(found, tone)] if found else []
 
 
 def rendered(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from typing import TypeVar
 
 from tester.base.source import InvalidSource
 from tester.base.units import show
 from tester.base.words import NONE, decimal
 from tester.inputs.materials.compound import compound_model
-from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
+from tester.inputs.materials.material_schema import CompoundModel
 from tester.inputs.materials.surface_file import surface_model
 from tester.report.layout import (
     FactSheet,
@@ -24,6 +25,8 @@ from tester.report.layout import (
 from tester.report.record_section import RunRecord
 from tester.store.records import StoredMaterial
 
+Model = TypeVar("Model")
+
 
 def materials_sections(record: RunRecord, key: str) -> Iterator[ReportSection]:
     """Yield the section; nothing for a run whose materials are names alone."""
@@ -31,7 +34,7 @@ def materials_sections(record: RunRecord, key: str) -> Iterator[ReportSection]:
     if not files:
         return
     parts: list[Part] = []
-    compounds = {file.name: model for file in files if (model := _compound(file)) is not None}
+    compounds = {file.name: model for file in files if (model := _model(file, "compound", compound_model)) is not None}
     if any(model.formulation for model in compounds.values()):
         parts.append(_formulations(compounds))
     for material in files:
@@ -42,22 +45,14 @@ def materials_sections(record: RunRecord, key: str) -> Iterator[ReportSection]:
     yield ReportSection(key, "Materials", parts)
 
 
-def _compound(stored_material: StoredMaterial) -> CompoundModel | None:
-    if stored_material.role != "compound" or stored_material.text is None:
+def _model(stored: StoredMaterial, role: str, read: Callable[[str, str], Model]) -> Model | None:
+    """Return the file of a material of this role; None for another role, or a file of a version with other keys."""
+    if stored.role != role or stored.text is None:
         return None
     try:
-        return compound_model(stored_material.text, stored_material.file)
+        return read(stored.text, stored.file)
     except InvalidSource:
-        return None  # a version with other keys wrote it; its hash and source are reported all the same
-
-
-def _surface(stored_material: StoredMaterial) -> SurfaceModel | None:
-    if stored_material.role != "surface" or stored_material.text is None:
-        return None
-    try:
-        return surface_model(stored_material.text, stored_material.file)
-    except InvalidSource:
-        return None
+        return None  # its hash and source are reported all the same
 
 
 def _formulations(compounds: Mapping[str, CompoundModel]) -> ReportTable:
@@ -76,7 +71,7 @@ def _described(stored_material: StoredMaterial, compound: CompoundModel | None) 
     facts = [("source", file_name(stored_material.source)), ("SHA-256", stored_material.sha256)]
     if compound is not None:
         facts = [*_of_compound(compound), *facts]
-    surface = _surface(stored_material)
+    surface = _model(stored_material, "surface", surface_model)
     if surface is not None:
         facts = [("note", surface.note or NONE), ("figures from", surface.source or NONE), *facts]
     parts: list[Part] = [Paragraph(f"{stored_material.role.capitalize()} {stored_material.name}"), FactSheet(facts)]

@@ -8,7 +8,7 @@ from math import isfinite
 
 from tester.base.axes import condition_words
 from tester.base.words import coefficient
-from tester.report.chart import Chart, ChartPanel, Series
+from tester.report.chart import Chart, ChartPanel, Look, Mark, Series, series_of
 from tester.report.layout import labelled
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured
@@ -42,15 +42,10 @@ def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
     varied = axes.differing(condition.measured.info.setpoint for condition in placed)
     strips = [ChartPanel("", tuple(_coefficients(placed, several)), "coefficient")]
     for axis in (each for each in varied if each.plotted and not each.choices):
-        series = Series(
-            "",
-            tuple(condition.at for condition in placed),
-            tuple(axis.number(condition.measured.info.setpoint) for condition in placed),
-            "measured",
-            0,
-            widths=tuple(condition.half for condition in placed),
-            names=tuple(_words(condition, several) for condition in placed),
-        )
+        marks = [
+            Mark(c.at, axis.number(c.measured.info.setpoint), width=c.half, name=_words(c, several)) for c in placed
+        ]
+        series = series_of("", marks, "measured", 0)
         strips.append(ChartPanel("", (series,), labelled(axis)))
     title = f"{'runs, one after the other' if several else 'the run'}: {len(placed)} conditions in order of time"
     note = "bars: U (95 %) of what was mounted; along: from begin to end of a condition"
@@ -85,45 +80,27 @@ def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
     compounds = sorted({condition.measured.info.compound for condition in placed})
     for style, compound in enumerate(compounds):
         of_compound = [
-            condition
+            Mark(condition.at, result.mu, result.expanded, condition.half, _words(condition, several))
             for condition in placed
-            if condition.measured.info.compound == compound and condition.measured.result.ok
+            if condition.measured.info.compound == compound and (result := condition.measured.result).ok
         ]
         if of_compound:
-            yield Series(
-                compound,
-                tuple(condition.at for condition in of_compound),
-                tuple(condition.measured.result.mu for condition in of_compound),
-                "measured",
-                style,
-                tuple(condition.measured.result.expanded for condition in of_compound),
-                tuple(condition.half for condition in of_compound),
-                tuple(_words(condition, several) for condition in of_compound),
-            )
+            yield series_of(compound, of_compound, "measured", style)
     style = len(compounds)
-    out = [
-        (condition, repeat)
-        for condition in placed
-        for repeat in condition.measured.repeats
-        if condition.measured.exclusion(repeat)
-    ]
-    made_up = [
-        (condition, repeat)
-        for condition in placed
-        for repeat in condition.measured.make_ups
-        if not condition.measured.exclusion(repeat)
-    ]  # fmt: skip
-    for label, listed, look in (("make-up repeat", made_up, "published"), ("repeat left out", out, "left out")):
-        points = [(condition, repeat) for condition, repeat in listed if isfinite(repeat.result.mu_resultant)]
-        if points:
-            yield Series(
-                label,
-                tuple(condition.origin + repeat.result.ended_s * MINUTES for condition, repeat in points),
-                tuple(repeat.result.mu_resultant for _, repeat in points),
-                "published" if look == "published" else "left out",
-                style,
-                names=tuple(_of_repeat(condition.measured, repeat) for condition, repeat in points),
-            )
+    out = [(c, repeat) for c in placed for repeat in c.measured.repeats if c.measured.exclusion(repeat)]
+    made_up = [(c, repeat) for c in placed for repeat in c.measured.make_ups if not c.measured.exclusion(repeat)]
+    looks: tuple[tuple[str, list[tuple[_Placed, StoredRepeat]], Look], ...] = (
+        ("make-up repeat", made_up, "published"),
+        ("repeat left out", out, "left out"),
+    )
+    for label, listed, look in looks:
+        marks = [
+            Mark(c.origin + result.ended_s * MINUTES, result.mu_resultant, name=_of_repeat(c.measured, repeat))
+            for c, repeat in listed
+            if isfinite((result := repeat.result).mu_resultant)
+        ]
+        if marks:
+            yield series_of(label, marks, look, style)
             style += 1
 
 

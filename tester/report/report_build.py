@@ -10,10 +10,10 @@ from tester.base.words import counted
 from tester.report.budgets import budget_section
 from tester.report.charts import Material, charts_of, repeats_chart
 from tester.report.condition_tables import conditions_section, drift_section, short_table, verdict
-from tester.report.inline import inline_svg
 from tester.report.layout import Chapter, FactSheet, Paragraph, Part, Picture, Report, ReportSection, day
 from tester.report.materials_section import materials_sections
 from tester.report.overview import overview_chart
+from tester.report.page import inline_svg
 from tester.report.record_section import RunRecord
 from tester.report.ring_section import ring_sections
 from tester.report.run_sections import (

@@ -8,9 +8,9 @@ from math import isfinite, sqrt
 from tester.analysis.ring_errors import RingSector
 from tester.analysis.ring_runs import RingRun, ages_of, trend_of
 from tester.base.words import NONE, counted, decimal
-from tester.report.chart import Chart, ChartPanel, Series
-from tester.report.inline import inline_svg
+from tester.report.chart import Chart, ChartPanel, Mark, series_of
 from tester.report.layout import Paragraph, Part, Picture, ReportRow, ReportSection, ReportTable, heads
+from tester.report.page import inline_svg
 from tester.report.record_section import RunRecord
 
 SECTOR_DEG = 30.0
@@ -57,16 +57,11 @@ def sector_paragraph(name: str, sector: RingSector) -> Paragraph:
 def angle_chart(sectors: Sequence[RingSector], turns: str, worn: str) -> Chart:
     """Return the errors in twelve sectors, a series for each mounted part."""
     series = tuple(
-        Series(
+        series_of(
             f"{worn} {place}" if len(sectors) > 1 else "",
-            tuple(SECTOR_DEG * (i + 0.5) for i in range(12)),
-            tuple(float(count) for count in sector.sectors),
+            map(_sector_mark, range(12), sector.sectors),
             "measured",
             place - 1,
-            widths=(0.5 * SECTOR_DEG,) * 12,
-            names=tuple(
-                f"{30 * i} to {30 * i + 30}°: {counted(count, 'error')}" for i, count in enumerate(sector.sectors)
-            ),
         )
         for place, sector in enumerate(sectors, start=1)
         if sum(sector.sectors)
@@ -74,6 +69,11 @@ def angle_chart(sectors: Sequence[RingSector], turns: str, worn: str) -> Chart:
     note = "angle from where it stood when it was mounted; each mark: a sector of 30°"
     return Chart("ring-angle", f"errors over the angle of {turns}", f"angle of {turns} (°)", "errors",
                  (ChartPanel("", series),), note)  # fmt: skip
+
+
+def _sector_mark(i: int, count: int) -> Mark:
+    name = f"{30 * i} to {30 * i + 30}°: {counted(count, 'error')}"
+    return Mark(SECTOR_DEG * (i + 0.5), float(count), width=0.5 * SECTOR_DEG, name=name)
 
 
 def ring_trend_sections(records: Sequence[RunRecord], key: str) -> list[ReportSection]:
@@ -108,15 +108,11 @@ def ring_trend_sections(records: Sequence[RunRecord], key: str) -> list[ReportSe
 
 def trend_chart(rung: Sequence[Rung], ages: Sequence[float]) -> Chart:
     """Return the share of failed requests over the turns of the ring, with bars for chance."""
-    points = Series(
-        "",
-        tuple(ages),
-        tuple(ring.per_thousand for _, ring in rung),
-        "measured",
-        0,
-        tuple(_half(ring) for _, ring in rung),
-        names=tuple(f"{record.name}: {decimal(ring.per_thousand, 2)} of 1000" for record, ring in rung),
-    )
+    marks = [
+        Mark(age, ring.per_thousand, _half(ring), name=f"{record.name}: {decimal(ring.per_thousand, 2)} of 1000")
+        for age, (record, ring) in zip(ages, rung, strict=True)
+    ]
+    points = series_of("", marks, "measured", 0)
     return Chart("ring-trend", "errors over the age of the ring", "turns of the ring", "errors of 1000 requests",
                  (ChartPanel("", (points,)),), "bars: what chance makes of a share (95 %)")  # fmt: skip
 

@@ -9,7 +9,6 @@ from itertools import pairwise
 from tester.base.words import NONE, counted, decimal, duration
 from tester.report.assumptions import assumed_keys, assumed_terms
 from tester.report.charts import control_chart
-from tester.report.inline import inline_svg
 from tester.report.layout import (
     FactSheet,
     Listing,
@@ -23,8 +22,10 @@ from tester.report.layout import (
     day,
     file_name,
     heads,
+    listed,
     rendered,
 )
+from tester.report.page import inline_svg
 from tester.report.record_section import ALARMING, RunRecord
 from tester.results.columns import Output
 from tester.results.measured_tables import pieces_table
@@ -39,14 +40,16 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
     results = record.results
     run, info = results.run, results.run.info
     ended = f", ended {day(run.ended_utc)}" if run.ended_utc else ""
+    simulated = f"simulated (seed {info.seed})" if info.simulated else "a machine"
+    revision = f", revision {info.git_revision}" if info.git_revision else ""
     facts = [
         ("run", record.name),
         ("status", f"{results.status.value}{f': {run.reason}' if run.reason else ''}"),
         ("recipe", f"{info.recipe_name}{_from(info.recipe_source)}"),
-        ("rig", f"{record.machine.title or info.kind}{_from(info.rig_source)}, {_simulated(record)}"),
+        ("rig", f"{record.machine.title or info.kind}{_from(info.rig_source)}, {simulated}"),
         ("operator", info.operator or "not named"),
         ("time", f"started {day(info.started_utc)}{ended}, rig time {duration(run.rig_seconds)}"),
-        ("software", f"friction-tester {info.software_version}{_revision(info.git_revision)}"),
+        ("software", f"friction-tester {info.software_version}{revision}"),
         *((name.replace("_", " "), value) for name, value in info.metadata.items()),
     ]
     parts: list[Part] = [FactSheet(facts)]
@@ -54,27 +57,17 @@ def ran_section(record: RunRecord, key: str) -> ReportSection:
         parts.insert(0, Paragraph(f"Risk accepted: {info.risk}", "bad"))
     if results.pieces:
         parts.append(rendered(pieces_table(results).view(Output.REPORT), f"What was mounted ({results.worn})"))
-    asked = [prompt for prompt in record.prompts if prompt.answer]
-    if asked:
-        lines = [
-            f"{duration(prompt.asked_s)}: {prompt.text}: {prompt.answer} ({prompt.answered_by or 'unnamed'})"
-            for prompt in asked
-        ]
-        parts += [Paragraph("What people were asked, and answered:"), Listing(lines)]
+    answers = (
+        f"{duration(prompt.asked_s)}: {prompt.text}: {prompt.answer} ({prompt.answered_by or 'unnamed'})"
+        for prompt in record.prompts
+        if prompt.answer
+    )
+    parts += listed("Questions to people, and their answers:", answers)
     return ReportSection(key, "What ran on what", parts)
 
 
 def _from(source: str) -> str:
     return f" (from {file_name(source)})" if source else ""
-
-
-def _revision(revision: str) -> str:
-    return f", revision {revision}" if revision else ""
-
-
-def _simulated(record: RunRecord) -> str:
-    info = record.results.run.info
-    return f"simulated (seed {info.seed})" if info.simulated else "a machine"
 
 
 def tare_section(record: RunRecord, key: str) -> ReportSection:
@@ -117,19 +110,10 @@ def trips_section(record: RunRecord, key: str) -> ReportSection:
     parts: list[Part] = []
     if record.trips:
         rows = [
-            ReportRow(
-                (
-                    duration(trip.t_s),
-                    day(trip.utc),
-                    trip.interlock,
-                    trip.text,
-                    trip.compared or NONE,
-                    trip.acknowledged,
-                ),
-                "bad",
-            )
+            ReportRow((duration(trip.t_s), day(trip.utc), trip.interlock, trip.text, trip.compared or NONE,
+                       trip.acknowledged), "bad")
             for trip in record.trips
-        ]
+        ]  # fmt: skip
         titles = heads("rig time", "time", "interlock", "text", "value and limit", "acknowledged", text=range(6))
         parts.append(ReportTable("Trips", titles, rows))
     else:
@@ -223,8 +207,7 @@ def provenance_section(record: RunRecord, key: str) -> ReportSection:
         )
     versions = ", ".join(f"{name} {version}" for name, version in info.versions.items())
     parts.append(Paragraph(f"Versions: {versions or NONE}.", "small"))
-    resumed = [*_resumed(record)]
-    parts += [Paragraph("The run was resumed, or changed:"), Listing(resumed)] if resumed else []
+    parts += listed("The run was resumed, or changed:", _resumed(record))
     return ReportSection(key, "Where it is from", parts)
 
 

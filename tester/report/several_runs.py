@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from tester.base.words import counted
 from tester.report.charts import ChartValue, overlay_charts, values_of
-from tester.report.inline import inline_svg
 from tester.report.layout import (
     Chapter,
     Paragraph,
@@ -16,6 +15,7 @@ from tester.report.layout import (
     rendered,
 )
 from tester.report.overview import overview_chart
+from tester.report.page import inline_svg
 from tester.report.record_section import RunRecord
 from tester.report.ring_section import ring_trend_sections
 from tester.results.columns import Output

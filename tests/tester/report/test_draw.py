@@ -12,7 +12,7 @@ import pytest
 
 from tester.base.plugins import MissingExtraError
 from tester.report.draw import COLOURS, DASHES, FORMATS, MARKS, draw
-from tester.report.inline import inline_svg
+from tester.report.page import inline_svg
 from tests.tester.report.samples import CHART, FIGURES
 
 to_rgb = pytest.importorskip("matplotlib.colors", reason="needs the extra `report`").to_rgb

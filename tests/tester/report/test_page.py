@@ -17,7 +17,7 @@ from tester.base.plugins import MissingExtraError
 from tester.base.words import FORBIDDEN
 from tester.report.charts import Material, values_of
 from tester.report.layout import Paragraph, Report, ReportSection
-from tester.report.page import LONGEST, POLICY, page_of, readable
+from tester.report.page import LONGEST_TEXT, POLICY, page_of, readable
 from tester.report.record_section import MachineWords, RunRecord, read_record
 from tester.report.report_build import report_of
 from tester.results.run_results import ReferenceWatch
@@ -159,7 +159,7 @@ def test_hostile_names_are_text_and_steer_nothing(hostile: str) -> None:
     assert "<script" not in hostile and "onload=alert(1)>" not in hostile.replace("&gt;", "")
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile
     assert "{{ 7 * 7 }}" in hostile  # as it was written: no template of ours
-    assert all(len(one.text or "") <= LONGEST + 40 for one in elements(hostile) if one.tag != f"{HTML}style")
+    assert all(len(one.text or "") <= LONGEST_TEXT + 40 for one in elements(hostile) if one.tag != f"{HTML}style")
 
 
 def test_points_are_named_by_titles_and_figures_have_words_for_who_cannot_see(text: str) -> None:
@@ -212,7 +212,7 @@ def test_two_runs_are_overlaid_and_compared(plain: RunRecord, tmp_path: Path) ->
 
 def test_a_text_is_cut_where_it_is_very_long_and_control_characters_become_marks() -> None:
     assert readable("a\u202eb\x00") == "a?b?"
-    assert readable("x" * (LONGEST + 7)) == "x" * LONGEST + "… (7 more characters)"
+    assert readable("x" * (LONGEST_TEXT + 7)) == "x" * LONGEST_TEXT + "… (7 more characters)"
 
 
 def test_a_run_without_a_value_has_a_report_that_says_so(tmp_path: Path) -> None:
