@@ -19,10 +19,9 @@ from tester.base.source import InvalidSource
 from tester.run.kind_lookup import load_rig
 from tester.service.commands import Acknowledge, Hold, ListRuns, Release, TakeControl
 from tester.service.state_view import RunView, StateView
-from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog
+from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog, ResumeDialog, resumable
 from tester.tui.dialogs.dialog import Dialog, TextDialog
-from tester.tui.dialogs.resume_dialog import ResumeDialog, resumable
-from tester.tui.gone import SMALLEST, TITLE, SmallPanel, death_text
+from tester.tui.gone import TITLE, SmallPanel, death_text
 from tester.tui.host import HostApp, Keys, TuiOptions, View
 from tester.tui.pages.bus import BusPage
 from tester.tui.pages.manual_page import ManualPage
@@ -54,8 +53,6 @@ def commission_rig(options: TuiOptions) -> None:
     subprocess.run(command, check=False)
 
 
-WIDE = (110, 34)
-HUGE = (180, 46)
 EVERYWHERE = """\
 
 On every screen
@@ -126,11 +123,7 @@ class TesterApp(HostApp):
 
     def on_resize(self, event: Resize) -> None:
         """Lay out for the new size; Textual itself adopts it only later."""
-        width, height = event.size
-        base = self.screen_stack[0]
-        base.set_class(width < SMALLEST[0] or height < SMALLEST[1], "-tiny")
-        base.set_class(width >= WIDE[0] and height >= WIDE[1], "-wide")
-        base.set_class(width >= HUGE[0] and height >= HUGE[1], "-huge")
+        self.size_classes(event, "-tiny")
 
     @property
     def view(self) -> View:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tester.tui.formatting import clean, fit
 from tester.tui.screen_scene import ScreenScene
+from tester.tui.theme import SMALLEST
 from tester.tui.widgets.panel_base import Panel, Parts, rows
 
 TITLE = "The service has died"
@@ -61,10 +62,6 @@ def farewell(scene: ScreenScene) -> str:
     if scene.lost or scene.state is None:
         return "no link to a service: a run may still be under way. `tester status` shows it"
     return "detached: the service and its run continue. `tester tui` comes back, `tester stop` stops the rig"
-
-
-SMALLEST = (60, 15)
-"""Smallest terminal for the screens, columns and lines."""
 
 
 class SmallPanel(Panel):

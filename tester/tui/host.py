@@ -4,35 +4,67 @@ from __future__ import annotations
 
 import asyncio
 import os
+import sqlite3
+import subprocess
+import sys
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, cast
+from typing import ClassVar, TypeVar, cast
 
 from pydantic import JsonValue
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.dom import DOMNode
 
-from tester.base import clock, keys
+from tester.base import clock
+from tester.base.processes import tester_command
 from tester.base.trouble import in_words
 from tester.service.address import Address
+from tester.service.address import folder as service_folder
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
 from tester.service.state_view import RunView
 from tester.service.stop_call import NotTakenError
-from tester.tui.formatting import clean
+from tester.store.record_schema import StoreError
 from tester.tui.gone import farewell, stop_failed
 from tester.tui.screen_scene import ScreenScene
-from tester.tui.starting import start_service
 from tester.tui.stop_line import StopLine, stopping
 from tester.tui.theme import LookApp
 from tester.tui.widgets.panel_base import Panel
 
 TICK_S = 0.5
 """Period for updating the age of the data shown, s."""
+LOG = "serve.log"
+"""Log of the service's output, in its folder."""
+
+
+def start_service(rig: str, runs: Path) -> None:
+    """Start ``tester serve``; raises OSError. Connect to it to find out whether it runs.
+
+    A session of its own: neither the end of the terminal nor a Ctrl+C in it reaches the service. Windows has process
+    groups for that, as documented; not tried.
+    """
+    arguments = tester_command("serve", "--rig", rig, "--out", str(runs))
+    detached = 0
+    if sys.platform == "win32":
+        detached = subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.DETACHED_PROCESS
+    with (service_folder() / LOG).open("ab") as log:
+        subprocess.Popen(
+            arguments, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, creationflags=detached
+        )
+
+
+async def call(*arguments: str) -> tuple[bool, str]:
+    """Run ``tester ARGUMENTS``; return whether it succeeded, and its error output."""
+    process = await asyncio.create_subprocess_exec(
+        *tester_command(*arguments),
+        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    _, output = await process.communicate()
+    return process.returncode == 0, output.decode(errors="replace").strip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +91,6 @@ class HostApp(LookApp):
     HAS_RIG: ClassVar[bool] = True
     """Whether there is a rig behind this screen."""
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(",".join(keys.STOP.keys), "stop", "STOP", priority=True, show=False),
-        Binding(",".join(keys.FAST_STOP.keys), "fast_stop", "Fast stop", priority=True, show=False),
         Binding("ctrl+c,ctrl+q", "detach", "Detach", priority=True, show=False),
     ]
 
@@ -89,12 +119,6 @@ class HostApp(LookApp):
 
     def show_results(self, run: RunView) -> None:
         """Show a run's results."""
-
-    def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
-        """Show the operator a message, as plain text."""
-        self.notify(
-            clean(text), severity="error" if problem else "information", timeout=60.0 if lasting else 6.0, markup=False
-        )
 
     # -- link -------------------------------------------------------------------------------------------------
 
@@ -208,6 +232,7 @@ def host_of(node: DOMNode) -> HostApp:
 
 
 Keys = tuple[tuple[str, str], ...]
+Read = TypeVar("Read")
 
 
 class View(Vertical):
@@ -236,3 +261,12 @@ class View(Vertical):
 
     def leave(self) -> None:
         """Called when another screen appears."""
+
+
+async def read_in_thread(host: HostApp, what: str, work: Callable[[], Read]) -> Read | None:
+    """Return what ``work`` reads of stored runs, in a thread; None, after a message, if ``what`` is unreadable."""
+    try:
+        return await asyncio.to_thread(work)
+    except (StoreError, OSError, sqlite3.Error) as error:
+        host.say(f"{what} cannot be read: {in_words(error)}", problem=True)
+        return None

@@ -37,8 +37,8 @@ class KeptRings:
     _found: dict[str, RingFound] = field(default_factory=dict[str, RingFound])
     _rows: list[RingRow] = field(default_factory=list[RingRow])
 
-    def read(self, runs: Path) -> None:
-        """Read new runs, skipping unreadable ones; raises OSError."""
+    def read(self, runs: Path) -> KeptRings:
+        """Read new runs, skipping unreadable ones, and return this; raises OSError."""
         known: dict[str, RingFound] = {}
         for folder in list(run_folders(runs))[-MOST:]:
             ring = self._found.get(folder.name)
@@ -51,7 +51,7 @@ class KeptRings:
         with_any = [ring for ring in known.values() if ring.run.requests]
         if not with_any:
             self._rows, self.counted, self.turns = [], "", ""
-            return
+            return self
         newest = max(with_any, key=lambda ring: ring.run.started)
         self.counted, self.turns = newest.part.counted, newest.part.turns
         old = {row.run.name: row for row in self._rows}
@@ -59,6 +59,7 @@ class KeptRings:
             old.get(ring.run.name) or RingRow(ring.run, 0.0, tuple(ring.run.sectors()))
             for ring in of_one_rig(with_any, newest)
         ]
+        return self
 
     def rows(self) -> list[RingRow]:
         """Return the runs from ``since`` on, oldest first, each with the ring's age."""

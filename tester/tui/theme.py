@@ -7,11 +7,15 @@ from pathlib import Path
 from typing import ClassVar
 
 from textual.app import App
+from textual.binding import Binding, BindingType
+from textual.events import Resize
 from textual.filter import LineFilter
 from textual.theme import Theme
 from textual.types import CSSPathType
 
+from tester.base import keys
 from tester.tui.filters import AsciiOnly, Colourless
+from tester.tui.formatting import clean
 
 DARK = Theme(
     name="grey-dark",
@@ -58,6 +62,8 @@ SIXTEEN = Theme(
 """Uses the terminal's own palette, so that no colour is blended away."""
 THEMES = {"dark": DARK, "light": LIGHT, "16": SIXTEEN}
 
+SMALLEST, WIDE, HUGE = (60, 15), (110, 34), (180, 46)
+"""Columns and lines: of the smallest terminal for the screens, and from which there is room for more panels."""
 STYLES = Path(__file__).with_name("screens.tcss")
 
 
@@ -65,6 +71,10 @@ class LookApp(App[str]):
     """An application in the program's colours."""
 
     CSS_PATH: ClassVar[CSSPathType | None] = [STYLES]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding(",".join(keys.STOP.keys), "stop", "STOP", priority=True, show=False),
+        Binding(",".join(keys.FAST_STOP.keys), "fast_stop", "Fast stop", priority=True, show=False),
+    ]
 
     def __init__(self, theme: str = "", *, plain: bool = False) -> None:
         """``theme``: a name of THEMES, "" = by the terminal; ``plain``: ASCII only."""
@@ -82,6 +92,20 @@ class LookApp(App[str]):
         if self._last_filters and self.no_color:
             return list(self._last_filters)
         return [*super().get_line_filters(), *self._last_filters]
+
+    def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
+        """Show the person a message, as plain text."""
+        self.notify(
+            clean(text), severity="error" if problem else "information", timeout=60.0 if lasting else 6.0, markup=False
+        )
+
+    def size_classes(self, event: Resize, small: str) -> None:
+        """Set the classes of the size: ``small`` below SMALLEST, ``-wide`` and ``-huge`` from WIDE and HUGE on."""
+        width, height = event.size
+        base = self.screen_stack[0]
+        base.set_class(width < SMALLEST[0] or height < SMALLEST[1], small)
+        base.set_class(width >= WIDE[0] and height >= WIDE[1], "-wide")
+        base.set_class(width >= HUGE[0] and height >= HUGE[1], "-huge")
 
     def choose_colours(self) -> None:
         """Use the sixteen colours if the terminal has no more, unless a theme was chosen."""

@@ -23,6 +23,9 @@ class Dialog(ModalScreen[None]):
     """A box between line 2 and the last line."""
 
     TITLE: ClassVar[str | None] = ""
+    SUBTITLE: ClassVar[str] = "Esc closes · F12 STOP"
+    TALL: ClassVar[bool] = False
+    """Whether the box takes the whole height."""
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "close", "Close", show=False)]
 
     @property
@@ -32,9 +35,9 @@ class Dialog(ModalScreen[None]):
 
     def compose(self) -> ComposeResult:
         """Put the content into the box."""
+        self.set_class(self.TALL, "-tall")
         with Vertical(id="box") as box:
-            box.border_title = self.TITLE or ""
-            box.border_subtitle = "Esc closes · F12 STOP"
+            box.border_title, box.border_subtitle = self.title or "", self.SUBTITLE
             yield from self.content()
 
     def content(self) -> Iterable[Widget]:
@@ -74,10 +77,7 @@ class LogDialog(Dialog):
     """All known events, newest first."""
 
     TITLE = "Events, newest first"
-
-    def on_mount(self) -> None:
-        """Take the whole height."""
-        self.add_class("-tall")
+    TALL = True
 
     def content(self) -> Iterable[Widget]:
         """Return the list."""
@@ -91,11 +91,8 @@ class TextDialog(Dialog):
     def __init__(self, title: str, text: str) -> None:
         """``text``: paragraphs, and keys followed by two spaces or more and their description."""
         super().__init__()
-        self._title, self._text = title, reflow(text, TEXT_WIDTH)
-
-    def on_mount(self) -> None:
-        """Name the box."""
-        self.query_one("#box").border_title = self._title
+        self.title = title
+        self._text = reflow(text, TEXT_WIDTH)
 
     def content(self) -> Iterable[Widget]:
         """Return the text."""

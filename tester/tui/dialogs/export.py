@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Protocol
 
 from textual.widget import Widget
 from textual.widgets import Input, OptionList
@@ -12,7 +11,7 @@ from textual.widgets.option_list import Option
 
 from tester.results.formats import FORMATS, format_names
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
-from tester.tui.starting import call
+from tester.tui.host import HostApp, call
 
 
 def _choices() -> list[tuple[str, str, str]]:
@@ -60,22 +59,14 @@ class ExportDialog(Dialog):
             self.host.say("name a file", problem=True)
             return
         host = self.host
-        host.run_worker(export(host.say, self.runs / self.name_of_run, self._formats[at][0], path), exit_on_error=False)
+        host.run_worker(_export(host, self.runs / self.name_of_run, self._formats[at][0], path), exit_on_error=False)
         self.dismiss(None)
 
 
-class Say(Protocol):
-    """Reports an export, as ``HostApp.say`` does."""
-
-    def __call__(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
-        """Tell the operator."""
-        ...
-
-
-async def export(say: Say, folder: Path, kind: str, path: Path) -> None:
+async def _export(host: HostApp, folder: Path, kind: str, path: Path) -> None:
     """Run the command and report its result."""
     done, words = await call("export", "--format", kind, "--out", str(path), "--", str(folder))
     if not done:
-        say(f"not exported: {words}", problem=True, lasting=True)
+        host.say(f"not exported: {words}", problem=True, lasting=True)
     else:
-        say(f"exported to {path}" + (f"; {words}" if words else ""), lasting=True)
+        host.say(f"exported to {path}" + (f"; {words}" if words else ""), lasting=True)

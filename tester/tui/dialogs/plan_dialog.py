@@ -24,6 +24,7 @@ class PlanDialog(Dialog):
     """Shows what a recipe does."""
 
     TITLE = "Plan"
+    TALL = True
 
     def __init__(self, recipe: ListedRecipe) -> None:
         """``recipe``: what to plan."""
@@ -36,7 +37,6 @@ class PlanDialog(Dialog):
 
     def on_mount(self) -> None:
         """Plan the recipe."""
-        self.add_class("-tall")
         self.run_worker(self._plan(), exit_on_error=False)
 
     async def _plan(self) -> None:

@@ -1,22 +1,19 @@
-"""The repeats of a condition, each with its trace; here one is excluded from the mean, or included again."""
+"""The repeats of a condition, each with its trace, and the dialog that excludes one or includes it again."""
 
 from __future__ import annotations
 
-import asyncio
-import sqlite3
 from collections.abc import Callable, Iterable
 
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widget import Widget
-from textual.widgets import OptionList, Static
+from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tester.base.trouble import in_words
-from tester.store.record_schema import StoreError
-from tester.tui.dialogs.dialog import Dialog, line
-from tester.tui.dialogs.exclude_dialog import ExcludeDialog
+from tester.base.lock import user
+from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.formatting import clean, fit
+from tester.tui.host import HostApp, call, read_in_thread
 from tester.tui.plot import Canvas, PlotRange
 from tester.tui.stored import RepeatRow, Row, Stored, condition, row_words
 from tester.tui.widgets.panel_base import FAINT, Parts, rows
@@ -30,10 +27,54 @@ LONGEST = 400
 """Longest line of a repeat, characters."""
 
 
+class ExcludeDialog(Dialog):
+    """Asks for the reason and the person. ``done`` is called once they are recorded."""
+
+    def __init__(self, stored: Stored, row: Row, repeat: RepeatRow, done: Callable[[], None]) -> None:
+        """``repeat``: of the condition ``row`` of ``stored``."""
+        super().__init__()
+        self.stored, self.row, self.repeat, self.done = stored, row, repeat, done
+        self.verb = "include" if repeat.by_hand else "exclude"
+        self.title = f"{self.verb.capitalize()} {row.condition}/{repeat.repeat}"
+
+    def content(self) -> Iterable[Widget]:
+        """Return the description and the fields."""
+        yield line([(clean(row_words(self.row)), "bold")])
+        yield line(f"Repeat {self.repeat.repeat}: {self.repeat.figures}, {clean(self.repeat.status)}")
+        if self.repeat.by_hand:
+            yield line(f"Left out by {clean(self.repeat.by_hand)}. It enters the mean again, if it is valid.")
+        else:
+            yield line("It leaves the mean and the tables are made anew. Nothing is deleted: it can be included again.")
+        yield field("Reason (needed)", entry("reason", hint="goes on record", limit=2000))
+        yield field("Who", entry("who", user()))
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Record it, if there is a reason."""
+        event.stop()
+        reason, who = (self.query_one(f"#{name}", Input).value.strip() for name in ("reason", "who"))
+        if not reason:
+            self.host.say("nothing done: a reason is needed, or Esc", problem=True)
+            self.query_one("#reason").focus()
+            return
+        host = self.host
+        target = f"{self.row.condition}/{self.repeat.repeat}"
+        host.run_worker(self._record(host, target, reason, who), exit_on_error=False)
+        self.dismiss(None)
+
+    async def _record(self, host: HostApp, target: str, reason: str, who: str) -> None:
+        arguments = (f"--reason={reason}", f"--operator={who}", "--", str(self.stored.folder), target)
+        done, words = await call("results", self.verb, *arguments)
+        host.say(words if done else f"not done: {words}", problem=not done, lasting=True)
+        if done:
+            self.done()
+
+
 class RepeatsDialog(Dialog):
     """Traces of the accepted samples: every repeat in the same range, for comparison."""
 
     TITLE = "Repeats"
+    SUBTITLE = "Enter excludes or includes · Esc closes · F12 STOP"
+    TALL = True
 
     def __init__(self, stored: Stored, row: Row, changed: Callable[[], None]) -> None:
         """``row``: a condition of ``stored``; ``changed`` is called when a repeat is excluded or included."""
@@ -54,9 +95,6 @@ class RepeatsDialog(Dialog):
 
     def on_mount(self) -> None:
         """Read the repeats."""
-        self.add_class("-tall")
-        self.query_one("#box").border_subtitle = "Enter excludes or includes · Esc closes · F12 STOP"
-        self.query_one("#repeat-list").focus()
         self._read()
 
     def _read(self) -> None:
@@ -65,12 +103,11 @@ class RepeatsDialog(Dialog):
     async def _read_repeats(self) -> None:
         plain, width = self.host.options.plain, max(self.size.width - MARGIN, WIDTH // 3)
         columns = width if plain else 2 * width
-        try:
-            self.row, repeats = await asyncio.to_thread(condition, self.stored.folder, self.row.condition, columns)
-        except (StoreError, OSError, sqlite3.Error) as error:
-            self.host.say(f"cannot be read: {in_words(error)}", problem=True)
-            return
-        if self.is_attached:
+        found = await read_in_thread(
+            self.host, self.stored.name, lambda: condition(self.stored.folder, self.row.condition, columns)
+        )
+        if found is not None and self.is_attached:
+            self.row, repeats = found
             self.found = repeats
             self.query_one("#condition", Static).update(Content.assemble(*self._heading()))
             listed = self.query_one("#repeat-list", OptionList)

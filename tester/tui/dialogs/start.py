@@ -9,6 +9,7 @@ from textual.containers import Horizontal
 from textual.widget import Widget
 from textual.widgets import Button, Checkbox, Input, Static
 
+from tester.base.units import rig_speed
 from tester.base.words import counted, duration
 from tester.service.commands import RunRecipe, ShowPlan
 from tester.service.state_view import Check
@@ -19,22 +20,6 @@ from tester.tui.recipe_library import ListedRecipe
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
 """Checks that the service makes before a drive is armed, and without which it refuses to start (docs/safety.md)."""
-MAX = "max"
-
-
-def speed_words(speed: float | None) -> str:
-    """Return a time lapse as text for its field."""
-    return MAX if speed is None else f"{speed:g}"
-
-
-def speed_of(text: str) -> float | None:
-    """Return a typed time lapse; raises ValueError."""
-    if text.strip().lower() == MAX:
-        return None
-    speed = float(text)
-    if not 0.0 < speed <= 1e6:
-        raise ValueError(text)
-    return speed
 
 
 class PlainCheckbox(Checkbox):
@@ -47,6 +32,7 @@ class StartDialog(Dialog):
     """The last check before a run begins."""
 
     TITLE = "Start a run"
+    AUTO_FOCUS = "#start"
 
     def __init__(self, recipe: ListedRecipe) -> None:
         """``recipe``: one without problems."""
@@ -66,7 +52,9 @@ class StartDialog(Dialog):
         yield field("Operator", entry("operator"))
         yield field("Notes", entry("notes", limit=1500))
         if simulated:
-            yield field("Rig s per second", entry("speed", speed_words(self.host.options.speed), hint="1, 60, max"))
+            speed = self.host.options.speed
+            typed = "max" if speed is None else f"{speed:g}"
+            yield field("Rig s per second", entry("speed", typed, hint="1, 60, max"))
         yield PlainCheckbox(self._ask(on=False), id="yes", value=False, compact=True)
         with Horizontal(classes="buttons"):
             yield Button("Start (Enter)", id="start", compact=True)
@@ -87,8 +75,7 @@ class StartDialog(Dialog):
         return (Check("recipe", True, "valid on this rig"), *known, *later)
 
     def on_mount(self) -> None:
-        """Plan the recipe, and let Enter start it."""
-        self.query_one("#start").focus()
+        """Plan the recipe."""
         self.run_worker(self._plan(), exit_on_error=False)
 
     async def _plan(self) -> None:
@@ -121,7 +108,7 @@ class StartDialog(Dialog):
         speed: float | None = 1.0
         if self.query("#speed"):
             try:
-                speed = speed_of(self._typed("speed"))
+                speed = rig_speed(self._typed("speed"))
             except ValueError:
                 self.host.say("rig seconds per second: a number above 0, or max", problem=True)
                 self.query_one("#speed").focus()

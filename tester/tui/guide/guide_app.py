@@ -22,7 +22,6 @@ from tester.machine.commission.record import RecordError
 from tester.machine.prompts import Asks, Question
 from tester.tui.dialogs.dialog import Dialog, TextDialog
 from tester.tui.formatting import clean
-from tester.tui.gone import SMALLEST
 from tester.tui.guide.guide import Guide, GuideView
 from tester.tui.guide.panels import (
     EndLine,
@@ -43,7 +42,6 @@ DRAWN_S = 0.1
 """Period for reading the engine's state, s."""
 SEEN_S = 0.3
 """An answer sooner than this after a question appears was typed before it, s [A]."""
-WIDE = (110, 34)
 KEYS = (("Enter", "Answer"), ("Tab", "Steps"), ("space", "Hold"), ("r", "Go on"), ("F1", "Help"), ("^C", "Leave"))
 HELP = """\
 F12, Ctrl+X  STOP: gives up the step at once, without asking; everything comes to rest. The step starts again later.
@@ -66,8 +64,6 @@ class GuideApp(LookApp):
     CSS_PATH: ClassVar[CSSPathType | None] = [STYLES, Path(__file__).with_name("guide.tcss")]
     ENABLE_COMMAND_PALETTE = True
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(",".join(keys.STOP.keys), "stop", "STOP", priority=True, show=False),
-        Binding(",".join(keys.FAST_STOP.keys), "fast_stop", "Fast stop", priority=True, show=False),
         Binding("ctrl+c,ctrl+q", "leave", "Leave", priority=True, show=False),
         Binding("q", "leave", "Leave", show=False),
         Binding("space", "hold", "Hold", show=False),
@@ -94,22 +90,22 @@ class GuideApp(LookApp):
         yield GuideLine(id="state")
         yield EndLine(id="tabs")
         with Horizontal(id="guide"):
-            yield OptionList(id="guide-steps", markup=False)
+            steps = OptionList(id="guide-steps", markup=False)
+            steps.border_title = "Steps"
+            yield steps
             with Vertical(id="guide-right"):
-                yield ReadingsPanel(id="guide-readings", classes="box")
-                with Vertical(id="guide-question", classes="box"):
+                yield ReadingsPanel(id="guide-readings", classes="box", title="The rig shows")
+                with Vertical(id="guide-question", classes="box") as question:
+                    question.border_title = "Question"
                     yield QuestionPanel(id="guide-text")
                     yield HintPanel(id="guide-hint")
                     yield Input(id="guide-answer", compact=True, max_length=200, disabled=True)
-                yield SaidPanel(id="guide-said", classes="box")
+                yield SaidPanel(id="guide-said", classes="box", title="Messages")
         yield KeyLine(id="keys")
 
     def on_mount(self) -> None:
         """Start the engine: it connects nothing before a person answers yes to a step."""
         self.choose_colours()
-        for name, title in (("steps", "Steps"), ("readings", "The rig shows"), ("question", "Question"),
-                            ("said", "Told")):  # fmt: skip
-            self.query_one(f"#guide-{name}").border_title = title
         line = self.query_one(KeyLine)
         line.keys = KEYS
         line.show(ScreenScene())
@@ -120,9 +116,7 @@ class GuideApp(LookApp):
 
     def on_resize(self, event: Resize) -> None:
         """Lay out for the new size."""
-        base = self.screen_stack[0]
-        base.set_class(event.size.width < SMALLEST[0] or event.size.height < SMALLEST[1], "-small")
-        base.set_class(event.size.width >= WIDE[0] and event.size.height >= WIDE[1], "-wide")
+        self.size_classes(event, "-small")
 
     def look(self) -> None:
         """Show the engine's state."""
@@ -205,10 +199,6 @@ class GuideApp(LookApp):
         self.push_screen(TextDialog(f"On record: {name}", "\n\n".join([about, *map(clean_text, text.split("\n\n"))])))
 
     # -- keys -------------------------------------------------------------------------------------------------
-
-    def say(self, text: str, *, problem: bool = False) -> None:
-        """Show the person a message."""
-        self.notify(clean(text), severity="error" if problem else "information", timeout=6.0, markup=False)
 
     def action_stop(self) -> None:
         """STOP, without asking, from everywhere; the terminal's thread has sent it already."""

@@ -22,9 +22,8 @@ from tester.service.protocol import Frame
 from tester.service.state_view import BusView as BusState
 from tester.service.state_view import DeviceView
 from tester.tui.formatting import clean, fit
-from tester.tui.host import Keys, View
+from tester.tui.host import LOG, Keys, View
 from tester.tui.screen_scene import STALE_S, ScreenScene
-from tester.tui.starting import LOG
 from tester.tui.widgets.panel_base import FAINT, NOTICE, WARNING, Panel, Parts, rows
 
 LOG_BYTES = 1_000_000
@@ -159,15 +158,10 @@ class BusPage(View, can_focus=True):
 
     def compose(self) -> ComposeResult:
         """Lay out the tables."""
-        yield DevicesPanel(id="devices", classes="box")
+        yield DevicesPanel(id="devices", classes="box", title="Devices")
         yield BusesPanel(id="buses", classes="box")
         yield Input(id="filter", placeholder="frames with this text", compact=True, max_length=40)
-        yield FramesPanel(id="frames", classes="box")
-
-    def on_mount(self) -> None:
-        """Name the boxes."""
-        for name, title in (("devices", "Devices"), ("frames", "Frames")):
-            self.query_one(f"#{name}").border_title = title
+        yield FramesPanel(id="frames", classes="box", title="Frames")
 
     def enter(self) -> None:
         """Request the frames."""

@@ -49,13 +49,10 @@ class ArmedPanel(Panel):
             return []
         lines: list[Parts] = [[armed_words(state)]]
         if state.manual.tare:
-            for piece in _wrapped(f"Zero: {clean(state.manual.tare)}", width):
-                lines.append([piece])
+            text = f"Zero: {clean(state.manual.tare)}"
+            for at in range(0, len(text), max(width, 1)):
+                lines.append([text[at : at + width]])
         return rows(lines[:height])
-
-
-def _wrapped(text: str, width: int) -> list[str]:
-    return [text[at : at + width] for at in range(0, len(text), max(width, 1))]
 
 
 def armed_words(state: StateView) -> Part:
@@ -100,19 +97,19 @@ class ManualPage(View):
 
     def compose(self) -> ComposeResult:
         """Lay out values, axes, state."""
-        yield ManualValues(id="manual-values", classes="box")
+        values = ManualValues(id="manual-values", classes="box", title="Values")
+        values.border_subtitle = COMMISSIONING
+        yield values
         with Horizontal():
-            yield OptionList(id="manual-axes", markup=False)
+            axes = OptionList(id="manual-axes", markup=False)
+            axes.border_title = "Axis"
+            yield axes
             with Vertical():
-                yield ArmedPanel(id="manual-state", classes="box")
-                yield EventsPanel(id="manual-events", classes="box")
+                yield ArmedPanel(id="manual-state", classes="box", title="Manual mode")
+                yield EventsPanel(id="manual-events", classes="box", title="Events")
 
     def on_mount(self) -> None:
-        """Name the boxes."""
-        for name, title in (("manual-values", "Values"), ("manual-axes", "Axis"), ("manual-state", "Manual mode"),
-                            ("manual-events", "Events")):  # fmt: skip
-            self.query_one(f"#{name}").border_title = title
-        self.query_one("#manual-values").border_subtitle = COMMISSIONING
+        """Begin the signs of life."""
         self.set_interval(SIGN_S, self._give_sign)
 
     def show(self, scene: ScreenScene) -> None:

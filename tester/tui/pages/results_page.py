@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import sqlite3
 from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import ClassVar
@@ -17,15 +15,13 @@ from textual.widget import Widget
 from textual.widgets import DataTable
 
 from tester.base.axes import Axis, condition_words
-from tester.base.trouble import in_words
 from tester.base.words import duration
 from tester.service.commands import ListRuns
-from tester.store.record_schema import StoreError
 from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.export import ExportDialog
 from tester.tui.dialogs.repeats_dialog import RepeatsDialog
 from tester.tui.formatting import clean, fit
-from tester.tui.host import Keys, View
+from tester.tui.host import Keys, View, read_in_thread
 from tester.tui.plot import scatter
 from tester.tui.screen_scene import ScreenScene
 from tester.tui.stored import Row, Stored, points, read, series
@@ -36,6 +32,8 @@ class PlotDialog(Dialog):
     """Mu against one setpoint after another."""
 
     TITLE = "Plot"
+    SUBTITLE = "p next axis · Esc closes · F12 STOP"
+    TALL = True
     BINDINGS: ClassVar[list[BindingType]] = [Binding("p", "next", "Next", show=False)]
 
     def __init__(self, stored: Stored, row: Row | None, axis: int) -> None:
@@ -48,10 +46,7 @@ class PlotDialog(Dialog):
         yield PlotPanel(id="big-plot")
 
     def on_mount(self) -> None:
-        """Take the whole height and draw."""
-        self.add_class("-tall")
-        box = self.query_one("#box")
-        box.border_subtitle = "p next axis · Esc closes · F12 STOP"
+        """Draw."""
         self._plot()
 
     def _plot(self) -> None:
@@ -109,7 +104,6 @@ class PlotPanel(Panel):
 RUN_HEADER = ("Run", "Recipe", "Status", "Values", "Rig time", "Started")
 EMPTY = ("compound", "mu")
 """Columns of the conditions while no run is chosen."""
-MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
 Above the stored runs, below the conditions of the chosen one: mu at the temperature asked for, both expanded
 uncertainties U (95 %), s (between repeats), valid (of those asked for), the means of further sensors, flags. Behind mu,
@@ -244,13 +238,10 @@ class ResultsView(View):
 
     async def _open(self, name: str) -> None:
         self.conditions_table.border_title = "reading …"
-        try:
-            stored = await asyncio.to_thread(read, name, self.host.options.runs)
-        except MISSING as error:
+        stored = await read_in_thread(self.host, name, lambda: read(name, self.host.options.runs))
+        if stored is None:
             self.conditions_table.border_title = "Conditions"
-            self.host.say(f"{name} cannot be read: {in_words(error)}", problem=True)
-            return
-        if self.is_attached:
+        elif self.is_attached:
             self.open(stored)
             if self.host.screen is self.screen:
                 self.conditions_table.focus()

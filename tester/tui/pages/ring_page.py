@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import sqlite3
 from typing import ClassVar
 
 from rich.text import Text
@@ -13,17 +11,14 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import DataTable
 
 from tester.analysis.ring_runs import RingRun
-from tester.base.trouble import in_words
 from tester.base.words import NONE, decimal
-from tester.store.record_schema import StoreError
 from tester.tui.formatting import clean
-from tester.tui.host import Keys, View
+from tester.tui.host import Keys, View, read_in_thread
 from tester.tui.pages.results_page import TextTable
 from tester.tui.rings import KeptRings, RingRow
 from tester.tui.widgets.ring_panel import AgePanel, AnglePanel, SpeedPanel
 
 HEADER = ("Run", "Turns", "Requests", "Errors", "of 1000", "Angle")
-MISSING = (StoreError, OSError, sqlite3.Error)
 HELP = """\
 Requests over the ring without a good reply, from the stored runs: a run under way counts once it has ended.
 
@@ -61,13 +56,8 @@ class RingPage(View):
         with Horizontal():
             yield AnglePanel(id="ring-angle", classes="box")
             with Vertical():
-                yield SpeedPanel(id="ring-speed", classes="box")
-                yield AgePanel(id="ring-age", classes="box")
-
-    def on_mount(self) -> None:
-        """Name the boxes."""
-        for name, title in (("speed", "Errors by speed"), ("age", "Errors by age")):
-            self.query_one(f"#ring-{name}").border_title = title
+                yield SpeedPanel(id="ring-speed", classes="box", title="Errors by speed")
+                yield AgePanel(id="ring-age", classes="box", title="Errors by age")
 
     @property
     def table(self) -> TextTable:
@@ -89,13 +79,10 @@ class RingPage(View):
         self.run_worker(self._read, group="rings", exclusive=True, exit_on_error=False)
 
     async def _read(self) -> None:
-        try:
-            await asyncio.to_thread(self.kept.read, self.host.options.runs)
-        except MISSING as error:
+        kept = await read_in_thread(self.host, "the runs", lambda: self.kept.read(self.host.options.runs))
+        if kept is None:
             self.table.border_title = "Runs"
-            self.host.say(f"runs cannot be read: {in_words(error)}", problem=True)
-            return
-        if self.is_attached:
+        elif self.is_attached:
             self._fill()
 
     def _fill(self) -> None:

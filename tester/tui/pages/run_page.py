@@ -121,7 +121,7 @@ class RunPage(View, can_focus=True):
         yield PromptPanel(id="prompt")
         with Horizontal():
             with Vertical(id="run-left"):
-                yield ValuesPanel(id="values", classes="box")
+                yield ValuesPanel(id="values", classes="box", title="Process: measured, setpoint")
                 yield ProgressPanel(id="progress")
                 with Horizontal(id="trends-1"):
                     yield TrendPanel(0, plain=self.plain, id="trend-first")
@@ -130,14 +130,8 @@ class RunPage(View, can_focus=True):
                     yield TrendPanel(2, plain=self.plain, id="trend-third")
                     yield TrendPanel(3, plain=self.plain, id="trend-fourth")
             with Vertical(id="run-right"):
-                yield StepsPanel(id="steps", classes="box")
-                yield EventsPanel(id="events", classes="box")
-
-    def on_mount(self) -> None:
-        """Name the boxes."""
-        self.query_one("#values").border_title = "Process: measured, setpoint"
-        self.query_one("#steps").border_title = "Steps"
-        self.query_one("#events").border_title = "Alarms and events"
+                yield StepsPanel(id="steps", classes="box", title="Steps")
+                yield EventsPanel(id="events", classes="box", title="Alarms and events")
 
     def action_answer(self) -> None:
         """Open the waiting question; at the end of a run, show its results."""

@@ -27,9 +27,11 @@ def plain(parts: Parts) -> str:
 class Panel(Static):
     """Shows what ``picture`` makes of the scene in the space there is. Text is never taken for markup."""
 
-    def __init__(self, *, id: str | None = None, classes: str | None = None) -> None:  # noqa: A002 - as in Textual
-        """Empty until the first scene."""
+    def __init__(self, *, id: str | None = None, classes: str | None = None, title: str = "") -> None:  # noqa: A002
+        """Empty until the first scene. ``id``, ``classes`` as in Textual; ``title``: in the border."""
         super().__init__("", markup=False, id=id, classes=classes)
+        if title:
+            self.border_title = title
         self.scene: ScreenScene | None = None
         self._drawn: Parts | None = None
         self._entitled: str = ""

@@ -14,8 +14,7 @@ from tester.results.run_results import results_of
 from tester.service.commands import Stop
 from tester.service.state_view import ProgressView
 from tester.store.run_reader import RunReader
-from tester.tui.dialogs.exclude_dialog import ExcludeDialog
-from tester.tui.dialogs.repeats_dialog import RepeatsDialog
+from tester.tui.dialogs.repeats_dialog import ExcludeDialog, RepeatsDialog
 from tester.tui.pages.results_page import ResultsView
 from tester.tui.stored import Row, Stored, points, read, series
 from tests.tester.service.views import state
