@@ -8,43 +8,27 @@ from __future__ import annotations
 import sys
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
-from typing import Protocol, TextIO
+from typing import TextIO
 
 
-class Keys(Protocol):
-    """A keyboard that can be asked, and left alone while a person types a line."""
+class Keys:
+    """A keyboard that can be asked, and left alone while a person types a line. This one has no terminal."""
 
     def begin(self) -> None:
         """Take single keys from now on; pressing one shows nothing."""
-        ...
 
     def end(self) -> None:
         """Give the terminal back as it was."""
-        ...
 
     def pressed(self) -> str:
-        """Return what was pressed since the last call, "" for nothing; never waits."""
-        ...
-
-
-class NoKeys:
-    """No terminal: nobody presses anything."""
-
-    def begin(self) -> None:
-        """Do nothing."""
-
-    def end(self) -> None:
-        """Do nothing."""
-
-    def pressed(self) -> str:
-        """Return nothing."""
+        """Return the keys pressed since the last call, "" for none; never waits."""
         return ""
 
 
 def keys_of(stream: TextIO | None) -> Keys:
     """Return the keys of a stream: none unless it is a terminal."""
     if stream is None or not stream.isatty():
-        return NoKeys()
+        return Keys()
     if sys.platform == "win32":
         return _console_keys()
     return _terminal_keys(stream.fileno())
@@ -55,7 +39,7 @@ if sys.platform == "win32":
     def _console_keys() -> Keys:
         import msvcrt
 
-        class ConsoleKeys(NoKeys):
+        class ConsoleKeys(Keys):
             """The Windows console gives single keys as they are."""
 
             def pressed(self) -> str:
@@ -81,7 +65,7 @@ else:
             except termios.error as error:
                 raise OSError(*error.args) from error
 
-        class TerminalKeys:
+        class TerminalKeys(Keys):
             """A POSIX terminal without line mode and echo; Ctrl+C stays a signal."""
 
             def __init__(self) -> None:

@@ -29,8 +29,7 @@ def eds(file: Path, profile: str, rig_name: str, axis: str, as_json: bool) -> in
     It also says what would be done without, and what is lost by that. Without --rig three axes are held against it: one
     of speed, one that presses and carries the safety inputs, one of position. Exit code 1 where one is refused.
     """
-    from drivers.canopen.data_sheet import DataSheetError, read_data_sheet
-    from drivers.profiles.model import ProfileError
+    from drivers.canopen.data_sheet import read_data_sheet
     from drivers.sheet_check import check_sheet
 
     if axis and not rig_name:
@@ -38,7 +37,7 @@ def eds(file: Path, profile: str, rig_name: str, axis: str, as_json: bool) -> in
     try:
         sheet = read_data_sheet(file)
         axes = _axes_of(rig_name, axis, profile) if rig_name else _usual_axes(profile or _makers(sheet))
-    except (DataSheetError, ProfileError) as error:
+    except ValueError as error:  # an unreadable sheet or profile, or an axis that the profile cannot have
         raise click.UsageError(str(error)) from error
     verdicts = {name: check_sheet(config, sheet) for name, config in axes.items()}
     if as_json:
@@ -89,15 +88,9 @@ def _axes_of(rig_name: str, axis: str, profile: str) -> dict[str, AxisConfig]:
     if axis and axis not in drives:
         raise click.UsageError(f"the rig has no drive {axis} (it has {', '.join(drives)})")
     chosen = {axis: drives[axis]} if axis else drives
-    return {name: _with(config, profile) if profile else config for name, config in chosen.items()}
-
-
-def _with(config: AxisConfig, profile: str) -> AxisConfig:
-    """Return an axis with another profile; parameters of its own profile go."""
-    try:
-        return replace(config, profile=profile, parameters={})
-    except ValueError as error:
-        raise click.UsageError(str(error)) from error
+    if not profile:
+        return chosen
+    return {name: replace(config, profile=profile, parameters={}) for name, config in chosen.items()}
 
 
 def _usual_axes(profile: str) -> dict[str, AxisConfig]:
@@ -105,15 +98,12 @@ def _usual_axes(profile: str) -> dict[str, AxisConfig]:
     from drivers.axis import AxisConfig
     from drivers.screw import Screw
 
-    try:
-        speed = AxisConfig(
-            name="speed axis", node_id=1, mode="velocity", unit="rad/s", velocity_increments=95.49,
-            position_increments=0.0, feedback="velocity", rated_torque_nm=2.0, max_speed=25.0, acceleration=40.0,
-            deceleration=40.0, quick_stop_deceleration=200.0, speed_zero=0.2, vendor_id=0, product_code=0,
-            rpdo_deadline_s=0.2, profile=profile,
-        )  # fmt: skip
-    except ValueError as error:
-        raise click.UsageError(str(error)) from error
+    speed = AxisConfig(
+        name="speed axis", node_id=1, mode="velocity", unit="rad/s", velocity_increments=95.49,
+        position_increments=0.0, feedback="velocity", rated_torque_nm=2.0, max_speed=25.0, acceleration=40.0,
+        deceleration=40.0, quick_stop_deceleration=200.0, speed_zero=0.2, vendor_id=0, product_code=0,
+        rpdo_deadline_s=0.2, profile=profile,
+    )  # fmt: skip
     lifted = replace(speed, speed_zero=0.0, position_increments=1000.0, feedback="position")
     press = replace(lifted, name="press", unit="mm/s", digital_io=True, screw=Screw(5.0, 0.87, 0.93, 0.01, 0.02, 40.0))
     position = replace(

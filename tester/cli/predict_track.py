@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
 
 from sim.physics import laws
 from sim.physics.friction import in_range
-from sim.physics.materials import Rubber, Surface, below_glass
+from sim.physics.materials import below_glass
 from sim.physics.track import TrackParameters, table_span
 from tester.cli.options import print_json
 from tester.inputs.materials.setting import law_setting
@@ -28,22 +28,6 @@ class TrackPoint:
     temperature_c: float
     load_n: float
     slip_m_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class OnePair:
-    """A compound and a surface, read once (``sim.physics.materials.Materials``)."""
-
-    of_compound: Rubber
-    of_surface: Surface
-
-    def rubber(self, name: str) -> Rubber:
-        """Return the compound."""
-        return self.of_compound
-
-    def surface(self, name: str) -> Surface:
-        """Return the surface."""
-        return self.of_surface
 
 
 def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_json: bool) -> int:
@@ -68,8 +52,8 @@ def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_jso
     if table:
         if setting is None:
             raise ValueError(f"law {point.law} needs no table: it is made of figures")
-        told, right = _table(point, law, setting)
-        found |= told
+        figures, right = _table(point, law, setting)
+        found |= figures
     if as_json:
         print_json(found)
     else:
@@ -85,16 +69,13 @@ def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_jso
 
 
 def _setting(point: TrackPoint) -> laws.LawSetting | None:
-    """Return the materials of a law that is made of them, each read once."""
+    """Return the materials of a law that is made of them; None for any other law."""
     if not isinstance(laws.find(point.law), laws.OfMaterials):
         return None
     if not point.surface:
         raise ValueError(f"law {point.law} is made of a compound and a surface (expected --surface NAME)")
-    found = law_setting(point.surface, Path("recipe.yaml")).materials  # the folder that we are in counts as a recipe's
-    assert found is not None
-    return laws.LawSetting(
-        OnePair(found.rubber(point.compound), found.surface(point.surface)), point.surface, point.area_mm2
-    )
+    # The working folder counts as a recipe's.
+    return replace(law_setting(point.surface, Path("recipe.yaml")), area_mm2=point.area_mm2, tables=None)
 
 
 def _caveats(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting | None) -> Iterator[str]:
@@ -123,5 +104,5 @@ def _table(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting) -
     made = build(laws.with_parts(point.law, law), table_span(setting, point.compound))[0]
     cpu_s = time.process_time() - began_s
     speeds, temperatures, loads = made.points
-    told = {"points": float(speeds * temperatures * loads), "table_cpu_s": cpu_s, "table_error": made.error}
-    return told, made.error < ALLOWED
+    figures = {"points": float(speeds * temperatures * loads), "table_cpu_s": cpu_s, "table_error": made.error}
+    return figures, made.error < ALLOWED

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,6 @@ from tester.base.processes import EXIT_INVALID
 from tester.cli.options import RigChoice, command, json_option, print_json, rig_options
 
 if TYPE_CHECKING:
-    from tester.base.source import Problem
     from tester.run.run_materials import UsedMaterials
 
 
@@ -53,7 +53,7 @@ def check(recipe: str, rig: RigChoice, as_json: bool, verbose: bool) -> int:
     except InvalidSource as error:
         if not as_json:
             raise
-        print_json({"valid": False, "problems": [_fields(problem) for problem in error.problems]})
+        print_json({"valid": False, "problems": [asdict(problem) for problem in error.problems]})
         return EXIT_INVALID
     valid, doubts = loaded.recipe, [*used.doubts, *map(str, loaded.doubts)]
     count = len(conditions_of(valid, part.settings)) * len(valid.specimens) * valid.replicates
@@ -105,12 +105,3 @@ def schema(what: str) -> None:
     part = kinds.find(kinds.DEFAULT).recipe
     assert part is not None
     click.echo(schema_text(part()), nl=False)
-
-
-def _fields(problem: Problem) -> dict[str, object]:
-    return {
-        "file": problem.file,
-        "line": problem.line,
-        "column": problem.column,
-        "message": problem.message,
-    }

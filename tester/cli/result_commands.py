@@ -14,7 +14,7 @@ import click
 from tester.base.words import Json, duration, finite
 from tester.cli.options import command, json_option
 from tester.cli.stored_runs import run_folder
-from tester.cli.text_table import dump, shown
+from tester.cli.text_table import dump, fields, shown
 
 if TYPE_CHECKING:
     from tester.results.formats import Format
@@ -97,22 +97,16 @@ def _history_json(run: ShownRun) -> dict[str, Json]:
     word = "condition repeat attempt excluded reason operator utc software_version"
     trip = "t_s utc interlock text value unit acknowledged_s acknowledged_utc acknowledged_by"
     return {
-        "sessions": [_fields(one, session) for one in run.sessions],
-        "changes": [_fields(one, change) for one in run.changes],
-        "exclusions": [_fields(one, word, excluded=bool(one.excluded)) for one in run.exclusions],
+        "sessions": [fields(one, session) for one in run.sessions],
+        "changes": [fields(one, change) for one in run.changes],
+        "exclusions": [fields(one, word, excluded=bool(one.excluded)) for one in run.exclusions],
         "trips": [
-            _fields(one, trip, limit=finite(one.limit_value), acknowledged_utc=one.acknowledged_utc or None)
+            fields(one, trip, limit=finite(one.limit_value), acknowledged_utc=one.acknowledged_utc or None)
             for one in run.trips
         ],
-        "holds": [_fields(one, "t_s utc text") for one in run.holds],
-        "commands": [_fields(one, "t_s utc text") for one in run.commands],
+        "holds": [fields(one, "t_s utc text") for one in run.holds],
+        "commands": [fields(one, "t_s utc text") for one in run.commands],
     }
-
-
-def _fields(record: object, names: str, **instead: Json) -> dict[str, Json]:
-    """Return some of a record's fields, by their names; ``instead``: values that take the place of a field's."""
-    values = {name: getattr(record, name) for name in names.split()}
-    return {name: finite(value) if isinstance(value, float) else value for name, value in values.items()} | instead
 
 
 def _budgets(results: RunResults) -> Iterator[str]:
@@ -143,10 +137,10 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
         "reason": run.reason,
         "recipe": run.info.recipe_name,
         "recipe_sha256": run.recipe_sha256,
-        **_fields(run.info, "seed simulated operator risk software_version git_revision"),
+        **fields(run.info, "seed simulated operator risk software_version git_revision"),
         "versions": dict(run.info.versions),
         "calibration_sha256": run.calibration_sha256,
-        "materials": [_fields(one, "role name file source sha256 doubts") for one in run.info.materials],
+        "materials": [fields(one, "role name file source sha256 doubts") for one in run.info.materials],
         "started_utc": run.info.started_utc,
         "ended_utc": run.ended_utc or None,
         "rig_seconds": finite(run.rig_seconds),
@@ -173,12 +167,12 @@ def _reference(watch: ReferenceWatch) -> Json:
             "change_percent": change,
             "change_low_percent": low,
             "change_high_percent": high,
-            **_fields(drift, "over_m references pieces"),
+            **fields(drift, "over_m references pieces"),
         }
     charts: list[Json] = []
     for chart in watch.charts:
-        points = [_fields(point, " ".join(asdict(point))) for point in chart.points]
-        charts.append({**_fields(chart, "compound centre low high"), "points": [*points]})
+        points = [fields(point, " ".join(asdict(point))) for point in chart.points]
+        charts.append({**fields(chart, "compound centre low high"), "points": [*points]})
     return {"drift": drifted, "charts": charts}
 
 

@@ -10,7 +10,7 @@ import click
 
 from tester.base.words import Json, duration
 from tester.cli.options import command, json_option
-from tester.cli.text_table import dump, shown
+from tester.cli.text_table import dump, fields, shown
 from tester.store.run_folders import RunStatus
 
 if TYPE_CHECKING:
@@ -77,23 +77,15 @@ def _record(run: RunEntry) -> Json:
     found: dict[str, Json] = {"run": run.name, "origin": run.origin}
     if run.problem:
         return found | {"status": run.status, "problem": run.problem}
-    known: dict[str, Json] = {
-        "status": run.status,
-        "recipe": run.recipe,
-        "compounds": list[Json](run.compounds.split("\n")),
-        "operator": run.operator,
-        "started_utc": run.started_utc,
+    return {
+        **found,
+        **fields(run, "status recipe operator started_utc"),
         "ended_utc": run.ended_utc or None,
-        "rig_seconds": run.rig_seconds,
-        "simulated": run.simulated,
-        "seed": run.seed,
-        "conditions": run.conditions,
+        "compounds": list[Json](run.compounds.split("\n")),
+        **fields(run, "rig_seconds simulated seed conditions repeats repeats_planned"),
         "values": run.trusted,
-        "repeats": run.repeats,
-        "repeats_planned": run.repeats_planned,
         "can_resume": RunStatus(run.status).can_resume,
     }
-    return found | known
 
 
 def _date(text: str, option: str) -> str:

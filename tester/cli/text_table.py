@@ -9,7 +9,7 @@ from textwrap import wrap
 import click
 from rich.cells import cell_len
 
-from tester.base.words import NONE, Json
+from tester.base.words import NONE, Json, finite
 from tester.results.columns import R, Table
 
 
@@ -21,6 +21,12 @@ def shown(text: str) -> str:
 def dump(value: Json) -> None:
     """Print JSON, indented."""
     click.echo(json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1))
+
+
+def fields(record: object, names: str, **instead: Json) -> dict[str, Json]:
+    """Return some of a record's fields as JSON, by their names; ``instead``: values in place of fields."""
+    values = {name: getattr(record, name) for name in names.split()}
+    return {name: finite(value) if isinstance(value, float) else value for name, value in values.items()} | instead
 
 
 WIDTH = 80

@@ -10,6 +10,7 @@ import click
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_INCOMPLETE
 from tester.cli.options import command, json_option, print_json
 from tester.cli.stored_runs import run_folder
+from tester.cli.text_table import fields
 
 if TYPE_CHECKING:
     from tester.results.verify import Verification
@@ -61,10 +62,7 @@ def _record(name: str, found: Verification, code: int) -> dict[str, object]:
         "run": name,
         "problems": list(found.problems),
         "complete": found.status.over,
-        "blocks": found.blocks,
-        "samples": found.samples,
-        "excluded": found.excluded,
-        "coefficients": found.coefficients,
+        **fields(found, "blocks samples excluded coefficients"),
         "record_head": found.head,
         "verified_with": __version__,
         "exit": code,
@@ -73,10 +71,7 @@ def _record(name: str, found: Verification, code: int) -> dict[str, object]:
         return record
     return record | {
         "status": found.status.value,
-        "recipe_sha256": run.recipe_sha256,
-        "rig_sha256": run.rig_sha256,
-        "calibration_sha256": run.calibration_sha256,
-        "software_version": run.info.software_version,
-        "git_revision": run.info.git_revision,
+        **fields(run, "recipe_sha256 rig_sha256 calibration_sha256"),
+        **fields(run.info, "software_version git_revision"),
         "versions": dict(run.info.versions),
     }

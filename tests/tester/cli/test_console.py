@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from tester.cli import console as module
-from tester.cli.command_keys import NoKeys
+from tester.cli.command_keys import Keys
 from tester.cli.console import Console, standing_words
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
@@ -18,7 +18,7 @@ from tester.machine.time_left import RunPosition
 Output = pytest.CaptureFixture[str]
 
 
-class Typed(NoKeys):
+class Typed(Keys):
     """A keyboard on which a person has typed something."""
 
     def __init__(self) -> None:
