@@ -24,18 +24,18 @@ if TYPE_CHECKING:
 @click.argument("run2", required=False)
 @click.option(
     "--compounds", nargs=2, metavar="FIRST SECOND",
-    help="Compare these: FIRST of RUN1, SECOND of RUN2; without RUN2 both are of RUN1 (unless told its only two).",
+    help="Compare these: FIRST of RUN1, SECOND of RUN2; without RUN2 both are of RUN1 (default: its only two).",
 )  # fmt: skip
 @json_option
 def compare(run1: str, run2: str | None, compounds: tuple[str, str] | None, as_json: bool) -> None:
-    """Hold the conditions of RUN1 and RUN2, or of two compounds of RUN1, against each other: coefficients, difference,
+    """Compare the conditions of RUN1 and RUN2, or of two compounds of RUN1: coefficients, difference,
     uncertainty, z.
 
     Compared are compounds, at the temperatures asked for: the difference from one piece that was mounted to the next is
     in u, the standard uncertainty of the difference; errors that both have in common (one rig, one calibration) are
-    not. z is the difference over u; where it is beyond k, "differs" says that this is not chance alone (95 %).
-    Replicates are compared by their mean. Behind a coefficient ! says that it is not to be trusted, ? that it carries a
-    doubt (`tester show` says which).
+    not. z is the difference over u; where it is beyond k, "differs" marks more than chance (95 %). Replicates are
+    compared by their mean. Behind a coefficient, ! marks a number that is not to be trusted, ? one with a doubt
+    (`tester show` lists it).
     """
     from tester.results.compared import comparison, same_rig
 
@@ -45,8 +45,8 @@ def compare(run1: str, run2: str | None, compounds: tuple[str, str] | None, as_j
         compounds = _both(run1, results[0])
     kinds = [one.run.info.kind for one in results]
     if kinds[0] != kinds[1]:
-        told = f"{run1} is of kind {kinds[0]}, {run2} of {kinds[1]}"
-        raise click.ClickException(f"{told}: their conditions have no axes in common")
+        different = f"{run1} is of kind {kinds[0]}, {run2} of {kinds[1]}"
+        raise click.ClickException(f"{different}: their conditions have no axes in common")
     for i, name in enumerate(names if compounds else ()):
         if compounds and all(row.info.compound != compounds[i] for row in results[i].rows):
             raise click.ClickException(f"{name} has no compound {compounds[i]}")

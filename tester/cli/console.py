@@ -1,4 +1,4 @@
-"""What a run shows on a terminal: a progress line, messages, prompts; or JSON lines for programs."""
+"""A run on a terminal: a progress line, messages, prompts; or JSON lines for programs."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ class Outlet:
     """A standard stream that may go away while it is written to, by another thread too (rich's).
 
     Writing never fails: the first failure is kept, ``check`` raises it once, and nothing is written from then on. A
-    stream that was closed from the start is nobody's loss.
+    stream that was closed from the start is not reported.
     """
 
     def __init__(self, stream: TextIO | None) -> None:
         """``stream``: None where the process was started without it."""
         self._stream = stream
         self._error: OSError | None = None
-        self._told = False
+        self._reported = False
         self.encoding = stream.encoding if stream is not None else "utf-8"
 
     def isatty(self) -> bool:
-        """Tell whether a terminal is there."""
+        """Return whether it is a terminal."""
         return self._stream is not None and self._stream.isatty()
 
     def fileno(self) -> int:
@@ -55,7 +55,7 @@ class Outlet:
         return self._stream.fileno()
 
     def write(self, text: str) -> int:
-        """Write as far as anybody is there."""
+        """Write, if the stream is still there; return the number of characters."""
         return self._try(lambda stream: stream.write(text)) or len(text)
 
     def flush(self) -> None:
@@ -70,8 +70,8 @@ class Outlet:
 
     def check(self) -> None:
         """Raise what has kept this stream from being written, once."""
-        if self._error is not None and not self._told:
-            self._told = True
+        if self._error is not None and not self._reported:
+            self._reported = True
             raise self._error
 
     def _try(self, work: Callable[[TextIO], int | None]) -> int | None:
@@ -154,7 +154,7 @@ class Console(ReportScreen):
             self._err.check()
 
     def _show_line(self, progress: Progress, part: int, share: float, text: str) -> None:
-        """Bring a part's line up to date; it gets one when it is first heard of."""
+        """Bring a part's line up to date; the first call for a part adds one."""
         if part not in self._tasks:
             self._tasks[part] = progress.add_task("", total=1.0)
         progress.update(self._tasks[part], completed=share, description=text)
@@ -187,7 +187,7 @@ class Console(ReportScreen):
             self._progress = None
 
     def message(self, text: str) -> None:
-        """Say something to people; text from outside is shown as it is."""
+        """Show people a message; text from outside is shown as it is."""
         if self._progress is not None:
             self._progress.console.print(Text(text))
             self._err.check()
@@ -200,7 +200,7 @@ class Console(ReportScreen):
             self._out.line(json.dumps(record, ensure_ascii=False))
 
     def result(self, line: str) -> None:
-        """Show people what was measured and what to do next; write the folder, the last line of standard output."""
+        """Show people the results and the next commands; write the folder, the last line of standard output."""
         if not self.as_json:
             for text in ending_lines(Path(line)):
                 self.message(text)
@@ -240,5 +240,5 @@ def standing_words(at: RunPosition) -> str:
 
 
 def _is_terminal(stream: TextIO | None) -> bool:
-    """Tell whether a person sits at a stream; a process may be started without it (None)."""
+    """Return whether a stream is a terminal; None: the process was started without it."""
     return stream is not None and stream.isatty()

@@ -25,14 +25,14 @@ _OBJECT = re.compile(r"(?:0x)?([0-9a-fA-F]{4})(?::([0-9a-fA-F]{1,2}))?")
 
 
 class RigBusyError(click.ClickException):
-    """Somebody uses the rig."""
+    """The rig is in use, or no device of it answers."""
 
     exit_code = EXIT_UNREACHABLE
 
 
 @contextmanager
 def rig_alone(rig: Rig, what: str, seed: int = 0) -> Generator[Wires]:
-    """Yield the wires of a rig that nobody else uses; ``seed``: of a simulated one. Raises RigBusyError."""
+    """Yield the wires of a rig, for exclusive use; ``seed``: of a simulated one. Raises RigBusyError."""
     from tester.base.lock import ExclusiveUse
     from tester.doctor.open_wires import wires_of
     from tester.run.endings import CannotStartError
@@ -143,7 +143,7 @@ def _object(text: str) -> tuple[int, int]:
 
 @click.group("params")
 def params() -> None:
-    """Write down what the devices of a rig are set to, or compare it with what was written down."""
+    """Dump the settings of a rig's devices, or compare them with a dump."""
 
 
 @params.command()
@@ -217,7 +217,7 @@ def _dump(rig_name: str) -> ParameterDump:
     with rig_alone(rig, "tester bus params") as wires:
         found = dumped(Examination(rig, Computer(), wires, everybody=False))
     if not found.devices:
-        raise RigBusyError(f"no device of {rig.name} answers: `tester doctor --rig {rig_name}` says why")
+        raise RigBusyError(f"no device of {rig.name} answers: `tester doctor --rig {rig_name}` finds the reason")
     return found
 
 

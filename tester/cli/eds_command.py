@@ -1,4 +1,4 @@
-"""`tester bus eds`: what a drive with this data sheet would be refused for, and what would be done without."""
+"""`tester bus eds`: why a drive with this data sheet would be refused, and which functions it would lack."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 @click.option("--axis", default="", metavar="AXIS", help="With --rig: this axis only.")
 @json_option
 def eds(file: Path, profile: str, rig_name: str, axis: str, as_json: bool) -> int:
-    """Say everything that connecting a drive with the data sheet FILE (EDS or DCF) would refuse, without a drive.
+    """List every reason to refuse a drive with the data sheet FILE (EDS or DCF), without the drive.
 
-    It also says what would be done without, and what is lost by that. Without --rig three axes are held against it: one
+    It also lists missing functions, and what is lost by each. Without --rig three axes are checked against it: one
     of speed, one that presses and carries the safety inputs, one of position. Exit code 1 where one is refused.
     """
     from drivers.canopen.data_sheet import read_data_sheet

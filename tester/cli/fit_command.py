@@ -35,7 +35,7 @@ class Conditions(NamedTuple):
 )
 @click.option(
     "--law", "law_name", metavar="LAW", default=None,
-    help="Of a wheel v2 (unless told) or paper, the Eq 6; of a track wlf_bell (unless told), power, persson or greta.",
+    help="Of a wheel v2 (default) or paper, the Eq 6; of a track wlf_bell (default), power, persson or greta.",
 )  # fmt: skip
 @click.option(
     "--hold", "holds", multiple=True, metavar="NAMES", help="Parameters not to fit: a,beta,tm as published, or tm=70."
@@ -44,8 +44,8 @@ class Conditions(NamedTuple):
 @click.option(
     "--given", "givens", multiple=True, metavar="NAME=VALUE", help="A figure of a law of materials, such as area=64."
 )
-@click.option("--force", is_flag=True, help="Print intervals and trends that are not to be relied on, too.")
-@click.option("--check", is_flag=True, help="Hold the paper's own table against what has to come out.")
+@click.option("--force", is_flag=True, help="Also print intervals and trends that are not to be relied on.")
+@click.option("--check", is_flag=True, help="Compare the paper's own table with the expected verdict.")
 @json_option
 def fit(
     sources: Sequence[str], validation: Sequence[str], law_name: str | None, holds: Sequence[str], surface: str,
@@ -53,12 +53,12 @@ def fit(
 ) -> int:  # fmt: skip
     """Fit a law of friction to the conditions of SOURCES: runs, or the paper's appendix-a and appendix-b.
 
-    All parameters at once, a compound at a time (on a track, an interface and a surface, too), at the measured
+    All parameters at once, a compound at a time (on a track also an interface and a surface at a time), at the measured
     temperatures, loads and speeds. Prints first whether the law describes the conditions: its residuals beside their
     repeatability and the scatter between them, and their signs along every variable. Then the parameters with 95 %
-    intervals, how far the law is off fitted, left-out and --validate conditions, and what it says: peaks, exponents,
-    trends. Of a law that does not describe them, of a parameter that has no meaning for a rubber, and where nothing is
-    known of the repeatability there are no intervals.
+    intervals, how far the law is off fitted, left-out and --validate conditions, and its consequences: peaks,
+    exponents, trends. There are no intervals for a law that does not describe the conditions, for a parameter that has
+    no meaning for a rubber, and where the repeatability is unknown.
 
     --check, with appendix-a --validate appendix-b: the paper's table and our verdict.
 
@@ -127,19 +127,19 @@ def _conditions(names: Sequence[str]) -> Conditions:
 
 
 def _held(law: Law, group: str, holds: Sequence[str]) -> dict[str, float]:
-    """Return the parameters that are held for a group: as told, or as published for it."""
-    held: dict[str, float] = {}
+    """Return the parameters that are not fitted to a group: as given, or as published for it."""
+    values: dict[str, float] = {}
     for text in (part.strip() for given in holds for part in given.split(",")):
         name, equals, value = text.partition("=")
         if name not in law.names:
             raise click.UsageError(f"--hold: the law {law.name} has no parameter {name!r} ({', '.join(law.names)})")
         if equals:
-            held[name] = _number("--hold", text, value)
+            values[name] = _number("--hold", text, value)
         elif group in law.published:
-            held[name] = law.published[group][law.names.index(name)]
+            values[name] = law.published[group][law.names.index(name)]
         else:
             raise click.UsageError(f"--hold {name}: nothing is published of {group} (expected {name}=VALUE)")
-    return held
+    return values
 
 
 def _figures(givens: Sequence[str]) -> dict[str, float]:
@@ -181,7 +181,7 @@ def _print(
     lines.append("")
     for one in fits:
         lines += group_lines(one, _errors(one, rows), force=force)
-    lines += ["", "all:", *all_lines(overall(fits, rows)), "", "what it says:", *trend_lines(fits, force=force)]
+    lines += ["", "all:", *all_lines(overall(fits, rows)), "", "consequences:", *trend_lines(fits, force=force)]
     for line in lines:
         click.echo(shown(line))
     print_left_out(left_out)

@@ -1,4 +1,4 @@
-"""What `tester figure --components` draws: the parts of a law of materials, over roughness, speed or pressure."""
+"""Charts of `tester figure --components`: the parts of a law of materials, over roughness, speed or pressure."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 OVERS: Final = ("ra", "speed", "pressure")
 POINTS: Final = 61
 AREA_MM2: Final = 100.0
-"""Of the contact; what is drawn knows the pressure alone."""
+"""Area of the contact; the charts depend on the pressure alone."""
 
 
 class At(NamedTuple):
-    """Where a law is asked, but for what it is drawn over."""
+    """Arguments of a law, except the one it is drawn over."""
 
     temperature_c: float
     pressure_pa: float
@@ -26,7 +26,7 @@ class At(NamedTuple):
 
 
 def parts_chart(law: str, compound: str, surface: str, over: str, at: At) -> Chart:
-    """Return the chart; what makes no law is a usage error."""
+    """Return the chart; an impossible law is a usage error."""
     from sim.physics import laws
     from tester.base.source import InvalidSource
     from tester.inputs.materials.library import Library
@@ -80,10 +80,10 @@ def _rougher(wave: Sinusoid, factor: float) -> Sinusoid:
 
 
 def _note(over: str, at: At) -> str:
-    told = {
+    values = {
         "speed": f"{1e3 * at.speed_m_s:g} mm/s",
         "pressure": f"{1e-3 * at.pressure_pa:g} kPa",
         "temperature": f"{at.temperature_c:g} degC",
     }
-    others = ", ".join(text for name, text in told.items() if name != over)
+    others = ", ".join(text for name, text in values.items() if name != over)
     return f"at {others}; both waves change alike" if over == "ra" else f"at {others}"

@@ -22,7 +22,7 @@ from tester.cli.command_table import SECTIONS, CommandGroup, Listed
 
 
 class ReaderGoneError(Exception):
-    """What a command writes to has been closed at its other end."""
+    """The reader of a command's output has closed it."""
 
 
 class LazyGroup(click.Group):
@@ -68,7 +68,7 @@ class LazyGroup(click.Group):
             raise click.UsageError(f"{error.message}{meant}", ctx) from error
 
     def invoke(self, ctx: click.Context) -> object:
-        """Carry out the command; a reader that is gone is ours to tell, click would end with 1."""
+        """Carry out the command; a reader that is gone is reported here: click would end with 1."""
         try:
             return super().invoke(ctx)
         except BrokenPipeError as error:
@@ -102,7 +102,7 @@ def nearest(typed: str, entries: Mapping[str, Listed]) -> str:
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="stdout is data, stderr is messages. Exit codes: 0 done, 1 run failed, 2 usage, 3 invalid recipe or rig "
     "file, 4 rig unreachable, 5 tripped or stopped, 6 incomplete, 130 interrupted, "
-    "141 nobody reads the output any more.",
+    "141 the reader of the output is gone.",
 )
 @click.version_option(__version__, message="%(prog)s %(version)s")
 @click.pass_context
@@ -129,10 +129,10 @@ def _invalid_source() -> type[Exception]:
 
 
 def _prepare_streams() -> None:
-    """Let every character of a table's header and of a file's name go out, whatever the locale.
+    """Let the standard streams write every character, whatever the locale.
 
     A redirected stream is UTF-8; a terminal that does not know a character (LANG=C) shows a question mark. A closed
-    stream leads nowhere: without that, a file that is opened would stand in its place.
+    stream is replaced by the null device: otherwise the next opened file would take its descriptor.
     """
     for name in ("stdin", "stdout", "stderr"):
         stream: object = getattr(sys, name)
@@ -169,7 +169,7 @@ def invoke(arguments: list[str] | None = None) -> int:
 
 
 def _flushed(code: int) -> int:
-    """Return the exit code once everything is written; what is left for a reader that is gone is dropped."""
+    """Return the exit code once everything is written; output for a reader that is gone is dropped."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

@@ -29,16 +29,16 @@ GLASS = "glass"
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True)
 @click.option(
     "--reference", "reference_c", type=QuantityType("degC"), default=20.0, metavar="20degC",
-    help="Temperature at which the curve stands.  [default: 20degC]",
+    help="Reference temperature of the curve.  [default: 20degC]",
 )
 @click.option(
     "--ts", "ts_words", metavar="TS",
-    help="Ts of the shift: such as -3degC, or glass, which is Tg + 50 K of the compound's file. Else it is looked for.",
+    help="Ts of the shift: such as -3degC, or glass, which is Tg + 50 K of the compound's file. Else it is fitted.",
 )
 @click.option("--compound", metavar="NAME", help="Which compound, where there are several.")
 @click.option("--interface", metavar="NAME", help="Which interface, where there are several: dry, wet, talc.")
 @click.option("--load", metavar="LOAD", help="Which load, where there are several, such as 20N.")
-@click.option("--format", "ending", type=click.Choice(FORMATS), default=None, help="As the ending of the file says.")
+@click.option("--format", "ending", type=click.Choice(FORMATS), default=None, help="By the ending of the file.")
 @click.option(
     "-o", "--out", type=click.Path(dir_okay=False, path_type=Path), default=None,
     help="File that gets the table (csv) or the figure (png, svg, pdf).",
@@ -55,7 +55,7 @@ def master(
     out: Path | None,
     as_json: bool,
 ) -> int:
-    """Put the conditions of RUNS on one curve over aT v, and say whether they are one.
+    """Put the conditions of RUNS on one curve over aT v, and report whether they form one.
 
     log10 aT = -8.86 (T - Ts) / (101.5 K + T - Ts) after Williams, Landel and Ferry. The table goes to stdout: x =
     log10(aT v) at the reference temperature, mu, measured temperature and speed, and how far mu is off the curve. The
@@ -88,12 +88,12 @@ def _ending(given: str | None, out: Path | None) -> str:
         if given is not None:
             raise click.UsageError(f"--format {given}: which file? (expected -o FILE.{given})")
         return ""
-    told = out.suffix.removeprefix(".").lower()
-    if told not in FORMATS:
-        raise click.UsageError(f"-o {out}: the ending says no format (expected {', '.join(FORMATS)})")
-    if given not in (None, told):
-        raise click.UsageError(f"-o {out}: the ending says {told}, --format {given}")
-    return told
+    written = out.suffix.removeprefix(".").lower()
+    if written not in FORMATS:
+        raise click.UsageError(f"-o {out}: the ending names no format (expected {', '.join(FORMATS)})")
+    if given not in (None, written):
+        raise click.UsageError(f"-o {out}: the ending is {written}, --format {given}")
+    return written
 
 
 def _quantity(option: str, text: str | None, unit: str) -> float | None:
@@ -112,7 +112,7 @@ def _ts(words: str | None, compound: str, glass_c: float | None) -> float | None
     if words != GLASS:
         return _quantity("--ts", words, "degC")
     if glass_c is None:
-        raise click.UsageError(f"--ts {GLASS}: no file says the Tg of {shown(compound)} (expected such as --ts=-3degC)")
+        raise click.UsageError(f"--ts {GLASS}: no file has the Tg of {shown(compound)} (expected such as --ts=-3degC)")
     return glass_c + GLASS_TO_REFERENCE_K
 
 

@@ -1,4 +1,4 @@
-"""A recipe that is being written: answers so far, and what a rig says about each."""
+"""A recipe that is being written: answers so far, each checked against a rig."""
 
 from __future__ import annotations
 

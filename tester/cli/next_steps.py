@@ -57,7 +57,7 @@ def lines(here: Path) -> Iterator[str]:
 def _runs(folder: Path) -> list[Path]:
     """Return the runs of a folder, the newest first."""
     if not folder.is_dir():
-        return []  # nothing of the store is loaded: a first call answers at once
+        return []  # without runs the store is not loaded: a first call answers at once
     from tester.store.run_folders import run_folders
 
     return sorted(run_folders(folder), reverse=True)
@@ -73,8 +73,8 @@ def _unfinished(runs: list[Path]) -> Iterator[NextStep]:
 
     for folder in runs[:LOOKED_AT]:
         with suppress(StoreError, OSError), RunReader(folder) as reader:
-            held = under_way(folder) is not None
-            status = run_status(reader.run().status, held=held, missing=False)
+            in_use = under_way(folder) is not None
+            status = run_status(reader.run().status, held=in_use, missing=False)
             if status.can_resume:
                 count = reader.count("repeat")
                 kept = f"{count} repeat{'' if count == 1 else 's'} kept"

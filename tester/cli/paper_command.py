@@ -1,4 +1,4 @@
-"""`tester paper`: the paper held against its own data; with --all every item of all papers."""
+"""`tester paper`: checks the paper against its own data; with --all every item of all papers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @click.option("--all", "every", is_flag=True, help="Every figure, table, equation and statement of all papers.")
 @json_option
 def paper(every: bool, as_json: bool) -> int:
-    """Hold the paper's equations and claims against its own appendices; exit code 1 where a figure misses.
+    """Check the paper's equations and claims against its own appendices; exit code 1 where a figure misses.
 
     Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0): Eqs 7 to 9 with Table 3, fits to appendix A seen
     on appendix B, and the errors that the paper quotes. With --all: a page with each item of this paper

@@ -42,7 +42,7 @@ from tester.inputs.rig.profiles import extension_law
     show_default=True,
     help="Nominal area of contact, for persson and greta: makes a pressure of the load.",
 )
-@click.option("--components", is_flag=True, help="Print adhesion and hysteresis, too, where the law knows them.")
+@click.option("--components", is_flag=True, help="Also print adhesion and hysteresis, where the law has them.")
 @click.option(
     "--table",
     is_flag=True,
@@ -58,8 +58,7 @@ def predict(
     The laws paper and v2 are the thermo-coupled model of Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY
     4.0), of a wheel on a belt: with a sideslip angle the slip is the vector between the wheel's plane and the belt's
     travel. The other laws of this program are of a specimen on a track; persson and greta are made of files of a
-    compound and a surface (see `tester materials`). What the value rests on, where it lies outside what is known, is
-    said on stderr.
+    compound and a surface (see `tester materials`). Where the value is extrapolated, stderr has a warning.
     """
     laws.look_up_with(extension_law)
     try:

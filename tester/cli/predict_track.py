@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
 from sim.physics import laws
 from sim.physics.friction import in_range
-from sim.physics.materials import below_glass
+from sim.physics.materials import Rubber, Surface, below_glass
 from sim.physics.track import TrackParameters, table_span
 from tester.cli.options import print_json
 from tester.inputs.materials.setting import law_setting
@@ -28,6 +28,22 @@ class TrackPoint:
     temperature_c: float
     load_n: float
     slip_m_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class OnePair:
+    """A compound and a surface, read once: a modulus notes how far beyond its table a law has asked it."""
+
+    of_compound: Rubber
+    of_surface: Surface
+
+    def rubber(self, name: str) -> Rubber:
+        """Return the compound."""
+        return self.of_compound
+
+    def surface(self, name: str) -> Surface:
+        """Return the surface."""
+        return self.of_surface
 
 
 def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_json: bool) -> int:
@@ -74,12 +90,14 @@ def _setting(point: TrackPoint) -> laws.LawSetting | None:
         return None
     if not point.surface:
         raise ValueError(f"law {point.law} is made of a compound and a surface (expected --surface NAME)")
-    # The working folder counts as a recipe's.
-    return replace(law_setting(point.surface, Path("recipe.yaml")), area_mm2=point.area_mm2, tables=None)
+    materials = law_setting(point.surface, Path("recipe.yaml")).materials  # the working folder counts as a recipe's
+    assert materials is not None
+    pair = OnePair(materials.rubber(point.compound), materials.surface(point.surface))
+    return laws.LawSetting(pair, point.surface, point.area_mm2)
 
 
 def _caveats(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting | None) -> Iterator[str]:
-    """Yield where the law does not hold, and how far moduli were held on beyond those measured."""
+    """Yield where the law does not hold, and how far moduli are extrapolated beyond those measured."""
     from sim.physics.moduli import TabulatedModulus
 
     yield from laws.caveats_of(law, point.temperature_c, point.load_n, point.slip_m_s)
@@ -92,7 +110,7 @@ def _caveats(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting 
         low_hz, high_hz = modulus.limits_hz(point.temperature_c)
         yield (
             f"the moduli of {point.compound} at {point.temperature_c:g} degC are measured from {low_hz:.3g} to"
-            f" {high_hz:.3g} Hz, and held on for {modulus.beyond_decades:.1f} decades beyond"
+            f" {high_hz:.3g} Hz, and extrapolated {modulus.beyond_decades:.1f} decades beyond"
         )
 
 

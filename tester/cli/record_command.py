@@ -29,7 +29,7 @@ def record(folder: Path, can: str, bitrate: int, master: int, lines: tuple[str, 
 
     Nothing is sent. On SocketCAN it listens beside a run; other CAN adapters, and serial ports, belong to one program:
     there a second adapter listens, or the run writes its own --bus-log. A test reads the folder with
-    tests/drivers/recorded.py. Ends with exit code 1 where nothing was heard.
+    tests/drivers/recorded.py. Ends with exit code 1 if no frame was received.
     """
     from drivers.ports import BusLost
     from tester.base.processes import end_asked

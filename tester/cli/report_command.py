@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 @click.option("--law", default="", metavar="LAW", help="Draw a published law too: paper or v2.")
 @click.option("--published/--no-published", default=True, show_default=True, help="Points of the paper beside.")
 def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> None:
-    """Write a report of each RUN into one HTML file: results with their uncertainty, figures, budgets, what was on
-    record, and whether it is as it was left.
+    """Write a report of each RUN into one HTML file: results with their uncertainty, figures, budgets, the record,
+    and whether it is unchanged.
 
     The file holds everything, fetches nothing and has no script. A browser prints it, on paper or as PDF. Several runs
-    are held against each other. The file's name is printed.
+    are compared. The file's name is printed.
     """
     from tester.report.page import page_of
     from tester.report.report_build import report_of

@@ -65,7 +65,7 @@ def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
     """Show how requests over the slip ring failed in each RUN: time-outs, bad checksums, late replies of the jacket.
 
     Of each: how many of a thousand, at which speed of the wheel, and whether they gather at an angle of it, which
-    speaks of a worn place or a brush. The angle counts from where the wheel stood when it was put on. Several runs are
+    means a worn place or a brush. The angle counts from the wheel's position when it was mounted. Several runs are
     put in order of time, with the turns of the ring until then: errors that grow with its age call for new brushes.
     """
     from tester.analysis.ring_runs import ages_of, trend_of
@@ -81,9 +81,9 @@ def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
         click.echo("run                             turns of the ring  requests  errors  of 1000")
         for one, age in zip(found, ages, strict=True):
             click.echo(f"{one.name:<32}{age:>17.0f}{one.requests:>10}{one.errors:>8}{one.per_thousand:>9.2f}")
-        told = trend_of([(age, one.requests, one.errors) for one, age in zip(found, ages, strict=True)]).words
-        if told:
-            click.echo(told)
+        trend = trend_of([(age, one.requests, one.errors) for one, age in zip(found, ages, strict=True)]).words
+        if trend:
+            click.echo(trend)
 
 
 def _ring_of(name: str) -> RingRun:

@@ -1,4 +1,4 @@
-"""`tester runs`: what is stored, and which runs can go on."""
+"""`tester runs`: the stored runs, and which can be resumed."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 @click.option("--since", default="", metavar="DATE", help="Runs begun on or after a date (UTC), e.g. 2026-11-01.")
 @click.option("--until", default="", metavar="DATE", help="Runs begun on or before a date (UTC).")
 @click.option("--recipe", default="", metavar="TEXT", help="Runs whose recipe's name holds this text.")
-@click.option("--status", type=click.Choice([one.value for one in RunStatus]), default=None, help="Runs that stand so.")
+@click.option("--status", type=click.Choice([one.value for one in RunStatus]), default=None, help="Of this status.")
 @json_option
 def runs(
     out: Path | None, compound: str, since: str, until: str, recipe: str, status: str | None, as_json: bool
 ) -> None:
-    """List the runs that are stored, those that were cut off with what is committed of them.
+    """List the stored runs; of interrupted ones, the repeats that are committed.
 
-    With TESTER_CATALOGUE=postgresql://... the runs of everybody who shares that catalogue.
+    With TESTER_CATALOGUE=postgresql://... the runs of all who share that catalogue.
     """
     from tester.results.catalogue import open_catalogue
     from tester.results.catalogue.entries import WantedRuns, refresh

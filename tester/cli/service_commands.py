@@ -182,8 +182,8 @@ def _show(state: StateView, as_json: bool) -> None:
 def _lines(state: StateView) -> list[str]:
     """Return a state in some lines."""
     run, progress = state.run, state.progress
-    held = f"  for {duration(state.mode_since_s)}" if state.mode == "HOLD" else ""
-    lines = [f"{state.mode}  {state.mode_text}{held}".rstrip()]
+    since = f"  for {duration(state.mode_since_s)}" if state.mode == "HOLD" else ""
+    lines = [f"{state.mode}  {state.mode_text}{since}".rstrip()]
     if state.risk:
         lines.append(f"risk     accepted: {state.risk}")
     if run is not None:
@@ -199,6 +199,6 @@ def _lines(state: StateView) -> list[str]:
     lines += [f"alarm    {alarm.state}: {alarm.name}: {alarm.text}" for alarm in state.alarms]
     lines += [f"value    {value.label} {value.value:.{value.decimals}f} {value.unit}".rstrip()
               for value in state.values[:5] if value.value is not None]  # fmt: skip
-    control = state.clients.controller or "nobody"
+    control = state.clients.controller or "no client"
     lines.append(f"control  {control}; {state.clients.viewers} watching")
     return lines

@@ -20,7 +20,7 @@ Read = TypeVar("Read")
 
 
 def run_folder(name: str) -> Path:
-    """Return the folder of a run; a name that is none is a usage error."""
+    """Return the folder of a run; an unknown name is a usage error."""
     from tester.store.record_schema import StoreError
     from tester.store.run_folders import find_run
 
@@ -59,7 +59,7 @@ def kind_of(info: RunInfo) -> Kind | None:
 
 
 def material_of(results: RunResults, law: str, published: bool) -> Material:
-    """Return what a run's figures may show; a law that is none is a usage error."""
+    """Return what a run's figures may show; an unknown law is a usage error."""
     from tester.report.charts import ChartValue, Material, values_of
 
     measured = values_of(results)
@@ -70,7 +70,7 @@ def material_of(results: RunResults, law: str, published: bool) -> Material:
             raise click.UsageError(f"--law: no law is known of the kind {results.run.info.kind}")
         return Material(measured)
     part = fits()
-    beside = [ChartValue(held, mu) for held, mu in part.published_values()] if published else []
+    beside = [ChartValue(setpoint, mu) for setpoint, mu in part.published_values()] if published else []
     if not law:
         return Material(measured, beside)
     try:

@@ -96,7 +96,7 @@ def sweep(
 
 
 class _Printer:
-    """Tells people on standard error, and programs, if asked for, in JSON lines on standard output."""
+    """Reports to people on standard error and, with ``as_json``, to programs in JSON lines on standard output."""
 
     def __init__(self, options: SweepOptions, *, as_json: bool) -> None:
         self.keys = [axis.key for axis in options.axes]
@@ -104,13 +104,13 @@ class _Printer:
         self.runs = 0
 
     def begin(self, folder: Path, runs: int) -> None:
-        """Say where the results will be."""
+        """Report where the results will be."""
         self.runs = runs
         self._emit({"event": "begin", "folder": str(folder), "runs": runs})
         click.echo(f"{runs} runs into {folder}", err=True)
 
     def ran(self, result: CaseResult, done: int) -> None:
-        """Say how a run ended, and name what is missing."""
+        """Report how a run ended, and what is missing."""
         from tester.run.sweep.sweep_tables import row_record
 
         record = {key: _json(value) for key, value in asdict(result).items() if key not in ("point", "rows")}
@@ -121,8 +121,8 @@ class _Printer:
         missing = f", {result.missing} of {len(result.rows)} conditions missing" if result.missing else ""
         doubts = f", {result.with_care} to be taken with care" if result.with_care else ""
         reason = f": {result.reason}" if result.reason else ""
-        told = f"{result.outcome}{missing}{doubts}{reason}"
-        click.echo(f"{done}/{self.runs}  {point}seed {result.seed}: {told}", err=True)
+        ended = f"{result.outcome}{missing}{doubts}{reason}"
+        click.echo(f"{done}/{self.runs}  {point}seed {result.seed}: {ended}", err=True)
 
     def _emit(self, record: dict[str, object]) -> None:
         if self.as_json:

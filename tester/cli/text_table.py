@@ -14,7 +14,7 @@ from tester.results.columns import R, Table
 
 
 def shown(text: str) -> str:
-    """Return text that a person or a device wrote, harmless for a terminal."""
+    """Return a text with every character that could steer a terminal replaced."""
     return "".join(c if c.isprintable() else "�" for c in text)
 
 
@@ -36,7 +36,7 @@ NAME_AT_MOST = 12
 
 
 def table_lines(table: Table[R], remarks: str, width: int = WIDTH) -> Iterator[str]:
-    """Yield headings and rows; the first column names a row, the column ``remarks`` stands behind it or below."""
+    """Yield headings and rows; the first column names a row, the column ``remarks`` is behind it or below."""
     behind = table[remarks]
     columns = [column for column in table.columns if column.key != remarks]
     pads = [" " if any(column.mark_at(row) for row in table.rows) else "" for column in columns]

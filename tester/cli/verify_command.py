@@ -1,4 +1,4 @@
-"""`tester verify`: is a run as it was left?"""
+"""`tester verify`: whether a run is unchanged."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def _hash(_context: click.Context, _parameter: click.Parameter, value: str) -> str:
-    """Refuse what is no hash: a mistyped one must not read as a forged record."""
+    """Return a hash; refuse any other text: a mistyped hash must not read as a forged record."""
     if value and not re.fullmatch(r"[0-9a-fA-F]{64}", value):
         raise click.BadParameter(f"expected 64 hexadecimal digits, got {value!r}")
     return value
@@ -30,11 +30,11 @@ def _hash(_context: click.Context, _parameter: click.Parameter, value: str) -> s
 def verify(run: str, head: str, as_json: bool) -> int:
     """Check RUN: the chain over its record, every coefficient by its samples, its tables, manifest, recipe, rig file.
 
-    The record's head is shown at a run's end, and here. Who can write the folder can make everything in it anew; with
-    the head that you have kept elsewhere, --head shows that, too.
+    The record's head is shown at a run's end, and here. A person who can write the folder can make everything in it
+    anew; --head, with the head that you have kept elsewhere, shows that as well.
 
-    Exit code 0: as it was left, and its plan was gone through. 1: something differs, each named on stderr. 6: as it
-    was left, and its plan was not gone through.
+    Exit code 0: unchanged, and its plan is complete. 1: something differs, each difference on stderr. 6: unchanged, and
+    its plan is not complete.
     """
     from tester.results.verify import verify as check
 

@@ -126,7 +126,7 @@ def drift_section(record: RunRecord, key: str) -> ReportSection:
     lines = (
         f"{word.condition}/{word.repeat} {'left out' if word.excluded else 'taken in again'} by "
         f"{word.operator or 'an unnamed person'}, {word.utc}: {word.reason}"
-        for word in record.said
+        for word in record.exclusions
     )
     parts += listed("Decisions of people on single repeats:", lines)
     return ReportSection(key, "Drift, repeats, exclusions", parts)

@@ -51,7 +51,7 @@ class RunRecord:
     trips: Sequence[StoredTrip]
     events: Sequence[StoredEvent]
     """Warnings and worse, in order."""
-    said: Sequence[StoredExclusion]
+    exclusions: Sequence[StoredExclusion]
     """Decisions of people on single repeats, in order."""
     void: Mapping[int, Sequence[StoredRepeat]]
     """Interrupted attempts, by condition."""
@@ -92,7 +92,7 @@ def read_record(folder: Path, machine: MachineWords) -> RunRecord:
             tares=[*reader.tares()],
             trips=[*reader.trips()],
             events=[event for event in reader.events() if event.severity not in ("info", "debug")],
-            said=reader.exclusions(),
+            exclusions=reader.exclusions(),
             void=void,
             verification=verify(folder),
             files=_files(folder),

@@ -179,7 +179,7 @@ def assumption_section(record: RunRecord, key: str) -> ReportSection:
         parts.append(ReportTable("In the uncertainty", heads("term", "limit", "source", text=(0, 1, 2)), terms))
     if keys:
         rows = [ReportRow((key_.key, key_.value, key_.remark)) for key_ in keys]
-        titles = heads("key", "value", "what the file says", text=(0, 1, 2))
+        titles = heads("key", "value", "remark in the file", text=(0, 1, 2))
         note = "keys that are as the packaged rig file has them; a value of the laboratory's own is not listed"
         parts.append(ReportTable("In the rig file", titles, rows, note))
     if not terms and not keys:

@@ -34,7 +34,7 @@ def runs_chapter(records: Sequence[RunRecord]) -> Chapter:
     if strange:
         sentence = f"Of another kind of rig than {first.name}, and not compared: {', '.join(strange)}."
         sections.append(ReportSection("all-strange", "Not compared", [Paragraph(sentence, "care")]))
-    return Chapter("all", "Runs held against each other", sections)
+    return Chapter("all", "Runs compared", sections)
 
 
 def _pictures(records: Sequence[RunRecord]) -> list[Part]:

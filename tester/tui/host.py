@@ -195,7 +195,7 @@ class HostApp(LookApp):
         task.add_done_callback(self._stops.discard)
 
     async def _stop(self, link: Link, sent: Future[None] | None, fast: bool) -> None:
-        """Wait for the STOP that the key has sent already; if there is none, or it failed, send STOP over the link."""
+        """Wait for the STOP that the key has already sent; without it, or if it failed, send STOP over the link."""
         taken = "FAST STOP taken" if fast else "STOP taken"
         if sent is not None:
             try:

@@ -38,7 +38,7 @@ class AbortDialog(Dialog):
 
     def content(self) -> Iterable[Widget]:
         """Return what it costs, and the field."""
-        yield line("The rig makes a controlled stop. What is committed stays; `tester resume` can go on later.")
+        yield line("The rig makes a controlled stop. Committed repeats stay; `tester resume` continues later.")
         yield field(f"Type: {WORD}", entry("word"))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
@@ -54,8 +54,8 @@ class AbortDialog(Dialog):
 class GoOnDialog(Dialog):
     """Motion starts again: the pre-flight list, then Enter."""
 
-    TITLE = "Go on"
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Go on", show=False)]
+    TITLE = "Resume"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Resume", show=False)]
 
     def __init__(self, state: StateView, action: Action, words: str) -> None:
         """``words``: what will happen."""
@@ -66,10 +66,10 @@ class GoOnDialog(Dialog):
         """Return the list and the button."""
         yield line([(clean(self.words), "bold")])
         yield line(preflight_rows(self.state.preflight))
-        yield Button("Go on (Enter)", id="go", compact=True)
+        yield Button("Resume (Enter)", id="go", compact=True)
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
-        """Go on."""
+        """Resume."""
         event.stop()
         self.action_go()
 

@@ -42,7 +42,7 @@ DRAWN_S = 0.1
 """Period for reading the engine's state, s."""
 SEEN_S = 0.3
 """An answer sooner than this after a question appears was typed before it, s [A]."""
-KEYS = (("Enter", "Answer"), ("Tab", "Steps"), ("space", "Hold"), ("r", "Go on"), ("F1", "Help"), ("^C", "Leave"))
+KEYS = (("Enter", "Answer"), ("Tab", "Steps"), ("space", "Hold"), ("r", "Continue"), ("F1", "Help"), ("^C", "Leave"))
 HELP = """\
 F12, Ctrl+X  STOP: gives up the step at once, without asking; everything comes to rest. The step starts again later.
 F9, Ctrl+F   FAST STOP, the same way.
@@ -67,7 +67,7 @@ class GuideApp(LookApp):
         Binding("ctrl+c,ctrl+q", "leave", "Leave", priority=True, show=False),
         Binding("q", "leave", "Leave", show=False),
         Binding("space", "hold", "Hold", show=False),
-        Binding("r", "go_on", "Go on", show=False),
+        Binding("r", "go_on", "Continue", show=False),
         Binding("f1", "help", "Help", show=False),
     ]
 
@@ -253,7 +253,7 @@ class GuideApp(LookApp):
         """Return the commands of the palette (Ctrl+P)."""
         yield SystemCommand("STOP", "Give the step up, at once (F12, Ctrl+X)", self.action_stop)
         yield SystemCommand("FAST STOP", "The same, fast (F9, Ctrl+F)", self.action_fast_stop)
-        yield SystemCommand("Go on", "Begin, or continue at the first open step (r)", self.action_go_on)
+        yield SystemCommand("Continue", "Begin, or continue at the first open step (r)", self.action_go_on)
         yield SystemCommand("Help", "Keys of this screen (F1)", self.action_help)
         yield SystemCommand("Leave", "A step under way is stopped first (Ctrl+C)", self.action_leave)
 

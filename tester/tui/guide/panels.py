@@ -68,7 +68,7 @@ def end_words(seen: GuideView) -> tuple[str, str]:
     if outcome is not None:
         at = f" at {outcome.step}" if outcome.step else ""
         why = f": {clean(outcome.text)}" if outcome.text else ""
-        again = "" if outcome.ended is Ended.DONE else ". r goes on where it stands"
+        again = "" if outcome.ended is Ended.DONE else ". r continues at the first open step"
         return f"{outcome.ended.value}{at}{why}{again}", ABNORMAL if outcome.ended in BAD else "bold"
     if not seen.now:
         return f"nothing is connected, nothing moves. Next: {seen.next or NONE}", ""

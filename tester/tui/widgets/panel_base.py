@@ -42,7 +42,7 @@ class Panel(Static):
         self.redraw()
 
     def redraw(self) -> None:
-        """Draw again, if anything has changed and anybody can see it."""
+        """Draw again, if it has changed and is visible."""
         size = self.content_size
         if self.scene is None or not size.width or not size.height:
             return
@@ -62,7 +62,7 @@ class Panel(Static):
         self.redraw()
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return what to show in so many columns and rows."""
+        """Return the content for ``width`` columns and ``height`` rows."""
         return []
 
     @property

@@ -65,7 +65,7 @@ def test_a_fit_to_appendix_a_is_seen_on_b(capsys: pytest.CaptureFixture[str]) ->
 
 def test_it_ends_with_peaks_exponents_and_signs(capsys: pytest.CaptureFixture[str]) -> None:
     told = out(capsys, "fit", "appendix-a", "appendix-b")
-    end = told.partition("what it says:")[2]
+    end = told.partition("consequences:")[2]
     assert end.count("rises to a peak, then falls") == 3
     assert end.count("no peak between 0 mm/s and 400 mm/s; exponent +0.") == 3
     assert end.count("no peak between 100 N and 400 N; exponent -0.") == 3

@@ -105,7 +105,7 @@ def test_moduli_that_are_held_on_are_told(
     assert capsys.readouterr().err == ""
     words[words.index("20 degC")] = "-60 degC"
     assert invoke(words) == 0
-    assert "held on for" in capsys.readouterr().err
+    assert "extrapolated" in capsys.readouterr().err
 
 
 def test_a_table_says_what_it_takes_and_by_how_much_it_is_off(

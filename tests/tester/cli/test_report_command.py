@@ -41,7 +41,7 @@ def test_a_report_of_several_runs_goes_where_it_is_told(home: Path, capsys: pyte
     pytest.importorskip("matplotlib", reason="needs the extra `report`")
     made_run(home / "runs" / "two", [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3)])
     assert out(capsys, "one", "two", "one", "--out", "sent/both.html").splitlines() == [str(Path("sent") / "both.html")]
-    assert "Runs held against each other" in (home / "sent" / "both.html").read_text(encoding="utf-8")
+    assert "Runs compared" in (home / "sent" / "both.html").read_text(encoding="utf-8")
 
 
 def test_a_setting_that_disagrees_is_in_the_report_in_the_words_of_show(

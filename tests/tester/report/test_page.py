@@ -204,7 +204,7 @@ def test_two_runs_are_overlaid_and_compared(plain: RunRecord, tmp_path: Path) ->
     design = [(25.0, load, 0.3) for load in (100.0, 200.0)] + [(25.0, 100.0, 0.1)]
     other = read_record(made_run(tmp_path / "other", design), WORDS)
     text = page(plain, other)
-    assert "Runs held against each other" in text and "friction coefficient over load, of each run" not in text
+    assert "Runs compared" in text and "friction coefficient over load, of each run" not in text
     assert "one and other" in text and "friction coefficient over slip velocity, of each run" in text
     names = [one.text or "" for one in elements(text) if one.tag == f"{SVG}title"]
     assert any(name.startswith("other: 1#") for name in names)
