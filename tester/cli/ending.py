@@ -1,4 +1,4 @@
-"""What a run ends with on a terminal: the table of what was measured, what was not, which command to try next."""
+"""The end of a run on a terminal: the table of results, the conditions without one, the next commands."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tester.store.record_schema import StoreError
 from tester.store.run_reader import RunReader
 
 ROWS_AT_MOST = 200
-"""A longer table is for a spreadsheet: its beginning is shown, with the file that has it all."""
+"""Most rows shown; of a longer table the beginning, with the name of the file that has every row."""
 
 
 def ending_lines(folder: Path) -> list[str]:
@@ -33,11 +33,11 @@ def ending_lines(folder: Path) -> list[str]:
 
 
 def ending_table(results: RunResults, folder: Path) -> Iterator[str]:
-    """Yield the table, 80 columns wide: a row for each condition of which something was tried.
+    """Yield the table, 80 columns wide: a row for each condition that was tried.
 
-    ``mu`` and its expanded uncertainty (95 %) of what was mounted are at the temperature asked for; the compound's is
+    ``mu`` and its expanded uncertainty (95 %) of the mounted piece are at the temperature asked for; the compound's is
     in ``conditions.csv``. A number that cannot be trusted has the mark ``!``, a value to be taken with care ``?``.
-    Conditions that the run did not come to are one line.
+    Conditions that the run did not reach are one line.
     """
     yield from risk_lines(results)
     conditions = recipe_rows(conditions_table(results))
@@ -62,7 +62,7 @@ def tally_lines(results: RunResults, width: int = WIDTH) -> Iterator[str]:
 
 
 def risk_lines(results: RunResults) -> Iterator[str]:
-    """Yield which safety keys were looser than they should be, and why that was accepted; nothing where none was."""
+    """Yield the accepted risk: safety keys looser than they should be, and the reason; nothing without one."""
     if results.run.info.risk:
         yield from wrap(shown(f"RISK ACCEPTED: {results.run.info.risk}"), WIDTH, subsequent_indent="    ")
 

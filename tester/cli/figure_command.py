@@ -34,7 +34,7 @@ REFERENCE_C = 20.0
 @click.option("--format", "ending", type=click.Choice(["png", "svg", "pdf"]), default="png", show_default=True)
 @click.option(
     "--out", type=click.Path(file_okay=False, path_type=Path), default=Path("figures"), show_default=True,
-    help="Folder; each run's figures are in one of its own there.",
+    help="Folder; each run's figures get a folder in it.",
 )  # fmt: skip
 @click.option("--law", default="", metavar="LAW", help="Draw a law with published parameters: of a wheel paper or v2.")
 @click.option("--published/--no-published", default=True, show_default=True, help="Points of the paper beside.")

@@ -40,7 +40,7 @@ class Conditions(NamedTuple):
 @click.option(
     "--hold", "holds", multiple=True, metavar="NAMES", help="Parameters not to fit: a,beta,tm as published, or tm=70."
 )
-@click.option("--surface", default="", metavar="NAME", help="What the track is covered with, for laws of materials.")
+@click.option("--surface", default="", metavar="NAME", help="Surface of the track, for laws of materials.")
 @click.option(
     "--given", "givens", multiple=True, metavar="NAME=VALUE", help="A figure of a law of materials, such as area=64."
 )

@@ -31,12 +31,12 @@ def recipe_file(name_or_path: str) -> tuple[Path, str]:
 @click.argument("recipe")
 @rig_options
 @json_option
-@click.option("--verbose", is_flag=True, help="Also say which files its compounds and its surface are described by.")
+@click.option("--verbose", is_flag=True, help="Also list the files that describe its compounds and its surface.")
 def check(recipe: str, rig: RigChoice, as_json: bool, verbose: bool) -> int:
     """Validate RECIPE (a file, or the name of a packaged recipe) against the schema and the rig.
 
-    Every problem at once, as file:line:col: message, and exit code 3. What is doubtful in the files of its compounds
-    and its surface, or is not expected to end well on the rig, is a warning.
+    Every problem at once, as file:line:col: message, and exit code 3. Doubts about the files of its compounds and its
+    surface, or about its success on the rig, are warnings.
     """
     from tester.base.source import InvalidSource
     from tester.inputs.recipe.conditions import conditions_of, merged_of
@@ -89,7 +89,7 @@ def _materials(used: UsedMaterials) -> Iterator[str]:
     type=click.Choice(["recipe", "compound", "surface"]),
     default="recipe",
     show_default=True,
-    help="Which files it is of.",
+    help="Files to describe.",
 )
 def schema(what: str) -> None:
     """Print the JSON Schema of recipes, or of compounds or surfaces, for editors and other programs."""

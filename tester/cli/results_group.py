@@ -59,7 +59,7 @@ def _decide(run: str, repeat: str, reason: str, operator: str | None, *, exclude
 
 @command("slip-ring")
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True)
-@click.option("--before", type=float, default=0.0, metavar="TURNS", help="What the ring had turned before the first.")
+@click.option("--before", type=float, default=0.0, metavar="TURNS", help="Turns of the ring before the first run.")
 @json_option
 def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
     """Show how requests over the slip ring failed in each RUN: time-outs, bad checksums, late replies of the jacket.

@@ -58,7 +58,7 @@ def run(
 ) -> int:  # fmt: skip
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
 
-    What was measured comes before it, with the expanded uncertainty (95 %), on stderr; stdout is the folder alone.
+    The results precede it on stderr, with their expanded uncertainty (95 %); stdout is the folder alone.
 
     Ctrl+C stops in a controlled way; a second one stops fast. On a terminal: F12 or Ctrl+X stops in a controlled
     way, F9 or Ctrl+F fast, space holds (lifts, keeps the heat), r resumes.

@@ -89,7 +89,7 @@ def _record(run: RunEntry) -> Json:
 
 
 def _date(text: str, option: str) -> str:
-    """Return a date, or a date and time, as it was given; anything else is a usage error."""
+    """Return a date, or a date and time, unchanged; any other text is a usage error."""
     from datetime import datetime
 
     if text:

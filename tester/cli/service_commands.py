@@ -104,7 +104,7 @@ def ack(address: str, take: bool) -> int:
 @connect_option
 @click.option("--fast", is_flag=True, help="Quick stop of both drives instead of a controlled stop.")
 def stop(address: str, fast: bool) -> int:
-    """STOP: heat off, lift, both drives to standstill. From any shell, whoever has control. No emergency stop."""
+    """STOP: heat off, lift, both drives to standstill. From any shell, with or without control. No emergency stop."""
     from tester.service.commands import Stop
     from tester.service.stop_call import NotTakenError, StopCall
 

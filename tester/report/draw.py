@@ -132,7 +132,7 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
 
 
 def _narrow(panel: ChartPanel) -> bool:
-    """Return whether a panel spans so little of a logarithmic axis that powers of ten alone would hardly mark it."""
+    """Return whether a panel spans less than two decades, where powers of ten alone are too few marks."""
     every = [x for series in panel.series for x in series.x]
     return max(every) < 100.0 * min(every)
 
@@ -160,15 +160,13 @@ def _draw_series(series: Series, place: Any, joined: bool) -> Any:
     i = series.style % len(COLOURS)
     colour = COLOURS[i]
     label = drawable(series.label, LONGEST_LABEL) or None
-    if series.look == "law":
-        return place.plot(series.x, series.y, color=colour, linestyle=DASHES[i], linewidth=1.0, label=label)[0]
-    if series.look == "limit":
-        return place.plot(series.x, series.y, color="#606060", linestyle=DASHES[i], linewidth=0.9, label=label)[0]
-    if series.look == "published":
-        hollow: Any = place.plot(
-            series.x, series.y, color=colour, marker=MARKS[i], linestyle="none", markerfacecolor="none", label=label
-        )
-        return hollow[0]
+    alone: dict[str, dict[str, object]] = {
+        "law": {"color": colour, "linestyle": DASHES[i], "linewidth": 1.0},
+        "limit": {"color": "#606060", "linestyle": DASHES[i], "linewidth": 0.9},
+        "published": {"color": colour, "marker": MARKS[i], "linestyle": "none", "markerfacecolor": "none"},
+    }
+    if series.look in alone:
+        return place.plot(series.x, series.y, label=label, **alone[series.look])[0]
     mark = "x" if series.look == "left out" else MARKS[i]
     drawn: Any = place.errorbar(
         series.x,

@@ -233,6 +233,7 @@ def host_of(node: DOMNode) -> HostApp:
 
 Keys = tuple[tuple[str, str], ...]
 Read = TypeVar("Read")
+Listed = dict[str, JsonValue]
 
 
 class View(Vertical):
@@ -261,6 +262,12 @@ class View(Vertical):
 
     def leave(self) -> None:
         """Called when another screen appears."""
+
+
+def runs_in(answer: JsonValue) -> list[Listed] | None:
+    """Return the runs in an answer to ListRuns, as `tester runs --json` prints them; None for a refusal."""
+    runs = answer.get("runs") if isinstance(answer, dict) else None
+    return [run for run in runs if isinstance(run, dict)] if isinstance(runs, list) else None
 
 
 async def read_in_thread(host: HostApp, what: str, work: Callable[[], Read]) -> Read | None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import ClassVar, cast
+from collections.abc import Iterable, Sequence
+from typing import ClassVar
 
 from pydantic import JsonValue
 from textual.binding import Binding, BindingType
@@ -16,6 +16,7 @@ from tester.service.commands import Action, ResumeRun, Stop
 from tester.service.state_view import Check, StateView
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.formatting import clean
+from tester.tui.host import Listed, runs_in
 from tester.tui.widgets.panel_base import FAINT, WARNING, Parts, rows
 
 WORD = "abort"
@@ -79,14 +80,9 @@ class GoOnDialog(Dialog):
         self.dismiss(None)
 
 
-Listed = Mapping[str, JsonValue]
-
-
 def resumable(answer: JsonValue) -> list[Listed]:
-    """Return the runs in a list of runs (tester.service.commands.ListRuns) that can be resumed, the newest first."""
-    runs = answer.get("runs") if isinstance(answer, dict) else None
-    listed = [cast("Listed", run) for run in runs if isinstance(run, dict)] if isinstance(runs, list) else []
-    resumables = [run for run in listed if run.get("can_resume") is True]
+    """Return the listed runs (``runs_in``) that can be resumed, the newest first."""
+    resumables = [run for run in runs_in(answer) or () if run.get("can_resume") is True]
     return sorted(resumables, key=lambda run: str(run.get("started_utc")), reverse=True)
 
 

@@ -12,7 +12,7 @@ from tester.base.axes import Axes, AxisValue, axes_from, condition_words
 from tester.base.words import duration
 from tester.service.commands import ShowPlan
 from tester.tui.dialogs.dialog import Dialog, line
-from tester.tui.dialogs.start import totals
+from tester.tui.dialogs.start import number_in, totals
 from tester.tui.formatting import clean
 from tester.tui.recipe_library import ListedRecipe
 
@@ -54,15 +54,10 @@ def plan_text(plan: dict[str, JsonValue], part: str) -> str:
     lines = [totals(plan, part), ""]
     for number, step in enumerate(listed[:MOST_STEPS], 1):
         if isinstance(step, dict):
-            lines.append(f"{number:5}  {duration(_number(step, 'seconds')):>9}  {_words(step, axes, part)}")
+            lines.append(f"{number:5}  {duration(number_in(step, 'seconds')):>9}  {_words(step, axes, part)}")
     if len(listed) > MOST_STEPS:
         lines.append(f"and {len(listed) - MOST_STEPS} more: `tester plan` lists them all")
     return "\n".join(lines)
-
-
-def _number(step: dict[str, JsonValue], key: str) -> float:
-    value = step.get(key)
-    return float(value) if isinstance(value, int | float) else 0.0
 
 
 def _axes(plan: dict[str, JsonValue]) -> Axes | None:
@@ -72,13 +67,13 @@ def _axes(plan: dict[str, JsonValue]) -> Axes | None:
     return axes_from(rows) if rows else None
 
 
-def _held(step: dict[str, JsonValue], axes: Axes) -> str:
+def _setpoints(step: dict[str, JsonValue], axes: Axes) -> str:
     """Return a condition's setpoints in words."""
-    held: dict[str, AxisValue] = {}
-    for one in axes:
-        value = step.get(one.field)
-        held[one.name] = clean(value) if isinstance(value, str) else _number(step, one.field)
-    return condition_words(axes.setpoint(clean(str(step.get("compound", ""))), **held))
+    values: dict[str, AxisValue] = {}
+    for axis in axes:
+        value = step.get(axis.field)
+        values[axis.name] = clean(value) if isinstance(value, str) else number_in(step, axis.field)
+    return condition_words(axes.setpoint(clean(str(step.get("compound", ""))), **values))
 
 
 def _words(step: dict[str, JsonValue], axes: Axes | None, part: str) -> str:
@@ -86,15 +81,16 @@ def _words(step: dict[str, JsonValue], axes: Axes | None, part: str) -> str:
     kind = clean(str(step.get("kind", "")))
     match kind:
         case "condition":
-            return f"condition {_number(step, 'condition'):g}  {_held(step, axes) if axes is not None else ''}".rstrip()
+            setpoints = _setpoints(step, axes) if axes is not None else ""
+            return f"condition {number_in(step, 'condition'):g}  {setpoints}".rstrip()
         case "install":
-            return f"install {part} {_number(step, part):g}: {clean(str(step.get('compound', '')))}"
+            return f"install {part} {number_in(step, part):g}: {clean(str(step.get('compound', '')))}"
         case "pre_grind":
-            return f"pre-grind {_number(step, 'duration_s'):g} s at {_number(step, 'load_n'):g} N"
+            return f"pre-grind {number_in(step, 'duration_s'):g} s at {number_in(step, 'load_n'):g} N"
         case "rest":
-            return f"rest to {_number(step, 'until_c'):g} °C"
+            return f"rest to {number_in(step, 'until_c'):g} °C"
         case "heat":
-            return f"heat to {_number(step, 'temperature_c'):g} °C"
+            return f"heat to {number_in(step, 'temperature_c'):g} °C"
         case "prompt":
             return f"ask: {clean(str(step.get('text', '')))}"
         case _:

@@ -44,7 +44,7 @@ class ExcludeDialog(Dialog):
         if self.repeat.by_hand:
             yield line(f"Left out by {clean(self.repeat.by_hand)}. It enters the mean again, if it is valid.")
         else:
-            yield line("It leaves the mean and the tables are made anew. Nothing is deleted: it can be included again.")
+            yield line("It leaves the mean, and the tables are written again. Nothing is deleted.")
         yield field("Reason (needed)", entry("reason", hint="goes on record", limit=2000))
         yield field("Who", entry("who", user()))
 

@@ -126,13 +126,15 @@ class StartDialog(Dialog):
 
 def totals(plan: dict[str, JsonValue], part: str) -> str:
     """Return a plan's totals in a line; ``part``: people's name for the part that wears and is changed."""
-
-    def figure(key: str) -> float:
-        value = plan.get(key)
-        return float(value) if isinstance(value, int | float) else 0.0
-
-    conditions, parts = counted(int(figure("conditions")), "condition"), counted(int(figure(f"{part}s")), part)
+    conditions = counted(int(number_in(plan, "conditions")), "condition")
+    parts = counted(int(number_in(plan, f"{part}s")), part)
     return (
-        f"{conditions}, {parts}, {duration(figure('rig_seconds'))} of rig time, "
-        f"{figure('sliding_m'):.0f} m sliding, {figure('loss_mm'):.2f} mm wear"
+        f"{conditions}, {parts}, {duration(number_in(plan, 'rig_seconds'))} of rig time, "
+        f"{number_in(plan, 'sliding_m'):.0f} m sliding, {number_in(plan, 'loss_mm'):.2f} mm wear"
     )
+
+
+def number_in(record: dict[str, JsonValue], key: str) -> float:
+    """Return a number of a plan or a step, 0 where there is none."""
+    value = record.get(key)
+    return float(value) if isinstance(value, int | float) else 0.0

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import ClassVar
 
-from pydantic import JsonValue
 from rich.cells import cell_len
 from rich.text import Text
 from textual.app import ComposeResult
@@ -21,7 +20,7 @@ from tester.tui.dialogs.dialog import Dialog
 from tester.tui.dialogs.export import ExportDialog
 from tester.tui.dialogs.repeats_dialog import RepeatsDialog
 from tester.tui.formatting import clean, fit
-from tester.tui.host import Keys, View, read_in_thread
+from tester.tui.host import Keys, Listed, View, read_in_thread, runs_in
 from tester.tui.plot import scatter
 from tester.tui.screen_scene import ScreenScene
 from tester.tui.stored import Row, Stored, points, read, series
@@ -192,12 +191,11 @@ class ResultsView(View):
         self.run_worker(self._list, group="runs", exclusive=True, exit_on_error=False)
 
     async def _list(self) -> None:
-        answer = await self.host.ask(ListRuns())
-        runs = answer.get("runs") if isinstance(answer, dict) else None
-        if isinstance(runs, list) and self.is_attached:
-            self.fill([run for run in reversed(runs) if isinstance(run, dict)])
+        runs = runs_in(await self.host.ask(ListRuns()))
+        if runs is not None and self.is_attached:
+            self.fill(runs[::-1])
 
-    def fill(self, runs: list[dict[str, JsonValue]]) -> None:
+    def fill(self, runs: list[Listed]) -> None:
         """Show these runs (`tester runs --json`), the newest first."""
         table = self.runs_table
         before = table.cursor_row
@@ -285,7 +283,7 @@ class ResultsView(View):
             self.host.say("choose a run first")
 
 
-def run_cells(run: dict[str, JsonValue]) -> tuple[str, ...]:
+def run_cells(run: Listed) -> tuple[str, ...]:
     """Return a run's cells for RUN_HEADER."""
     seconds = run.get("rig_seconds")
     time = duration(seconds if isinstance(seconds, int | float) else None)

@@ -10,7 +10,7 @@ from tester.service.state_view import Alarm, StateView
 from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.gone import gone_line
 from tester.tui.screen_scene import STALE_S, UNDER_WAY, ScreenScene
-from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
+from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, plain, rows
 
 Tabs = tuple[tuple[str, str, str], ...]
 TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
@@ -93,11 +93,10 @@ def _cut(parts: Parts, width: int) -> Parts:
     kept: Parts = []
     used = 0
     for part in parts:
-        text = part if isinstance(part, str) else part[0]
-        if used + len(text) > width:
+        used += len(plain([part]))
+        if used > width:
             break
         kept.append(part)
-        used += len(text)
     return kept
 
 
@@ -150,7 +149,7 @@ class KeyLine(Panel):
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the line; STOP comes first if there is room for no more."""
         stop: Part = (STOP_KEYS, "bold reverse") if not scene.view_only else " view only: `tester stop` "
-        room = width - len(stop if isinstance(stop, str) else stop[0])
+        room = width - len(plain([stop]))
         parts: Parts = []
         for key, label in self.keys:
             text = f"  {key} {label}"

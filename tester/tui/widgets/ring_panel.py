@@ -30,7 +30,7 @@ class AnglePanel(Panel):
         """Return columns above their angles."""
         run = self.run
         if run is None:
-            return [("no run has anything on record of a ring", FAINT)]
+            return [("no run has a record of a ring", FAINT)]
         sectors = run.sectors()
         counts = [sum(mounting.sectors[at] for mounting in sectors) for at in range(SECTORS)]
         if not sum(counts):

@@ -97,7 +97,7 @@ def test_no_runs_and_what_is_no_run_are_said(tmp_path: Path) -> None:
         await on.pilot.press("f7")
         page = on.app.query_one(RingPage)
         await on.until(lambda: str(page.table.border_title) == "Runs: 0", "the runs are read")
-        assert "no run has anything on record" in on.text()
+        assert "no run has a record of a ring" in on.text()
 
     play(act, tmp_path)
 
