@@ -146,8 +146,8 @@ def test_the_figure_is_drawn(home: Path, capsys: pytest.CaptureFixture[str], end
 
 @pytest.mark.parametrize(("arguments", "told"), [
     (["--format", "csv"], "which file? (expected -o FILE.csv)"),
-    (["-o", "master.doc"], "the ending says no format"),
-    (["-o", "master.csv", "--format", "png"], "the ending says csv, --format png"),
+    (["-o", "master.doc"], "the ending names no format"),
+    (["-o", "master.csv", "--format", "png"], "the ending is csv, --format png"),
     (["--ts", "warm"], "--ts: "),
     (["--load", "2 kg"], "--load: "),
 ])  # fmt: skip
@@ -159,7 +159,7 @@ def test_options_that_say_nothing_are_usage_errors(
 
 def test_a_compound_without_a_file_has_no_glass_transition(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = str(made_track_run(home / "one", compounds=("nameless",)))
-    assert "no file says the Tg of nameless" in said(capsys, run, "--ts", "glass", code=2)[1]
+    assert "no file has the Tg of nameless" in said(capsys, run, "--ts", "glass", code=2)[1]
     assert data(capsys, run)["rules"] == []
 
 
