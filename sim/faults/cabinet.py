@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from sim.faults.scene import Computer, Effect, Scene, switched
+from sim.faults.scene import ControlComputer, Effect, Scene, switched
 from sim.nodes.safety_io import SafetyIo
 
 
@@ -70,7 +70,7 @@ def _reschedule(scene: Scene) -> None:
 class OfComputer(Effect):
     """What happens, once, to the controlling process, or what its operator asks for."""
 
-    def __init__(self, act: Callable[[Computer], None]) -> None:
+    def __init__(self, act: Callable[[ControlComputer], None]) -> None:
         self._act = act
 
     def begin(self, scene: Scene, now: float) -> None:

@@ -12,7 +12,7 @@ Machine = TypeVar("Machine", bound=SimRig)
 Arguments = ParamSpec("Arguments")
 
 
-class Computer(Protocol):
+class ControlComputer(Protocol):
     """The controlling process as a fault script sees it: what can happen to it, and what an operator can command."""
 
     def stall(self, seconds: float) -> None:
@@ -37,7 +37,7 @@ class Scene:
     """The rig and its computer."""
 
     rig: SimRig
-    computer: Computer
+    computer: ControlComputer
 
     def machine(self, kind: type[Machine]) -> Machine:
         """Return the rig as that of a kind of machine. Raises TypeError where it is another one."""

@@ -49,7 +49,7 @@ def greatest_load_n(rig: RigConfig) -> float:
     return rig.limits.load_n - RIPPLE_N
 
 
-class Entry(NamedTuple):
+class PlacedValue(NamedTuple):
     """A quantity in the file: its value in the requested unit, and its place."""
 
     value: float
@@ -123,34 +123,34 @@ class _Limits:
         node = self._node(at)
         return range(len(node)) if isinstance(node, list) else range(0)
 
-    def _entries(self, at: Location, unit: str) -> list[Entry]:
+    def _entries(self, at: Location, unit: str) -> list[PlacedValue]:
         """Return the readable quantities of an axis or a single value; an empty list where there is none."""
         node = self._node(at)
         if node is None:
             # A reference condition has defaults, which a rig may not be able to hold either.
-            return [Entry(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
+            return [PlacedValue(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
         quantity = Quantity(unit)
         places = [((*at, index), item) for index, item in enumerate(node)] if isinstance(node, list) else [(at, node)]
-        quantities: list[Entry] = []
+        quantities: list[PlacedValue] = []
         for place, value in places:
             try:
-                quantities.append(Entry(quantity.read(value), place))
+                quantities.append(PlacedValue(quantity.read(value), place))
             except UnitError:
                 continue
         return quantities
 
-    def _beyond(self, entry: Entry, text: str, key: str, limit: float, unit: str) -> Problem:
+    def _beyond(self, entry: PlacedValue, text: str, key: str, limit: float, unit: str) -> Problem:
         """Return the problem of a value that is beyond the rig's limit ``key``."""
         return self.tree.problem(entry.at, f'{text} (limit {show(limit, unit)}: {key} of rig "{self.rig.name}")')
 
-    def _above(self, entry: Entry, limit: float, unit: str, key: str) -> Iterator[Problem]:
+    def _above(self, entry: PlacedValue, limit: float, unit: str, key: str) -> Iterator[Problem]:
         """Yield a problem for a value (of either sign) beyond a limit."""
         if abs(entry.value) > limit:
             name = next(piece for piece in reversed(entry.at) if isinstance(piece, str))
             message = f"{name}: {show(entry.value, unit)} is more than the rig allows"
             yield self._beyond(entry, message, key, limit, unit)
 
-    def _too_light(self, entry: Entry) -> Iterator[Problem]:
+    def _too_light(self, entry: PlacedValue) -> Iterator[Problem]:
         """Yield a problem for a load too near to touching to be held; the schema reports a value that is no load."""
         touch_n = self.rig.loops.load.touch_load_n
         least_n = least_load_n(self.rig)
@@ -160,7 +160,7 @@ class _Limits:
             source = f'{TOUCHES:g} x loops.load.touch_load of rig "{self.rig.name}"'
             yield self.tree.problem(entry.at, f"{message} (expected at least {show(least_n, 'N')}: {source})")
 
-    def _too_heavy(self, entry: Entry) -> Iterator[Problem]:
+    def _too_heavy(self, entry: PlacedValue) -> Iterator[Problem]:
         """Yield a problem for a load that is beyond its limit, or gets there with every turn of the wheel."""
         limit_n, most_n = self.rig.limits.load_n, greatest_load_n(self.rig)
         yield from self._above(entry, limit_n, "N", "limits.load")
@@ -169,7 +169,7 @@ class _Limits:
             source = f'{show(RIPPLE_N, "N")} of runout below limits.load of rig "{self.rig.name}"'
             yield self.tree.problem(entry.at, f"{message} (expected at most {show(most_n, 'N')}: {source})")
 
-    def _by_hand(self, entry: Entry, axis: Axis, *, driven: bool) -> Iterator[Problem]:
+    def _by_hand(self, entry: PlacedValue, axis: Axis, *, driven: bool) -> Iterator[Problem]:
         """Yield a problem for an angle on an axis that a person sets: every burst turns it in and out."""
         if entry.value != 0.0 and not driven:
             asked = show(entry.value, axis.recipe_unit)
@@ -301,7 +301,7 @@ class _Limits:
             motions.append(Motion(wheel, belt, angle, slip_velocity(wheel, belt, angle)[2]))
         return motions
 
-    def _powers(self, loads: list[Entry], motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
+    def _powers(self, loads: list[PlacedValue], motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
         """Yield a problem for every load that makes too much friction heat somewhere, naming the worst place."""
         pressing = [load for load in loads if load.value > 0.0]
         if not motions or not temperatures or not pressing:
@@ -318,7 +318,7 @@ class _Limits:
         for load in pressing:
             yield from self._power(load, cases)
 
-    def _power(self, load: Entry, cases: list[_Case]) -> Iterator[Problem]:
+    def _power(self, load: PlacedValue, cases: list[_Case]) -> Iterator[Problem]:
         limit = self.rig.limits.slip_power_w
         newtons, most, worst = load.value, limit / (1.0 + POWER_SCATTER), None
         for case in cases:
