@@ -22,7 +22,6 @@ from drivers.drives.drive_model import Key, Substitute
 ABORT_CONNECTION_QUICK_STOP: Final = 3     # 0x6007: heartbeat lost -> quick stop
 NO_STATE_CHANGE: Final = 1                 # 0x1029:01: a communication error leaves the NMT state alone
 STATUS_INHIBIT_100_US: Final = 50          # 0x1801:03: 5 ms between two statuswords sent by themselves [A]
-PC_NODE: Final = 127
 RATED_TORQUE_SHARE: Final = 0.02
 """By so much 0x6076 may differ from the rig file: it is entered rounded, from a nameplate [A]."""
 

@@ -13,7 +13,6 @@ from drivers.canopen.objects import BITS, DataType
 from drivers.drives.drive_model import Key
 
 _SECTION: Final = re.compile(r"([0-9a-f]{4})(?:sub([0-9a-f]{1,2}))?", re.IGNORECASE)
-_VARIABLE: Final = 7
 _WRITABLE: Final = frozenset({"rw", "rww", "rwr", "wo"})
 _READABLE: Final = frozenset({"rw", "rww", "rwr", "ro", "const"})
 _SIGNED: Final = frozenset({DataType.I8, DataType.I16, DataType.I32})

@@ -8,8 +8,6 @@ from typing import Protocol
 
 CAN_DOORS = ("tcp", "slcan")
 """Ways to the CAN bus besides a real interface, which is named ``INTERFACE:CHANNEL``."""
-LINE_DOORS = ("tcp", "rtu")
-"""Ways to a Modbus line."""
 
 
 class Readable(Protocol):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 
@@ -93,12 +93,3 @@ SECTIONS: Mapping[str, Mapping[str, Listed]] = {
 """The commands by section, in the order of the help page. A test checks every entry against its module."""
 COMMANDS: Mapping[str, Listed] = {name: entry for listed in SECTIONS.values() for name, entry in listed.items()}
 """The words that follow `tester`."""
-
-
-def every_command() -> Iterator[tuple[tuple[str, ...], CommandEntry]]:
-    """Yield each command that is not a group, with its words: ``("bus", "sdo")``."""
-    for name, entry in COMMANDS.items():
-        if isinstance(entry, CommandGroup):
-            yield from (((name, inner), found) for inner, found in entry.commands.items())
-        else:
-            yield (name,), entry

@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 
 from tester.cli.main import invoke
-from tester.inputs.recipe.loader import load_recipe
 from tester.kinds import find, load_rig, packaged_text
 from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 from tester.store.run_reader import RunReader
 from tests.extension.counts import ROOT
 from tests.extension.installing import installed
+from tests.tester.inputs.recipe.texts import load_recipe
 
 PAGE = (ROOT / "docs" / "how-to" / "add-an-axis.md").read_text(encoding="utf-8")
 RECIPE = re.compile(r"<!-- wet.yaml -->\n```yaml\n(.*?)```", re.DOTALL)

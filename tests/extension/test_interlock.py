@@ -12,7 +12,7 @@ import pytest
 from tester.base.source import InvalidSource
 from tester.cli.main import invoke
 from tester.kinds import find, load_rig, load_rig_text, packaged_keys, packaged_text
-from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS
+from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.store.run_reader import RunReader
 from tests.extension.installing import installed
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
@@ -67,4 +67,4 @@ def test_the_rig_is_stored_and_sent_to_other_processes_as_it_is() -> None:
 
 def test_the_kind_it_was_made_from_is_as_it_was() -> None:
     assert "rubber hotter than hub" in find("lab_wheel:KIND").interlocks().table()
-    assert "rubber hotter than hub" not in {row.name for row in INTERLOCKS}
+    assert "rubber hotter than hub" not in {row.name for row in TABLE.rows}

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 import recipes
-from tester.inputs.recipe.loader import check, load_recipe
+from tester.inputs.recipe.loader import check
 from tester.inputs.recipe.recipe_schema import schema_text
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.run.kind_lookup import recipe_part
+from tests.tester.inputs.recipe.texts import load_recipe
 
 MASTERS = ["grosch", "grosch-glass", "grosch-talc"]
 RIGS = {**dict.fromkeys(MASTERS, "grosch"), "pin-on-disc": "pin-on-disc"}

@@ -30,20 +30,6 @@ class LoadedRecipe:
     doubts: tuple[Problem, ...] = ()
 
 
-def load_recipe(source: Path | str, part: RecipePart, name: str | None = None) -> LoadedRecipe:
-    """Read a recipe file (Path) or text (str); raises InvalidSource with every problem.
-
-    ``part``: of the recipe's kind.
-
-    This checks the recipe by itself; ``load_checked`` checks it against a rig.
-    """
-    tree, problems = read_tree(source, name)
-    recipe, more = validated(tree, part)
-    if recipe is None or problems or more:
-        raise InvalidSource([*problems, *more])
-    return LoadedRecipe(recipe, tree)
-
-
 def validated(tree: Tree, part: RecipePart) -> tuple[Recipe | None, list[Problem]]:
     """Return the recipe of a tree (None where a value is not valid) and the problems found."""
     if not isinstance(tree.data, dict):

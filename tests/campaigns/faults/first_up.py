@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS
+from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tests.campaigns.faults.late_scans import PATIENT
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit
 from tests.campaigns.faults.recipes import language_of
@@ -118,7 +118,7 @@ NEVER_FIRST: dict[str, str] = {
 def left_out() -> list[str]:
     """Return the rows that stand in neither list."""
     known = {row.interlock for row in FIRST} | NEVER_FIRST.keys()
-    return [row.name for row in INTERLOCKS if row.name not in known]
+    return [row.name for row in TABLE.rows if row.name not in known]
 
 
 def conduct(rows: Iterable[First] = FIRST) -> dict[First, str]:

@@ -14,7 +14,6 @@ from sim.faults.kinds import FaultKind
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.drive_power import ENERGISED
 from tester.analysis.results import Burst, RepeatResult, RepeatStatus
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
@@ -32,6 +31,7 @@ from tester.store.recorder import NullRecorder
 from tester.store.sql import Judged, Ticket
 from tests.campaigns.faults.invariants import Invariants
 from tests.campaigns.faults.wheel_harm import HarmObserver, Truth
+from tests.tester.inputs.recipe.texts import load_recipe
 
 RUNNING = frozenset({"armed", "run", "hold"})
 STANDING = frozenset({"idle", "latched"})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS
+from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tests.campaigns.faults.first_up import FIRST, NEVER_FIRST, SLIDE, conduct, left_out
 
 FEW = ("belt torn", "hub sensor jump", "surface sensor jump", "line noisy", "not stopping", "quick stop failed",
@@ -13,7 +13,7 @@ FEW = ("belt torn", "hub sensor jump", "surface sensor jump", "line noisy", "not
 
 def test_every_row_has_a_fault_that_trips_it_first_or_a_reason_why_none_can():
     assert left_out() == []
-    assert NEVER_FIRST.keys() <= {row.name for row in INTERLOCKS}
+    assert NEVER_FIRST.keys() <= {row.name for row in TABLE.rows}
     assert all(NEVER_FIRST.values()) and not NEVER_FIRST.keys() & {row.interlock for row in FIRST}
 
 

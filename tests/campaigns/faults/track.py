@@ -10,7 +10,6 @@ from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import FaultKind
 from sim.machines.specimen_on_track.faults import CATALOGUE, Onset
 from sim.machines.specimen_on_track.rig import TrackRig
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
@@ -25,6 +24,7 @@ from tests.campaigns.faults.first_up import First
 from tests.campaigns.faults.recipes import TRACKS
 from tests.campaigns.faults.stage import Ledger, Stage
 from tests.campaigns.faults.track_harm import TrackHarmObserver, TrackTruth
+from tests.tester.inputs.recipe.texts import load_recipe
 
 WORKING = frozenset({"run", "hold"})
 AT_REST = frozenset({"idle", "latched"})

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import recipes as shipped
-from tester.inputs.recipe.loader import load_recipe
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.recipe.expand import expand
@@ -25,6 +24,7 @@ from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
 from tests.campaigns.acceptance.figure import Figure, equal, holds
 from tests.campaigns.seeds.sweeps import Sweeps
+from tests.tester.inputs.recipe.texts import load_recipe
 
 HOT: Final = """\
 recipe: hot

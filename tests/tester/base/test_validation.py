@@ -6,9 +6,8 @@ import pytest
 
 from tester.base.source import InvalidSource
 from tester.base.units import UnitError, parse
-from tester.inputs.recipe.loader import load_recipe
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tests.tester.inputs.recipe.texts import SMALL
+from tests.tester.inputs.recipe.texts import SMALL, load_recipe
 
 
 def test_a_misspelt_key_is_one_problem() -> None:

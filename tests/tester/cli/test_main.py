@@ -5,12 +5,13 @@ from __future__ import annotations
 import io
 import re
 import sys
+from collections.abc import Iterator
 
 import click
 import pytest
 
 from tester.cli import main as cli
-from tester.cli.command_table import COMMANDS, SECTIONS, CommandGroup, every_command
+from tester.cli.command_table import COMMANDS, SECTIONS, CommandEntry, CommandGroup
 from tester.cli.main import invoke
 
 
@@ -21,6 +22,15 @@ def run(*arguments: str) -> int:
 def stop_here(monkeypatch: pytest.MonkeyPatch, command: click.Command) -> None:
     """Put a command in the place of every other."""
     monkeypatch.setattr(cli.LazyGroup, "get_command", lambda *_: command)
+
+
+def every_command() -> Iterator[tuple[tuple[str, ...], CommandEntry]]:
+    """Yield each command that is not a group, with its words: ``("bus", "sdo")``."""
+    for name, entry in COMMANDS.items():
+        if isinstance(entry, CommandGroup):
+            yield from (((name, inner), found) for inner, found in entry.commands.items())
+        else:
+            yield (name,), entry
 
 
 EVERY = [words for words, _ in every_command()]

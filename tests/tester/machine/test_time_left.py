@@ -6,14 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.machine.context import Progress
 from tester.machine.time_left import PRIOR_S, Doing, Earlier, PartTime, TimeLeft, share_of_repeat
-from tests.tester.inputs.recipe.texts import PREPARED
+from tests.tester.inputs.recipe.texts import PREPARED, load_recipe
 
 WORKING, WAITING, GIVEN_UP = Doing.WORKING, Doing.WAITING, Doing.GIVEN_UP
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 from tester.inputs.rig.parameter import Parameter
 from tester.kinds.wheel_on_belt.interlocks import friction, hub, load, motion, operation, stops, surface, witness
 from tester.machine import wires
 from tester.machine.interlock_table import InterlockSheet, InterlockTable
-from tester.machine.row import Interlock
 
 TABLE: Final = InterlockTable(
     (
@@ -17,7 +16,6 @@ TABLE: Final = InterlockTable(
     ),
     operation.PARAMETERS,
 )  # fmt: skip
-INTERLOCKS: Final[tuple[Interlock[Any], ...]] = TABLE.rows
 PARAMETERS: Final[tuple[Parameter, ...]] = TABLE.parameters
 """Every key of the rig file's section ``interlocks``, in its order."""
 SHEET: Final = InterlockSheet(TABLE.rows, operation.PARAMETERS, operation.ABOUT)

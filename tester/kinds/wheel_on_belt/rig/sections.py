@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
 from drivers.axis import AxisConfig
 from sim.physics.parameters import ThermalParameters, WheelParameters
 from tester.base.config_reader import Range
-from tester.inputs.rig.config import CalibrationConfig, section_of, values_of
-from tester.inputs.rig.parameter import Values
+from tester.inputs.rig.config import CalibrationConfig, section_of
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 
@@ -184,11 +183,6 @@ if TYPE_CHECKING:
 
 else:
     InterlocksConfig = section_of("InterlocksConfig", PARAMETERS, __name__)
-
-
-def interlock_values(section: InterlocksConfig) -> Values:
-    """Return the values of a rig's section ``interlocks``, by parameter."""
-    return values_of(section, PARAMETERS)
 
 
 @dataclass(frozen=True, slots=True)

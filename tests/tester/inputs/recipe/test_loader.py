@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 import recipes
 from tester.base.source import InvalidSource
 from tester.inputs.recipe.conditions import metadata_of
-from tester.inputs.recipe.loader import check, load_checked, load_recipe
+from tester.inputs.recipe.loader import check, load_checked
 from tester.inputs.recipe.recipe_schema import Extent
 from tester.kinds.wheel_on_belt.recipe.part import PART
-from tests.tester.inputs.recipe.texts import PREPARED, SMALL, real_rig, recipe, rig, with_line
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, load_recipe, real_rig, recipe, rig, with_line
 
 
 def refused(text: str) -> list[str]:

@@ -8,11 +8,11 @@ import pickle
 import pytest
 
 from tester.base.source import InvalidSource
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.recipe.plan_text import json_chunks, lines
 from tester.inputs.recipe.recipe_schema import schema_text
 from tester.inputs.recipe.time_estimate import estimate
+from tests.tester.inputs.recipe.texts import load_recipe
 from tests.tester.inputs.recipe.track import TrackPart, TrackRecipe
 
 TEXT = """\

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
-from tester.inputs.recipe.loader import load_recipe
+from tester.base.source import InvalidSource, read_tree
+from tester.inputs.recipe.loader import LoadedRecipe, validated
+from tester.inputs.recipe.recipe_part import RecipePart
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.schema import WheelRecipe, for_wheels
@@ -31,6 +34,15 @@ pre_grind: {wheel_speed: 0.8 m/s, belt_speed: 0.6 m/s, load: 200 N, duration: 4 
 rest: {at_least: 20 min, until: 25 degC, within: 2 degC}
 """
 )
+
+
+def load_recipe(source: Path | str, part: RecipePart, name: str | None = None) -> LoadedRecipe:
+    """Read a recipe file (Path) or text (str) without a rig; raises InvalidSource with every problem."""
+    tree, problems = read_tree(source, name)
+    recipe, more = validated(tree, part)
+    if recipe is None or problems or more:
+        raise InvalidSource([*problems, *more])
+    return LoadedRecipe(recipe, tree)
 
 
 @cache

@@ -11,14 +11,13 @@ import pytest
 from drivers.profiles import ProfileError, load_profile
 from tester.base.plugins import ALLOW_VARIABLE, plugins
 from tester.base.source import InvalidSource
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.rig.profiles import profile_of
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.run.provenance import run_info
 from tester.run.simulated import spec_of
 from tests.tester.base.test_plugins import install
-from tests.tester.inputs.recipe.texts import SMALL
+from tests.tester.inputs.recipe.texts import SMALL, load_recipe
 from tests.tester.kinds.wheel_on_belt.bench import plan_of
 
 OVERRIDE = "devices.load_cell.profile=acme_cell"

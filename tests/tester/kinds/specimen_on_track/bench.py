@@ -8,7 +8,6 @@ from math import nan
 
 from sim.machines.specimen_on_track.rig import TrackRig
 from tester.analysis.results import Burst, RepeatResult
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
@@ -20,6 +19,7 @@ from tester.machine.tickers import next_tick
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
 from tester.store.sql import Judged, Ticket
+from tests.tester.inputs.recipe.texts import load_recipe
 
 GROSCH = """\
 recipe: a block

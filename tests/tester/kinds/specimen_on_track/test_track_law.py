@@ -102,7 +102,7 @@ def test_moduli_that_end_too_early_for_a_track_are_told(tmp_path: Path) -> None:
 
 def test_an_estimate_asks_the_law_on_the_recipes_surface() -> None:
     config = TrackConfig.of(load_rig("grosch", ("sim.law=persson",)))
-    from tester.inputs.recipe.loader import load_recipe
+    from tests.tester.inputs.recipe.texts import load_recipe
 
     plan = PART.expand(load_recipe(ON, PART, "bench.yaml").recipe, config)
     estimator = PART.estimator(config)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from tester.inputs.recipe.loader import check, load_checked, load_recipe
+from tester.inputs.recipe.loader import check, load_checked
 from tester.inputs.recipe.plan import Mounted, Plan, Stand
 from tester.inputs.recipe.plan_text import lines
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tests.tester.inputs.recipe.texts import load_recipe
 from tests.tester.kinds.specimen_on_track.bench import DISC, GROSCH
 
 

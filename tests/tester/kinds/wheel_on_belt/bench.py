@@ -9,7 +9,6 @@ from math import copysign, cos, hypot, inf, isfinite, radians, sin
 from typing import NamedTuple
 
 from sim.machines.wheel_on_belt.rig import WheelRig
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
@@ -30,7 +29,7 @@ from tester.machine.tickers import next_tick
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
 from tester.store.sql import Batch
-from tests.tester.inputs.recipe.texts import rig
+from tests.tester.inputs.recipe.texts import load_recipe, rig
 
 COLUMN = {name: i for i, name in enumerate(QUANTITIES.names)}
 

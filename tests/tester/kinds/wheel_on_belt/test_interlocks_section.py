@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
 
+from tester.inputs.rig.config import values_of
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.rig.sections import InterlocksConfig, interlock_values
+from tester.kinds.wheel_on_belt.rig.sections import InterlocksConfig
 
 SOURCE = Path(__file__).parents[4] / "tester"
 OTHER_KIND = SOURCE / "kinds" / "specimen_on_track"
@@ -64,4 +65,4 @@ def test_the_section_has_a_field_for_every_parameter() -> None:
 
 
 def test_the_packaged_file_says_what_the_rows_say() -> None:
-    assert interlock_values(RigConfig.of(load_rig("sim")).interlocks) == {one: one.value for one in PARAMETERS}
+    assert values_of(RigConfig.of(load_rig("sim")).interlocks, PARAMETERS) == {one: one.value for one in PARAMETERS}

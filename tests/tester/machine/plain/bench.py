@@ -15,7 +15,6 @@ from sim.wires.can_wire import CanWire
 from tester.base.axes import Axes, Axis, Setpoint
 from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
 from tester.base.source import load_tree
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plain_recipe import PlainPart
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig.config import OwnDevice, section_of
@@ -33,6 +32,7 @@ from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
 from tester.run.simulated import spec_of
 from tester.store.recorder import NullRecorder
+from tests.tester.inputs.recipe.texts import load_recipe
 
 TABLE = plain_table()
 Interlocks: Any = section_of("Interlocks", TABLE.parameters, __name__)

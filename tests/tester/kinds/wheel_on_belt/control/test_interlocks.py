@@ -9,7 +9,7 @@ import pytest
 
 from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
-from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, TABLE
+from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.machine.row import Reaction
 from tester.machine.state import Mode
 from tests.tester.kinds.wheel_on_belt.control.conftest import STAMPS, Bench
@@ -227,12 +227,12 @@ def index_of(name: str) -> int:
 
 
 def test_every_row_of_the_table_has_a_test_here() -> None:
-    assert {row.name for row in INTERLOCKS} == set(CAUSES) | OWN_TESTS
+    assert {row.name for row in TABLE.rows} == set(CAUSES) | OWN_TESTS
 
 
 def test_names_are_unique_and_every_row_says_all_it_has_to() -> None:
-    assert len({row.name for row in INTERLOCKS}) == len(INTERLOCKS)
-    assert all(row.cause and row.watch.level and row.reset for row in INTERLOCKS)
+    assert len({row.name for row in TABLE.rows}) == len(TABLE.rows)
+    assert all(row.cause and row.watch.level and row.reset for row in TABLE.rows)
 
 
 def test_the_healthy_rig_runs_for_a_minute_without_a_level(bench: Bench) -> None:
@@ -263,7 +263,7 @@ def test_a_cause_raises_its_level_and_something_trips_within_the_rows_delay(
 ) -> None:
     CAUSES[name][number](bench)
     began = bench.readings.now_s
-    delay = INTERLOCKS[index_of(name)].delay_s(bench.control.view.parameters) + AGES.get(name, 0.0)
+    delay = TABLE.rows[index_of(name)].delay_s(bench.control.view.parameters) + AGES.get(name, 0.0)
     seen = 0
     while bench.state.trip is None and bench.readings.now_s - began < delay + 0.1:
         bench.scan()
@@ -331,7 +331,7 @@ def test_a_trip_names_the_value_that_is_beyond_its_limit(bench: Bench, name: str
 def test_a_row_does_not_trip_before_its_delay(bench: Bench, name: str) -> None:
     if name in ("overload", "load overshoot", "contact lost", "force step"):
         _rolling(bench)
-    delay = INTERLOCKS[index_of(name)].delay_s(bench.control.view.parameters) + AGES.get(name, 0.0)
+    delay = TABLE.rows[index_of(name)].delay_s(bench.control.view.parameters) + AGES.get(name, 0.0)
     CAUSES[name][0](bench)
     began = bench.readings.now_s
     while bench.readings.now_s - began < delay - 0.0151:

@@ -9,7 +9,7 @@ from pathlib import Path
 from tester.base.source import load_tree
 from tester.inputs.rig.parameter import WIDTH, key_line
 from tester.kinds import find
-from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS
+from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS, TABLE
 from tester.machine.wires import LATE_WARN_S
 
 DOCS = Path(__file__).parents[5] / "docs"
@@ -27,11 +27,11 @@ def test_page_and_packaged_rig_file_are_made_from_the_rows() -> None:
 
 def test_the_page_shows_every_row() -> None:
     shown = PAGE.read_text(encoding="utf-8").split("<!-- interlocks: begin -->\n")[1]
-    assert shown.startswith(SHEET.table()) and all(f"| {row.name} |" in shown for row in INTERLOCKS)
+    assert shown.startswith(SHEET.table()) and all(f"| {row.name} |" in shown for row in TABLE.rows)
 
 
 def test_every_key_the_table_names_is_a_parameter() -> None:
-    named = {word for row in INTERLOCKS for word in re.findall(r"[a-z]+(?:_[a-z]+)+", row.watch.level)}
+    named = {word for row in TABLE.rows for word in re.findall(r"[a-z]+(?:_[a-z]+)+", row.watch.level)}
     assert named <= {one.key for one in PARAMETERS} | OTHER_KEYS
 
 

@@ -11,11 +11,11 @@ import pytest
 
 from tester.base.config_reader import Range
 from tester.inputs.rig.ceilings import ceilings_of
+from tester.inputs.rig.config import values_of
 from tester.inputs.rig.parameter import SECTION, Direction, Parameter
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
-from tester.kinds.wheel_on_belt.interlocks.table import INTERLOCKS, PARAMETERS, TABLE
-from tester.kinds.wheel_on_belt.rig.sections import interlock_values
+from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS, TABLE
 from tester.machine.row import Interlock
 
 OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester.machine.drive_rows",
@@ -47,7 +47,7 @@ SHARED = {"stale_inputs_s", "speeds_old_s", "standing_m_s", "clear_mm", "lift_la
 """Parameters that ``known`` and earlier rows bring into a condition."""
 
 
-@pytest.mark.parametrize("row", INTERLOCKS, ids=lambda row: row.name)
+@pytest.mark.parametrize("row", TABLE.rows, ids=lambda row: row.name)
 def test_a_row_declares_what_its_condition_compares_with(row: Interlock) -> None:
     used = {one.name for one in compared(row.watch.holds)}
     used |= {one.name for one in compared(row.applies)} if row.applies is not None else set()
@@ -57,7 +57,7 @@ def test_a_row_declares_what_its_condition_compares_with(row: Interlock) -> None
 
 
 def test_names_of_rows_and_parameters_stand_for_one_thing() -> None:
-    assert len({row.name for row in INTERLOCKS}) == len(INTERLOCKS)
+    assert len({row.name for row in TABLE.rows}) == len(TABLE.rows)
     assert len({one.name for one in PARAMETERS}) == len({one.key for one in PARAMETERS}) == len(PARAMETERS)
 
 
@@ -84,7 +84,7 @@ def inside(bounds: Range, value: float) -> bool:
 
 
 def test_a_rig_has_a_value_for_every_parameter() -> None:
-    values = interlock_values(load_rig("sim", ["interlocks.pushed=0.25 mm"]).interlocks)
+    values = values_of(load_rig("sim", ["interlocks.pushed=0.25 mm"]).interlocks, PARAMETERS)
     assert {one.key: value for one, value in values.items() if value != one.value} == {"pushed": 0.25}
 
 

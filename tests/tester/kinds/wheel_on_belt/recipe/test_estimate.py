@@ -9,7 +9,6 @@ import pytest
 
 import recipes
 from tester.base.axes import Setpoint
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.time_estimate import Estimate, StepEstimate, estimate
 from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
@@ -18,7 +17,7 @@ from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.recipe.schema import wheel_settings
-from tests.tester.inputs.recipe.texts import PREPARED, SMALL, real_rig, recipe, rig, with_line
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, load_recipe, real_rig, recipe, rig, with_line
 
 
 def planned(text: str, *overrides: str) -> tuple[WheelPlan, Estimate]:

@@ -10,14 +10,13 @@ from hypothesis import strategies as st
 import recipes
 from tester.analysis.stability import Window
 from tester.inputs.recipe.conditions import conditions_of
-from tester.inputs.recipe.loader import load_recipe
 from tester.inputs.recipe.plan import PromptStep, Soak
 from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import change_points, expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
-from tests.tester.inputs.recipe.texts import PREPARED, SMALL, recipe, rig, with_line
+from tests.tester.inputs.recipe.texts import PREPARED, SMALL, load_recipe, recipe, rig, with_line
 
 
 def plan_of(text: str) -> WheelPlan:
