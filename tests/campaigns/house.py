@@ -1,12 +1,13 @@
-"""How learnable the tree is, in figures: code lines, small files, repeated names, long files, long functions.
+"""How learnable the tree is, in figures: code lines, small files, repeated names, long files and functions, words.
 
     python -m tests.campaigns.house           # tester, drivers and sim; a second
     python -m tests.campaigns.house --list    # and what each figure counts
 
 A line of code is neither blank, comment nor docstring. A small file has at most ``SMALL_LINES`` lines; ``__init__.py``,
 which says what a folder is for, counts as none. A name repeats where two folders hold a file of that name, unless one
-kind mirrors another: the same path below ``tester/kinds/<kind>`` or ``sim/machines/<kind>``. Lines of code have no
-limit here: they are printed to be compared. Every figure is printed; the exit code is 1 where one misses its limit.
+kind mirrors another: the same path below ``tester/kinds/<kind>`` or ``sim/machines/<kind>``. Lines of code, and words
+that are right in some sentences, have no limit: they are printed to be compared. Every figure is printed; the exit code
+is 1 where one misses its limit.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+
+from tests.campaigns.prose import COUNTED, NEVER, NO_NAMES, wrong_names, wrong_phrases
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("tester", "drivers", "sim")
@@ -139,12 +142,23 @@ def modules() -> dict[Path, str]:
     return {path.relative_to(ROOT): path.read_text(encoding="utf-8") for path in paths}
 
 
+def words() -> tuple[Figure, ...]:
+    """Return how often pages, texts and names hold the words of ``tests.campaigns.prose``."""
+    never = [*wrong_phrases(NEVER), *wrong_names(NO_NAMES)]
+    counted = wrong_phrases(COUNTED)
+    by_word = {word: [place for place in counted if place.word == word] for word in COUNTED}
+    return (
+        Figure("phrases and names that are never right", len(never), 0, tuple(map(str, never))),
+        *(Figure(f'"{word}"', len(places), None, tuple(map(str, places))) for word, places in by_word.items()),
+    )
+
+
 def main() -> int:
     """Print the figures; return 1 where one misses."""
     parser = argparse.ArgumentParser(description="How learnable the tree is, in figures.")
     parser.add_argument("--list", action="store_true", help="print what each figure counts")
     listed = parser.parse_args().list
-    counted = figures(modules())
+    counted = (*figures(modules()), *words())
     for figure in counted:
         print(figure)
         for item in figure.items if listed else ():
