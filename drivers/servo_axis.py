@@ -190,7 +190,7 @@ class ServoAxis(AxisCommand):
                 self.rebooted = True
                 self.lost = True
                 self.disconnect()
-        self.heartbeat.heard(t)
+        self.heartbeat.arrived(t)
         self.news = True
         self.online = self.connected and not self.lost and nmt_state == o.NmtState.OPERATIONAL
 

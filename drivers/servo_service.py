@@ -60,7 +60,7 @@ def _power_off(drive: ServoAxis) -> Step:
         drive.goal = Goal.DISABLED
     done = yield Until(AwaitedCondition.DISABLED, STOP_TIMEOUT_S)
     if not done:
-        raise SetupRefusedError(f"still {drive.state.name} {STOP_TIMEOUT_S:g} s after it was told to stop")
+        raise SetupRefusedError(f"still {drive.state.name} {STOP_TIMEOUT_S:g} s after the stop command")
 
 
 def _run_homing(drive: ServoAxis) -> Step:

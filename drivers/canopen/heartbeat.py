@@ -37,7 +37,7 @@ class HeartbeatMonitor:
         self.lost = False
         self.due = math.inf
 
-    def heard(self, t: float) -> None:
+    def arrived(self, t: float) -> None:
         """Note a heartbeat that arrived at ``t`` (s)."""
         self.heard_s = t
         if self.armed and not self.lost:

@@ -68,7 +68,7 @@ class CanNode:
             if self.connected:
                 self.lost = True
                 self.disconnect()
-        self.heartbeat.heard(t)
+        self.heartbeat.arrived(t)
         self.online = self.connected and not self.lost and nmt_state == o.NmtState.OPERATIONAL
 
     def check_heartbeat(self, now: float) -> None:

@@ -20,7 +20,7 @@ MOST_CLIENTS = 8
 SOCKETCAND: Final = "socketcand"
 GATEWAY: Final = "Modbus TCP"
 BUS: Final = "vcan0"
-"""Name of the bus that a client is told to open; the door takes any."""
+"""Name of the bus that clients should open; the door takes any."""
 
 
 class SocketcandDoor:

@@ -7,7 +7,7 @@ from math import inf
 
 from drivers.modbus.register_scan import LineScan, RegisterQuestion
 from drivers.ports import BusLost, CanPort, LinePort, TellingCanPort
-from tester.doctor.can_survey import Heard
+from tester.doctor.can_survey import Listened
 from tester.doctor.line_survey import LineSurvey
 from tester.doctor.open_wires import Wires
 from tester.inputs.rig import Rig
@@ -47,7 +47,7 @@ class RigWatch:
     """The results of a watch."""
 
     seconds: float = 0.0
-    can: Heard = field(default_factory=Heard)
+    can: Listened = field(default_factory=Listened)
     can_lost: str = ""
     can_errors: dict[str, int] | None = None
     """Error frames by kind; None if the adapter reports none."""

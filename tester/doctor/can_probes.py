@@ -39,7 +39,7 @@ def bus(e: Examination) -> Iterator[Finding]:
         return
     if can.lost:
         yield fault(BUS, can.lost, f"another bit rate on the bus, or no node acknowledges: look at {WIRING}")
-    elif not can.present and not can.heard.frames:
+    elif not can.present and not can.traffic.frames:
         yield fault(BUS, f"silent at {bitrate} bit/s: no frame arrived, and no node answers", f"look at {WIRING}")
     elif not can.present:
         yield fault(BUS, "frames arrive, but no node answers an SDO request", "switch the drives off and on")
@@ -49,7 +49,7 @@ def bus(e: Examination) -> Iterator[Finding]:
 
 def masters(e: Examination) -> Iterator[Finding]:
     """Report frames that only a master sends, received while the doctor sent none."""
-    senders = [*e.can.heard.masters, *e.watch.can.masters]
+    senders = [*e.can.traffic.masters, *e.watch.can.masters]
     if senders:
         yield fault(
             BUS, f"another master is sending: {', '.join(dict.fromkeys(senders))}",
@@ -104,7 +104,7 @@ def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
                 name, f"nothing answers at node {config.node_id}; node {node}, not in the rig file, is such a drive",
                 f"set the drive's node number to {config.node_id}, or axes.{name}.node_id to {node}",
             )  # fmt: skip
-    state = e.can.heard.states.get(config.node_id)
+    state = e.can.traffic.states.get(config.node_id)
     if state is not None:
         return fault(
             name, f"node {config.node_id} sends heartbeats ({state_name(state)}) and answers no SDO request",
@@ -257,7 +257,7 @@ def strangers(e: Examination) -> Iterator[Finding]:
 def emergencies(e: Examination) -> Iterator[Finding]:
     """Report emergencies sent while the doctor listened."""
     names = {config.node_id: name for name, config in e.rig.drives().items()}
-    for node, data in {**e.can.heard.emergencies, **e.watch.can.emergencies}.items():
+    for node, data in {**e.can.traffic.emergencies, **e.watch.can.emergencies}.items():
         code = int.from_bytes(data[:2], "little")
         if code:
             yield warning(names.get(node, f"node {node}"), f"emergency: {o.emergency_text(code)}", "the drive's manual")

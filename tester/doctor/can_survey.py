@@ -42,7 +42,7 @@ _FUNCTIONS_OF_A_MASTER = {
 
 
 @dataclass(slots=True)
-class Heard:
+class Listened:
     """Frames received while the computer sent none."""
 
     seconds: float = 0.0
@@ -89,7 +89,7 @@ class CanSurvey:
 
     lost: str = ""
     """Why the bus is not usable, "" if it is."""
-    heard: Heard = field(default_factory=Heard)
+    traffic: Listened = field(default_factory=Listened)
     present: tuple[int, ...] = ()
     """Nodes that answered."""
     surplus: Mapping[int, int] = field(default_factory=dict[int, int])
@@ -114,7 +114,7 @@ def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
     survey = CanSurvey()
     try:
         port = wires.can(rig.can.bitrate)
-        survey.heard = listen(port, wires, LISTEN_S, rig.can.node)
+        survey.traffic = listen(port, wires, LISTEN_S, rig.can.node)
         others = [node for node in range(1, 128) if node != rig.can.node]
         scan = scanned(port, wires, {node: [PRESENCE] for node in others})
         configs = {config.node_id: config for config in rig.drives().values()}
@@ -126,14 +126,14 @@ def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
         survey.objects = scanned(port, wires, wanted, PATIENCE_S).answers
     except BusLost as lost:
         survey.lost = str(lost)
-    if not survey.present and not survey.heard.frames:
+    if not survey.present and not survey.traffic.frames:
         survey.answers_at = _other_bitrate(rig, wires)
     return survey
 
 
-def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Heard:
+def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Listened:
     """Listen without sending; raises BusLost."""
-    frames, begun_s = Heard(), wires.now()
+    frames, begun_s = Listened(), wires.now()
     port.receive(begun_s)  # discard earlier frames
     due_s = begun_s
     while due_s < begun_s + seconds:

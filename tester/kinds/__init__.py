@@ -174,8 +174,8 @@ def _kind_of(tree: Tree) -> Kind:
 
     if not isinstance(tree.data, dict):
         return find(DEFAULT)
-    said = tree.data.setdefault("kind", DEFAULT)
+    name = tree.data.setdefault("kind", DEFAULT)
     try:
-        return find(str(said))
+        return find(str(name))
     except UnknownKindError as error:
         raise InvalidSource([tree.problem(("kind",), f"kind: {error}")]) from error

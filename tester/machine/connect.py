@@ -91,7 +91,7 @@ class Arming(Generic[DevicesT, RigT]):
         self.rig = rig
         self._stale_s = rig.values()[STALE_INPUTS_S]
 
-    def heard(self) -> bool:
+    def reported(self) -> bool:
         """Return whether every device and the safety inputs have reported."""
         return self.devices.answering() and self.devices.io.inputs_stamp_s > -inf
 
@@ -224,7 +224,7 @@ class Connector:
             devices.master.sync = True
             self._configured_s = now
             self.stage = Stage.HEAR
-        elif self.stage is Stage.HEAR and self.arming.heard() and line_speed.measured(devices):
+        elif self.stage is Stage.HEAR and self.arming.reported() and line_speed.measured(devices):
             limits = self.rig.stale_limits()
             slow = line_speed.too_slow(devices, limits)
             if slow:

@@ -46,7 +46,7 @@ def _bus_silent(v: Any) -> bool:
 
 CAN_SILENT: Final[Row] = Interlock(
     name="CAN silent",
-    cause="CAN cable, its terminators or the drives' supply: no drive is heard",
+    cause="CAN cable, its terminators or the drives' supply: no drive sends",
     watch=condition("no frame for silent_can_scans periods (drives on), or silent_can_heartbeats", _bus_silent),
     parameters=(SILENT_CAN_SCANS, SILENT_CAN_HEARTBEATS),
     reset=ACK,

@@ -46,7 +46,7 @@ def test_a_heartbeat_of_another_length_has_no_state(data: bytes) -> None:
 
 def test_a_monitor_is_due_three_periods_after_the_last_heartbeat() -> None:
     monitor = HeartbeatMonitor(period_s=0.05)
-    monitor.heard(1.0)
+    monitor.arrived(1.0)
     monitor.arm()
     assert monitor.due == pytest.approx(1.15)
     assert not monitor.expired(1.149)
@@ -55,17 +55,17 @@ def test_a_monitor_is_due_three_periods_after_the_last_heartbeat() -> None:
 
 def test_a_monitor_reports_a_loss_once_and_keeps_it() -> None:
     monitor = HeartbeatMonitor(period_s=0.05)
-    monitor.heard(1.0)
+    monitor.arrived(1.0)
     monitor.arm()
     monitor.expired(2.0)
-    monitor.heard(2.1)
+    monitor.arrived(2.1)
     assert monitor.lost
     assert not monitor.expired(3.0)
 
 
 def test_a_monitor_that_is_not_armed_never_expires() -> None:
     monitor = HeartbeatMonitor(period_s=0.05)
-    monitor.heard(1.0)
+    monitor.arrived(1.0)
     assert monitor.due == math.inf
 
 

@@ -42,8 +42,8 @@ class Onset(Enum):
     ENABLED = "while the drives are on"
     MOVING = "while the track moves"
     SLIDING = "in contact, while the track moves"
-    LIFTING = "while the arm is told to move"
-    TEMPERED = "while the chamber is told to run"
+    LIFTING = "while the arm has a command to move"
+    TEMPERED = "while the chamber has a command to run"
     NEAR_THE_END = "where the track comes to the end of its travel"
 
 

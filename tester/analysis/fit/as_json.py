@@ -105,7 +105,7 @@ def table(published: PublishedTable) -> dict[str, Json]:
         "title": published.title,
         "lines": [_line(line) for line in published.lines],
         "compared": {how: [_line(line) for line in lines] for how, lines in published.compared.items()},
-        "claims": [{"said": claim.said, "found": claim.found} for claim in published.claims],
+        "claims": [{"said": claim.statement, "found": claim.found} for claim in published.claims],
         "missed": [*published.missed],
     }
 

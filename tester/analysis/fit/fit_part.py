@@ -29,7 +29,7 @@ class TableLine:
 class Claim:
     """A publication's statement about its own errors, and the result from its data, in words."""
 
-    said: str
+    statement: str
     found: str
 
 

@@ -192,7 +192,7 @@ def table_lines(table: PublishedTable) -> Iterator[str]:
             yield f"  {'ok    ' if line.met else 'MISSED'} {line.way}: {line.asked}"
     yield "the paper says, and its data say:"
     for claim in table.claims:
-        yield f"  {claim.said}: {claim.found}"
+        yield f"  {claim.statement}: {claim.found}"
     yield from table.remarks
 
 

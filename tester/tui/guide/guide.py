@@ -37,7 +37,7 @@ class GuideView:
     """Rig time that each step took, s."""
     live: Live | None
     question: Question | None
-    said: tuple[str, ...]
+    messages: tuple[str, ...]
     running: bool
     outcome: CommissionOutcome | None
     trouble: str
@@ -137,7 +137,7 @@ class Guide:
             {s.step.name: float(s.stands.values.get("rig_s", 0.0)) for s in self._standing if s.stands},
             person.live,
             question,
-            tuple(person.said),
+            tuple(person.messages),
             running,
             None if running else self.outcome,
             "" if running else self.trouble,

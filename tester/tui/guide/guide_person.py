@@ -36,7 +36,7 @@ class ScreenPerson(Person):
     def __init__(self, *, time_stands: bool) -> None:
         """``time_stands``: true for a rig simulated in this process."""
         self.time_stands = time_stands
-        self.said: deque[str] = deque(maxlen=KEPT)
+        self.messages: deque[str] = deque(maxlen=KEPT)
         self.entries: deque[RecordEntry] = deque()
         """Recorded entries that are not shown yet."""
         self.live: Live | None = None
@@ -47,7 +47,7 @@ class ScreenPerson(Person):
     # -- the engine's side ------------------------------------------------------------------------------------
 
     def message(self, text: str) -> None:
-        self.said.append(text)
+        self.messages.append(text)
 
     def attend(self, prompts: Prompts) -> None:
         self._prompt = prompts.waiting

@@ -140,7 +140,7 @@ class SaidPanel(GuidePanel):
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
         lines: list[Parts] = []
-        for text in reversed(seen.said):
+        for text in reversed(seen.messages):
             style = said_style(text)
             for line in reversed(wrap(clean(text), width, subsequent_indent="  ") or [""]):
                 lines.append([(line, style)])

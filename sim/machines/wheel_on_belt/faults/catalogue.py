@@ -39,7 +39,7 @@ class Exposure(Enum):
     PRESSING = "while a load is held"
     SLIDING = "in contact, with slip"
     RUBBING = "while a load is held, with slip"
-    ASTRAY = "while a drive shows another speed than it was told"
+    ASTRAY = "while a drive shows another speed than its command"
     HEATING = "while the jacket heats"
     MISWEIGHED = "while the press is further than the load shown can need"
     MISREAD = "while the thermometer is off by more than the model allows, turning"
@@ -154,7 +154,7 @@ def _modbus_rows() -> Iterator[FaultKind]:
                         lasts_s=m.REBOOT_S)
         yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s)
         yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, TRIP, NOISY_S,
-                        note="bytes before a reply: its time is over before it is told from them")
+                        note="bytes before a reply: its time is over before the driver can tell it from them")
         yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
         yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
                         budget_s)

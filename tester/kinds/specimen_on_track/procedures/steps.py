@@ -29,7 +29,7 @@ class InstallSpecimen(AskBesideTrack):
         note = f" ({step.note})" if step.note else ""
         text = f"put specimen {step.piece} on the arm and raise it: {step.compound}{note}"
         if step.again:
-            text = f"the run goes on with specimen {step.piece} on the raised arm: {step.compound}{note}"
+            text = f"the run continues with specimen {step.piece} on the raised arm: {step.compound}{note}"
         super().__init__(text)
 
     def step(self, ctx: TrackContext) -> bool:

@@ -228,7 +228,7 @@ FROZEN_HUB_K: Final = Parameter(
 )  # fmt: skip
 FROZEN_HUB_SHARE: Final = Parameter(
     "frozen_hub_share", "1", "0.3", "... or this share of what limits.jacket is away, where that is more [A]",
-    SHARE, hardest="0.5", because="a hub that goes by as much again before it is told stays below limits.jacket",
+    SHARE, hardest="0.5", because="a hub that moves by as much again before the trip stays below limits.jacket",
 )  # fmt: skip
 
 

@@ -76,7 +76,7 @@ TOUCH_MARGIN_MM: Final = Parameter(
     "touch_margin_mm", "mm", "1.8 mm",
     "... or no force this far beyond it: a new wheel may be 1.65 mm off; 200 N unseen",
     hardest="2 mm",
-    because="2 mm press a wheel with 230 N, rubber that is stiffer by 30 % with 325 N, before a dead cell is told",
+    because="2 mm press a wheel with 230 N, rubber that is stiffer by 30 % with 325 N, before a dead cell trips",
 )  # fmt: skip
 
 

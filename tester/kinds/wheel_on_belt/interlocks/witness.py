@@ -50,13 +50,13 @@ FORCE_STEP: Final[Row] = Interlock(
 TORQUE_MARGIN_N: Final = Parameter(
     "press_torque_margin_n", "N", "20 N",
     "Fz outside what the press's torque and screw can mean, by this [A] ...",
-    hardest="40 N", because="at the torque's limit 440 N or more press: a cell that shows less than 400 N is told",
+    hardest="40 N", because="at the torque's limit 440 N or more press: a cell that shows less than 400 N trips",
 )  # fmt: skip
 TORQUE_DELAY_S: Final = Parameter(
     "press_torque_delay_s", "s", "100 ms",
     "... for this long: acceleration, and torque and force read at two times [A]",
     NOT_NEGATIVE, hardest="300 ms",
-    because="the press's torque has a limit that keeps the force below 500 N: what is told in time is the test",
+    because="the press's torque has a limit that keeps the force below 500 N: a trip in time is the test",
 )  # fmt: skip
 
 

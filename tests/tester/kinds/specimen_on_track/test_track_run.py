@@ -45,7 +45,7 @@ def test_a_resumed_run_asks_for_weights_and_interface_again(run: Path) -> None:
     with RunReader(run) as reader:
         asked = [prompt.text for prompt in reader.prompts()]
     assert "hang 10 N of weights on the arm and make the track wet" in asked
-    assert "the run goes on with specimen 1 on the raised arm: SBR" in asked
+    assert "the run continues with specimen 1 on the raised arm: SBR" in asked
 
 
 def test_it_is_verified(run: Path, capfd: pytest.CaptureFixture[str]) -> None:

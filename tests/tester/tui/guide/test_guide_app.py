@@ -156,7 +156,7 @@ def test_what_is_no_answer_is_refused_in_words_and_reaches_nobody(tmp_path: Path
         assert on.app._asked is not None and on.app._asked.key == "jog wheel first read"
 
     stage.play(act)
-    assert not any("23 N" in text for text in stage.guide.person.said)
+    assert not any("23 N" in text for text in stage.guide.person.messages)
 
 
 def test_nothing_moves_by_space_while_a_question_stands_and_it_is_said(tmp_path: Path) -> None:

@@ -55,7 +55,7 @@ ENDED = replace(
         standing(name, DONE if at < 2 else REFUSED if at == 2 else "") for at, name in enumerate(NAMES)
     ),
     now="", next="jog belt", live=None, running=False, outcome=CommissionOutcome(Ended.REFUSED, "jog belt", REFUSAL),
-    said=(*ASKED.said, f"REFUSED: {REFUSAL}"),
+    messages=(*ASKED.messages, f"REFUSED: {REFUSAL}"),
 )  # fmt: skip
 VIEWS = {"asked": ASKED, "moving": MOVING, "refused": ENDED}
 
@@ -110,7 +110,7 @@ def test_with_ascii_nothing_else_leaves() -> None:
 
 def test_hostile_text_is_shown_and_never_obeyed() -> None:
     view = replace(
-        ENDED, rig=HOSTILE, said=(HOSTILE,), trouble=HOSTILE, running=True,
+        ENDED, rig=HOSTILE, messages=(HOSTILE,), trouble=HOSTILE, running=True,
         question=replace(QUESTION, text=HOSTILE, choices=(HOSTILE,)),
         live=Live(HOSTILE, 1.0, (StepReading(HOSTILE, 1.0, HOSTILE, 1, HOSTILE),)),
     )  # fmt: skip

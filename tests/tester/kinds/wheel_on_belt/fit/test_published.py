@@ -73,7 +73,7 @@ def test_without_its_value_at_25_degc_a_condition_is_not_scaled(table: Published
 
 
 def test_all_eight_errors_that_the_paper_quotes_are_answered(table: PublishedTable) -> None:
-    told = {claim.said: claim.found for claim in table.claims}
+    told = {claim.statement: claim.found for claim in table.claims}
     (of_load,) = (found for said, found in told.items() if said.startswith("1.5, 1.0, 2.5, 2.4 %"))
     assert of_load == (
         "8.1%, 2.9%, 4.4%, 21.2% by Eqs 7 to 9; 0.9%, 1.4%, 2.2%, 2.1% by the value measured at 25 degC times f(T)"
