@@ -58,10 +58,10 @@ def test_a_hold_stays_until_it_is_released(running: Simulation) -> None:
 
 def test_a_held_repeat_is_void_and_done_again_in_a_second_attempt(held_run: Simulation) -> None:
     assert held_run.run.outcome is Outcome.DONE
-    begun = [values[1:4] for values in held_run.notes.written("INSERT INTO repeat")]
-    assert [values[1:] for values in begun] == [(1, 1), (1, 2)]
-    statuses = [values[0] for values in held_run.notes.written("UPDATE repeat SET status = ?, reason = ?, flags")]
-    assert statuses[0] == "void" and len(statuses) == 2
+    begun = held_run.notes.fields("INSERT INTO repeat")
+    assert [(row["repeat"], row["attempt"]) for row in begun] == [(1, 1), (1, 2)]
+    ended = [row for row in held_run.notes.fields("UPDATE repeat SET") if "flags" in row]
+    assert ended[0]["status"] == "void" and len(ended) == 2
 
 
 def test_no_sample_of_a_hold_belongs_to_a_repeat(held_run: Simulation) -> None:
@@ -82,8 +82,8 @@ def test_the_end_of_a_hold_says_how_long_it_lasted(held_run: Simulation) -> None
 
 def test_the_surface_is_conditioned_again_after_a_hold(held_run: Simulation) -> None:
     released = next(t for t, kind, text, _ in held_run.notes.events if text.startswith("hold -> run"))
-    begun = held_run.notes.written("INSERT INTO repeat")[1]
-    assert float(str(begun[5])) > released + 2.0
+    begun = held_run.notes.fields("INSERT INTO repeat")[1]
+    assert float(str(begun["begun_s"])) > released + 2.0
 
 
 def test_a_pre_grinding_that_was_held_grinds_its_whole_time() -> None:

@@ -69,8 +69,8 @@ def door() -> Door:
 
 def test_a_complete_repeat_is_reduced_and_committed(door: Door) -> None:
     assert door.repeat(1, Ending.COMPLETE) is RepeatStatus.VALID
-    (values,) = door.bench.notes.written("UPDATE repeat SET")
-    assert values[0] == "valid" and values[3] == pytest.approx(0.7, rel=1e-3)
+    (stored,) = door.bench.notes.fields("UPDATE repeat SET")
+    assert stored["status"] == "valid" and stored["mu_resultant"] == pytest.approx(0.7, rel=1e-3)
 
 
 def test_the_bursts_of_a_repeat_are_stored_with_it(door: Door) -> None:
@@ -90,8 +90,8 @@ def test_an_ending_without_a_value_leaves_none_whatever_was_collected(
     door: Door, ending: Ending, status: RepeatStatus
 ) -> None:
     assert door.repeat(1, ending, detail="why") is status
-    (values,) = door.bench.notes.written("UPDATE repeat SET")
-    assert values[1] == "why" and values[3] != values[3]
+    (stored,) = door.bench.notes.fields("UPDATE repeat SET")
+    assert stored["reason"] == "why" and stored["mu_resultant"] != stored["mu_resultant"]
 
 
 def test_an_incomplete_repeat_is_for_the_reduction_to_judge(door: Door) -> None:
@@ -183,8 +183,8 @@ def test_a_repeat_that_drifts_is_refused_stored_so_and_made_up_for(door: Door) -
     for number in (1, 2, 3):
         door.repeat(number, Ending.COMPLETE, drift=0.05 if number == 2 else 0.0)
     assert door.results.another(STEP)
-    judged = door.bench.notes.written("UPDATE repeat SET status = ?, reason = ?, drift")
-    assert [values[0] for values in judged] == ["valid", "refused", "valid"]
+    judged = door.bench.notes.fields("UPDATE repeat SET")[-3:]
+    assert [row["status"] for row in judged] == ["valid", "refused", "valid"]
     door.repeat(4, Ending.COMPLETE)
     assert not door.results.another(STEP)
     line, written = door.end()

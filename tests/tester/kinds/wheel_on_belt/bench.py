@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
@@ -96,6 +97,21 @@ class Notes(NullRecorder):
     def written(self, start: str) -> list[tuple[object, ...]]:
         """Return the values of every statement that begins with ``start``."""
         return [values for sql, values in self.statements if sql.startswith(start)]
+
+    def fields(self, start: str) -> list[dict[str, object]]:
+        """Return the values of every statement that begins with ``start``, by column (an UPDATE: also its WHERE)."""
+        return [
+            dict(zip(columns_named(sql), values, strict=False))
+            for sql, values in self.statements
+            if sql.startswith(start)
+        ]
+
+
+def columns_named(sql: str) -> list[str]:
+    """Return the columns of an INSERT, or those that an UPDATE sets and then compares, in order."""
+    if sql.startswith("INSERT"):
+        return [name.strip() for name in sql.partition("(")[2].partition(")")[0].split(",")]
+    return re.findall(r"(\w+) = \?", sql)
 
 
 class Cell:
