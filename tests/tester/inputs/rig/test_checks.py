@@ -10,7 +10,7 @@ import pytest
 from tester.cli.main import invoke
 from tester.inputs.rig.checks import other_settings
 from tester.kinds import hardware_text, load_rig
-from tester.run.preconditions import told_before
+from tester.run.preconditions import warnings_before
 
 E5CC = ("devices.jacket.profile=omron_e5cc", "devices.jacket.heat_off=relay")
 SAID = (
@@ -48,6 +48,6 @@ def test_a_start_of_a_real_rig_says_it_and_is_not_refused(tmp_path: Path) -> Non
     path = tmp_path / "rig.yaml"
     path.write_text(hardware_text(), encoding="utf-8")
     rig = load_rig(str(path), ("lines.heat.baud=9600",))
-    told = told_before(rig, date(2026, 1, 1))
+    told = warnings_before(rig, date(2026, 1, 1))
     assert [text.split(" has ")[0] for text in told] == ["warning: lines.heat"] * 2
-    assert told_before(load_rig(overrides=E5CC), date(2026, 1, 1)) == []
+    assert warnings_before(load_rig(overrides=E5CC), date(2026, 1, 1)) == []
