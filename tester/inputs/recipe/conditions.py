@@ -13,7 +13,7 @@ from typing import Final, Generic, NamedTuple, TypeAlias, TypeVar
 
 from tester.analysis import left_out, terms
 from tester.base.axes import AxisValue, Setpoint, condition_words
-from tester.inputs.recipe.grid_settings import Settings
+from tester.inputs.recipe.plan import Settings
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, OrderModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
 

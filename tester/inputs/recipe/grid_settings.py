@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 from tester.analysis.stability import Window
 from tester.base.axes import Axis, AxisValue
-from tester.inputs.recipe.plan import Soak
+from tester.inputs.recipe.plan import Settings, Soak
 from tester.inputs.recipe.recipe_schema import Extent, GridModel, MeasureModel, RepeatsModel, SoakModel
 
 DEFAULT_MIN_VALID = 3
@@ -21,21 +20,6 @@ LEAST_REPEATS = 4
 
 DEFAULT_EXTENSION = 3.0
 """Most that a repeat collects as a multiple of its window, unless the recipe has ``extend_to``."""
-
-
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """How every condition of a grid is measured; a kind's subclass adds the values of its own sections."""
-
-    repeats: int
-    at_most: int
-    until_percent: float | None
-    min_valid: int
-    window: Window
-    temperature_band_k: float
-    soak: Soak
-    both_directions: bool = field(default=False, kw_only=True)
-    """Repeats alternate between the directions of sliding; numbers of repeats are of pairs."""
 
 
 def settings_of(measure: MeasureModel, grid: GridModel) -> Settings:

@@ -9,15 +9,14 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count, product
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import Setpoint, condition_words
 from tester.base.source import Problem, Tree
 from tester.base.units import Quantity, UnitError, show
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
-from tester.inputs.recipe.grid_settings import Settings
-from tester.inputs.recipe.plan import ConditionStep, Plan, Specimen, Stand, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, Settings, Specimen, Stand, Step
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.repeats_section import expected
@@ -84,10 +83,6 @@ class SpecimenPart(RecipePart):
         """Return the steps before a condition, from ``index`` on; ``before``: the one before it on this specimen."""
         return ()
 
-    def condition_data(self, setpoint: Setpoint, settings: Settings) -> Mapping[str, Any]:
-        """Return the values of a condition step's further fields, by name."""
-        return {}
-
     def expand(self, recipe: Recipe, rig: Rig, estimator: object = None) -> Plan:
         """Return the plan: each replicate of a specimen is mounted and goes through its conditions."""
         conditions = conditions_of(recipe, self.settings)
@@ -109,9 +104,8 @@ class SpecimenPart(RecipePart):
                     steps += self.before_condition(len(steps), setpoint, before)
                     before = setpoint
                     steps.append(self.condition(
-                        len(steps), next(numbers), (specimen.index - 1) * len(conditions) + row, specimen.index,
-                        replicate, grid, setpoint, how.repeats, how.min_valid, how.window, how.temperature_band_k,
-                        how.soak, how.at_most, how.until_percent, **self.condition_data(setpoint, how),
+                        index=len(steps), condition=next(numbers), row=(specimen.index - 1) * len(conditions) + row,
+                        specimen=specimen.index, replicate=replicate, grid=grid, setpoint=setpoint, **vars(how),
                     ))  # fmt: skip
         least = min((condition.settings.min_valid for condition in conditions), default=1)
         return Plan(recipe.recipe, tuple(steps), specimens, least, metadata_of(recipe), recipe.kind, self.axes)

@@ -47,12 +47,35 @@ class Soak:
     at_most_s: float
 
 
-@dataclass(frozen=True, slots=True)
-class ConditionStep(Step):
-    """Measure one condition: ``repeats`` values that count, each a window or more.
+@dataclass(frozen=True)
+class Settings:
+    """How a condition is measured: ``repeats`` values that count, each a window or more.
 
-    At most ``at_most`` repeats are made: refused ones are replaced, and with ``until_percent`` repeats are added until
-    the condition's expanded repeatability (95 %, per cent of the coefficient) is reached.
+    Every condition of a grid has the same; a kind's subclass adds the values of its own sections. At most ``at_most``
+    repeats are made: refused ones are replaced, and with ``until_percent`` repeats are added until the condition's
+    expanded repeatability (95 %, per cent of the coefficient) is reached.
+    """
+
+    repeats: int
+    at_most: int
+    until_percent: float | None
+    min_valid: int
+    window: Window
+    temperature_band_k: float
+    soak: Soak
+    both_directions: bool = field(default=False, kw_only=True)
+    """Repeats alternate between the requested direction and the reverse; ``repeats``, ``at_most`` and ``min_valid``
+    count pairs."""
+
+    @property
+    def scheme(self) -> Scheme:
+        """Return how its repeats make values."""
+        return scheme_of(both_directions=self.both_directions)
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionStep(Settings, Step):
+    """Measure one condition.
 
     ``condition`` counts from 1 through the plan (a replicate's conditions have numbers of their own). ``row`` counts
     from 1 in the recipe's order and is the same for all replicates: its row of the table.
@@ -66,16 +89,6 @@ class ConditionStep(Step):
     replicate: int
     grid: str
     setpoint: Setpoint
-    repeats: int
-    min_valid: int
-    window: Window
-    temperature_band_k: float
-    soak: Soak
-    at_most: int
-    until_percent: float | None
-    both_directions: bool = field(default=False, kw_only=True)
-    """Repeats alternate between the requested direction and the reverse; ``repeats``, ``at_most`` and ``min_valid``
-    count pairs."""
 
     @property
     def repeats_words(self) -> str:
@@ -85,11 +98,6 @@ class ConditionStep(Step):
         """
         until = f" (until {self.until_percent:.3g} %)" if self.until_percent is not None else ""
         return f"{self.repeats}{' pairs' if self.both_directions else ''}{until}"
-
-    @property
-    def scheme(self) -> Scheme:
-        """Return how its repeats make values."""
-        return scheme_of(both_directions=self.both_directions)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,8 @@ from typing import ClassVar
 from tester.analysis.terms import Term
 from tester.base.axes import Axes
 from tester.base.source import Location, Problem, Tree
-from tester.inputs.recipe.grid_settings import Settings, settings_of
-from tester.inputs.recipe.plan import ConditionStep, Plan, Stand, Step
+from tester.inputs.recipe.grid_settings import settings_of
+from tester.inputs.recipe.plan import ConditionStep, Plan, Settings, Stand, Step
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate, estimate
 from tester.inputs.rig import Rig

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import inf, sqrt
-from typing import Final, Protocol
+from typing import Final
 
 from tester.analysis.judge import ALONE
 from tester.analysis.quantiles import t_quantile
-from tester.analysis.schemes import scheme_of
 from tester.analysis.uncertainty import CONFIDENCE
 from tester.inputs.recipe.grid_settings import LEAST_REPEATS
+from tester.inputs.recipe.plan import Settings
 from tester.inputs.recipe.recipe_schema import MAX_REPEATS
 
 MADE_UP: Final = 0.01
@@ -22,38 +22,9 @@ SURE: Final = (0.75, 1.3)
 """A run's own standard deviation over the expected one, 95 % of runs: chi-square with the degrees of freedom above."""
 
 
-class Counted(Protocol):
-    """Counts of a condition's measurement: a ConditionStep, or a grid's Settings."""
-
-    @property
-    def repeats(self) -> int:
-        """Return the repeats that must count."""
-        ...
-
-    @property
-    def at_most(self) -> int:
-        """Return the most repeats made in all."""
-        ...
-
-    @property
-    def until_percent(self) -> float | None:
-        """Return the required expanded repeatability, per cent; None where only the number of repeats counts."""
-        ...
-
-    @property
-    def both_directions(self) -> bool:
-        """Return whether two repeats, in opposite directions, make a value: then the counts are of pairs."""
-        ...
-
-
-def repeats_each(how: Counted) -> int:
-    """Return how many repeats make a value."""
-    return scheme_of(both_directions=how.both_directions).repeats_each
-
-
-def s_of_values(how: Counted, s_percent: float) -> float:
+def s_of_values(how: Settings, s_percent: float) -> float:
     """Return the standard deviation between values from that between repeats, per cent."""
-    return s_percent / sqrt(repeats_each(how))
+    return s_percent / sqrt(how.scheme.repeats_each)
 
 
 @lru_cache(maxsize=1024)
@@ -69,7 +40,7 @@ def needed(until_percent: float, s_percent: float, df: int = POOLED_DF) -> int:
     return MAX_REPEATS
 
 
-def expected(how: Counted, s_percent: float, df: int = POOLED_DF) -> float:
+def expected(how: Settings, s_percent: float, df: int = POOLED_DF) -> float:
     """Return the expected number of measured values, up to ``at_most``: repeats, or pairs of them.
 
     ``s_percent``: standard deviation between repeats, per cent.
@@ -82,7 +53,7 @@ def expected(how: Counted, s_percent: float, df: int = POOLED_DF) -> float:
     return min(n, float(how.at_most))
 
 
-def reached_percent(how: Counted, s_percent: float) -> float:
+def reached_percent(how: Settings, s_percent: float) -> float:
     """Return the expanded repeatability (95 %) expected of ``at_most`` repeats, per cent; inf for a single one."""
     n = how.at_most
     t = t_quantile(0.5 + 0.5 * CONFIDENCE, float(POOLED_DF))

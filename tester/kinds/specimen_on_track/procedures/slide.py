@@ -86,7 +86,7 @@ class MeasureTrackRepeat:
         self.condition = step
         held = held_by(step.setpoint)
         self.speed_m_s = held.track_m_s
-        self.stretch_m = step.distance_m / STRETCHES
+        self.stretch_m = step.way_m(held.track_m_s) / STRETCHES
         self.target = TrackTarget(
             temperature_c=held.temperature_c, band_k=step.temperature_band_k, stretch_m=self.stretch_m
         )

@@ -103,7 +103,7 @@ class TrackEstimator(Estimator):
     def _condition(self, step: TrackCondition) -> StepEstimate:
         held, compound = held_by(step.setpoint), step.setpoint.compound
         repeats = expected(step, self.s_percent(compound))
-        slid_m = repeats * (1.5 + SETTLES[self.rig.track]) * step.distance_m
+        slid_m = repeats * (1.5 + SETTLES[self.rig.track]) * step.way_m(held.track_m_s)
         arm_s = 0.0 if self.rig.axes.lift is not None or self.rig.simulated else 2.0 * PERSON_S
         rise_k, power_w = self.rise_k(compound, held), self.mu_of(compound, held) * held.load_n * held.track_m_s
         return StepEstimate(

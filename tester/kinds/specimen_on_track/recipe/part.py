@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import ClassVar, Final
 
 from tester.analysis.terms import Term
 from tester.base.axes import Axes, Setpoint, condition_words, numbers
@@ -14,9 +14,8 @@ from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.base.words import rough_duration
 from tester.inputs.recipe.conditions import conditions_of
-from tester.inputs.recipe.grid_settings import Settings
 from tester.inputs.recipe.plain_recipe import Mount, SpecimenPart
-from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Stand, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Settings, Stand, Step
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
 from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
@@ -30,7 +29,6 @@ from tester.kinds.specimen_on_track.recipe.schema import (
     TrackGrid,
     TrackMeasure,
     TrackRecipe,
-    TrackSettings,
     track_settings,
 )
 from tester.kinds.specimen_on_track.rig import TrackConfig
@@ -131,11 +129,6 @@ class TrackPart(SpecimenPart):
         last = None if before is None else _prepared(before)
         return () if last == _prepared(setpoint) else (_prepare(index, last, _prepared(setpoint)),)
 
-    def condition_data(self, setpoint: Setpoint, settings: Settings) -> Mapping[str, Any]:
-        """Return the way that a condition slides."""
-        assert isinstance(settings, TrackSettings)
-        return {"distance_m": settings.way_m(held_by(setpoint).track_m_s)}
-
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
         """Return the plan of the rest: conditions that are not over, and the steps to repeat before them."""
         mounted_before = {mounted.number: mounted for mounted in stand.mounted}
@@ -169,9 +162,11 @@ class TrackPart(SpecimenPart):
                 return f"temper to {step.temperature_c:g} degC, {rough_duration(step.for_s)} within {step.within_k:g} K"
             case TrackCondition():
                 words = condition_words(step.setpoint, compound=False)
-                rise_k = one.peak_c - held_by(step.setpoint).temperature_c
+                held = held_by(step.setpoint)
+                rise_k = one.peak_c - held.temperature_c
                 warm = "" if one.held else f", friction warms it by {rise_k:.0f} K"
-                return f"{step.condition:>4}  {words}  {step.repeats_words} x {1e3 * step.distance_m:g} mm{warm}"
+                way_mm = 1e3 * step.way_m(held.track_m_s)
+                return f"{step.condition:>4}  {words}  {step.repeats_words} x {way_mm:g} mm{warm}"
             case PromptStep():
                 return f"ask: {step.text}"
             case _:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Final
 
 from tester.inputs.recipe.plain_recipe import Mount
-from tester.inputs.recipe.plan import ConditionStep, Step
+from tester.inputs.recipe.plan import ConditionStep, Settings, Step
 
 STRETCHES: Final = 10
 """Parts of a condition's way in which friction is averaged and held against each other [A]."""
@@ -50,8 +50,18 @@ class Temper(Step):
     at_most_s: float
 
 
-@dataclass(frozen=True, slots=True)
-class TrackCondition(ConditionStep):
-    """A condition: stationary friction is collected over ``distance_m``, half as much again in each repeat."""
+@dataclass(frozen=True)
+class TrackSettings(Settings):
+    """How a condition is measured: over a way, or for as long as ``at_least_s`` takes at its speed."""
 
     distance_m: float
+    at_least_s: float
+
+    def way_m(self, speed_m_s: float) -> float:
+        """Return the way over which friction is to be stationary at a speed."""
+        return max(self.distance_m, self.at_least_s * speed_m_s)
+
+
+@dataclass(frozen=True, slots=True)
+class TrackCondition(TrackSettings, ConditionStep):
+    """A condition: stationary friction is collected over its way, half as much again in each repeat."""

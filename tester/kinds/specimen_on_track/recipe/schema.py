@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Annotated, TypeAlias
 
 from tester.analysis.stability import Window
 from tester.base.units import Quantity
-from tester.inputs.recipe.grid_settings import DEFAULT_EXTENSION, Settings, settings_of
+from tester.inputs.recipe.grid_settings import DEFAULT_EXTENSION, settings_of
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
-from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES
+from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES, TrackSettings
 
 Distance: TypeAlias = Annotated[float, Quantity("mm", ge=0.1, le=1e6)]
 AtLeast: TypeAlias = Annotated[float, Quantity("s", ge=1.0, le=3600.0)]
@@ -39,25 +39,13 @@ class TrackRecipe(Recipe, frozen=True):
     grids: Sequence[TrackGrid] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class TrackSettings(Settings):
-    """How every condition of a grid is measured."""
-
-    distance_m: float
-    at_least_s: float
-
-    def way_m(self, speed_m_s: float) -> float:
-        """Return the way over which friction is to be stationary at a speed."""
-        return max(self.distance_m, self.at_least_s * speed_m_s)
-
-
 def track_settings(measure: MeasureModel, grid: GridModel) -> TrackSettings:
     """Return a grid's settings; raises TypeError for one of another kind."""
     if not isinstance(measure, TrackMeasure) or not isinstance(grid, TrackGrid):
         raise TypeError(f"grid {grid.name} is for a rig of another kind")
-    common = settings_of(measure, grid)
+    common = replace(settings_of(measure, grid), window=Window(float(STRETCHES), None, DEFAULT_EXTENSION * STRETCHES))
     return TrackSettings(
-        common.repeats, common.at_most, common.until_percent, common.min_valid,
-        Window(float(STRETCHES), None, DEFAULT_EXTENSION * STRETCHES), common.temperature_band_k, common.soak,
-        1e-3 * (grid.distance or measure.distance), grid.at_least or measure.at_least,
-    )  # fmt: skip
+        **vars(common),
+        distance_m=1e-3 * (grid.distance or measure.distance),
+        at_least_s=grid.at_least or measure.at_least,
+    )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 from sim.physics import laws
 from sim.physics.friction import KNOWN
@@ -16,22 +16,17 @@ from sim.physics.slip import cornering_factor, slip_velocity
 from tester.analysis.judge import ALONE
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import Setpoint
-from tester.inputs.recipe.repeats_section import expected, repeats_each
+from tester.inputs.recipe.repeats_section import expected
 from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, StepEstimate
 from tester.kinds.wheel_on_belt.image.axes import Held, held_by
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
-    from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
-    from tester.kinds.wheel_on_belt.recipe.schema import WheelSettings
+    from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelSettings
     from tester.kinds.wheel_on_belt.rig import RigConfig
 
 ROLLING_M_S = 1e-9
 """Slower slip than this is none: the wheel rolls, in one contact a repeat."""
-
-
-Procedure: TypeAlias = "WheelCondition | WheelSettings"
-"""How a condition is measured: the settings of its grid, or the step itself, which has the same fields."""
 
 
 class ConditionMotion(NamedTuple):
@@ -61,7 +56,7 @@ class ConditionMotion(NamedTuple):
     """Rise during a pulse that starts below the setpoint and ends as far above it."""
 
 
-def _run_in_s(how: Procedure, repeats: float, slip_m_s: float) -> float:
+def _run_in_s(how: WheelSettings, repeats: float, slip_m_s: float) -> float:
     """Return the sliding, s a repeat, that goes before a repeat after each reversal: once a pair, and once more."""
     if not how.run_in_m or slip_m_s < ROLLING_M_S:
         return 0.0
@@ -110,7 +105,7 @@ class ConditionCosts:
         """Return the loss of diameter, mm, of sliding a distance (m) under a load (N)."""
         return self.loss_mm_per_nm * load_n * sliding_m
 
-    def of(self, setpoint: Setpoint, how: Procedure) -> StepEstimate:
+    def of(self, setpoint: Setpoint, how: WheelSettings) -> StepEstimate:
         """Return the estimate of a condition: a setpoint, measured with these settings."""
         procedure = (
             how.repeats, how.at_most, how.until_percent, how.window, how.temperature_band_k, how.soak, how.max_bursts,
@@ -127,7 +122,7 @@ class ConditionCosts:
             known = self._costs[key] = self._cost(sp.load_n, sp.temperature_c, motion, how)
         return known
 
-    def _cost(self, load_n: float, temperature_c: float, motion: ConditionMotion, how: Procedure) -> StepEstimate:
+    def _cost(self, load_n: float, temperature_c: float, motion: ConditionMotion, how: WheelSettings) -> StepEstimate:
         model, slip_m_s, soak_s, repeats = motion.model, motion.slip_m_s, motion.soak_s, motion.repeats
         c = self.constants
         if slip_m_s < ROLLING_M_S:
@@ -159,13 +154,13 @@ class ConditionCosts:
             repeats,
         )
 
-    def _motion(self, sp: Held, how: Procedure) -> ConditionMotion:
+    def _motion(self, sp: Held, how: WheelSettings) -> ConditionMotion:
         c = self.constants
         turn_s = self.turn_m / sp.wheel_speed_m_s
         yawed = sp.yawed
         model = self.models.get(sp.compound)
         slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
-        repeats = repeats_each(how) * expected(how, self.s_percent(sp.compound))
+        repeats = how.scheme.repeats_each * expected(how, self.s_percent(sp.compound))
         collected = REPEAT_WINDOWS * c.surplus if how.repeats > ALONE else c.alone
         return ConditionMotion(
             model=model,
@@ -193,7 +188,7 @@ class ConditionCosts:
             heat_w = c.hot_w + c.hot_share * (heat_w - c.hot_w)
         return c.cooling_per_j * heat_w * (1.0 + c.near_k / (above_k + c.near_shift_k))
 
-    def _bursts(self, motion: ConditionMotion, how: Procedure, rise_k: float) -> tuple[int, float, bool]:
+    def _bursts(self, motion: ConditionMotion, how: WheelSettings, rise_k: float) -> tuple[int, float, bool]:
         """Return bursts a repeat, seconds counted a repeat, and whether the temperature holds for a revolution.
 
         ``rise_k`` is the surface's rise in K per square root of a second.

@@ -14,7 +14,7 @@ from tester.analysis.terms import Size
 from tester.analysis.uncertainty import Budget
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
-from tester.inputs.recipe.repeats_section import MADE_UP, POOLED_DF, SURE, expected, repeats_each
+from tester.inputs.recipe.repeats_section import MADE_UP, POOLED_DF, SURE, expected
 from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_TURNS, instruments_budget, roll_check_u_mm
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, held_by
@@ -49,7 +49,7 @@ def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float
     for step, estimate in zip(plan.steps, steps, strict=True):
         if isinstance(step, WheelCondition) and step.until_percent is not None and estimate.repeats:
             moves_s = estimate.seconds - estimate.waiting_s
-            values = estimate.repeats / repeats_each(step)
+            values = estimate.repeats / step.scheme.repeats_each
             sooner_s += (1.0 - min(max(least * least, step.repeats / values), 1.0)) * moves_s
             later_s += (max(min(most * most, step.at_most / values), 1.0) - 1.0) * moves_s
     return sooner_s, later_s
@@ -152,7 +152,7 @@ class WheelEstimator(Estimator):
 
     def _until(self, before: Before, step: WheelCondition, estimate: StepEstimate) -> StepEstimate:
         """Return an estimate with the repeats that a precision takes early in a run, when few repeats are pooled."""
-        repeats, each = estimate.repeats, repeats_each(step)
+        repeats, each = estimate.repeats, step.scheme.repeats_each
         if estimate.held and before.pooled < POOLED_DF:
             repeats = each * expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
         before.pooled += int(repeats) // each - 1

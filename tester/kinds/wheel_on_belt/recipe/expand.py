@@ -226,10 +226,8 @@ class _Expansion:
             self.references.since += 1
         steps.append(
             WheelCondition(
-                len(steps), self.count, row, wheel.specimen, wheel.replicate, grid, setpoint, how.repeats,
-                how.min_valid, how.window, how.temperature_band_k, how.soak, how.at_most, how.until_percent,
-                wheel.wheel, how.max_bursts, how.wear_check, how.run_in_m, reference,
-                both_directions=how.both_directions,
+                index=len(steps), condition=self.count, row=row, specimen=wheel.specimen, replicate=wheel.replicate,
+                grid=grid, setpoint=setpoint, wheel=wheel.wheel, reference=reference, **vars(how),
             )
         )  # fmt: skip
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias
 
-from tester.inputs.recipe.plan import ConditionStep, Mounted, Plan, PromptStep, Step
+from tester.inputs.recipe.plan import ConditionStep, Mounted, Plan, PromptStep, Settings, Step
 
 WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
 """Diameter check after a condition: not at all, by rolling at zero slip, or measured by a person."""
@@ -69,18 +69,22 @@ class Heat(Step):
     temperature_c: float
 
 
-@dataclass(frozen=True, slots=True)
-class WheelCondition(ConditionStep):
-    """A condition on a wheel: each repeat is collected in up to ``max_bursts`` contacts.
+@dataclass(frozen=True)
+class WheelSettings(Settings):
+    """How a condition on a wheel is measured: each repeat is collected in up to ``max_bursts`` contacts."""
 
-    ``reference``: it watches the belt and is none of the recipe's own conditions.
-    """
-
-    wheel: int
     max_bursts: int
     wear_check: WearCheck
-    run_in_m: float = 0.0
-    """Sliding after a reversal of the slip that does not count, m."""
+    run_in_m: float
+    """Sliding after a reversal of the slip that does not count, m [A]: how far rubber takes to turn its abrasion
+    pattern round is not published for these compounds."""
+
+
+@dataclass(frozen=True, slots=True)
+class WheelCondition(WheelSettings, ConditionStep):
+    """A condition on a wheel. ``reference``: it watches the belt and is none of the recipe's own conditions."""
+
+    wheel: int
     reference: bool = False
 
 

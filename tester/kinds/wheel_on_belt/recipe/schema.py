@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Annotated, Final, Literal, TypeAlias, TypeVar
 
 from pydantic import Field, model_validator
 
 from tester.base.units import Quantity
-from tester.inputs.recipe.grid_settings import Settings, settings_of
+from tester.inputs.recipe.grid_settings import settings_of
 from tester.inputs.recipe.recipe_schema import (
     Band,
     GridModel,
@@ -23,7 +23,7 @@ from tester.inputs.recipe.recipe_schema import (
 )
 from tester.inputs.recipe.reference_section import ReferenceSection
 from tester.kinds.wheel_on_belt.image.axes import AXES, LEAST_SPEED_M_S
-from tester.kinds.wheel_on_belt.recipe.plan_steps import WearCheck
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WearCheck, WheelSettings
 
 Speed: TypeAlias = Annotated[float, Quantity("m/s", ge=LEAST_SPEED_M_S)]
 MaxBursts: TypeAlias = Annotated[int, Field(ge=1, le=10_000)]
@@ -138,34 +138,16 @@ def for_wheels(recipe: Recipe) -> WheelRecipe:
 Setting = TypeVar("Setting", bool, float)
 
 
-@dataclass(frozen=True, slots=True)
-class WheelSettings(Settings):
-    """Settings of every condition of a grid."""
-
-    max_bursts: int
-    wear_check: WearCheck
-    run_in_m: float = 0.0
-    """Sliding after a reversal of the slip that does not count, m [A]: how far rubber takes to turn its abrasion
-    pattern round is not published for these compounds."""
-
-
 def wheel_settings(measure: MeasureModel, grid: GridModel) -> WheelSettings:
     """Return a grid's settings; raises TypeError for one of another kind."""
     if not isinstance(measure, WheelMeasure) or not isinstance(grid, WheelGrid):
         raise TypeError(f"grid {grid.name} is for a rig of another kind")
-    common = settings_of(measure, grid)
+    both_directions = _of_grid(grid.both_directions, measure.both_directions)
     return WheelSettings(
-        common.repeats,
-        common.at_most,
-        common.until_percent,
-        common.min_valid,
-        common.window,
-        common.temperature_band_k,
-        common.soak,
-        grid.max_bursts or measure.max_bursts,
-        grid.wear_check or measure.wear_check,
-        _of_grid(grid.run_in_after_reversal, measure.run_in_after_reversal),
-        both_directions=_of_grid(grid.both_directions, measure.both_directions),
+        **vars(replace(settings_of(measure, grid), both_directions=both_directions)),
+        max_bursts=grid.max_bursts or measure.max_bursts,
+        wear_check=grid.wear_check or measure.wear_check,
+        run_in_m=_of_grid(grid.run_in_after_reversal, measure.run_in_after_reversal),
     )
 
 

@@ -10,8 +10,8 @@ import pytest
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.uncertainty import Pool
 from tester.inputs.recipe.foreseen import Foreseen, foreseen
-from tester.inputs.recipe.grid_settings import LEAST_REPEATS, Settings, settings_of
-from tester.inputs.recipe.plan import Plan
+from tester.inputs.recipe.grid_settings import LEAST_REPEATS, settings_of
+from tester.inputs.recipe.plan import Plan, Settings
 from tester.inputs.recipe.precision import (
     PrecisionError,
     floor_percent,

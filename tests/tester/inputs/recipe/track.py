@@ -101,8 +101,8 @@ class TrackPart(RecipePart):
                     held = Setpoint(specimen.compound, values, self.axes)
                     steps.append(
                         ConditionStep(
-                            len(steps), number, row, specimen.index, 1, grid, held, how.repeats, how.min_valid,
-                            how.window, how.temperature_band_k, how.soak, how.at_most, how.until_percent,
+                            index=len(steps), condition=number, row=row, specimen=specimen.index, replicate=1,
+                            grid=grid, setpoint=held, **vars(how),
                         )
                     )  # fmt: skip
         return Plan(recipe.recipe, tuple(steps), specimens, 3, metadata_of(recipe), recipe.kind, self.axes)
