@@ -7,7 +7,7 @@ a node has something due or the next step of the plant is. Clients come and go; 
 from __future__ import annotations
 
 import select
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack
 from math import inf
 from pathlib import Path
@@ -16,7 +16,7 @@ from typing import Protocol
 from sim.rig import SHORTEST_STEP_S, SimRig
 from sim.servers.adapter_door import AdapterDoor
 from sim.servers.connection import listen
-from sim.servers.doors import CAN_DOORS, Doors, Place, Readable, WireDoor
+from sim.servers.doors import CAN_DOORS, Doors, Place, WireDoor
 from sim.servers.pty_doors import RtuDoor, SlcanDoor
 from sim.servers.tcp_doors import GatewayDoor, SocketcandDoor
 
@@ -92,7 +92,8 @@ class RigServer:
         """Sleep until something is to be done, and do it."""
         due = self._due_s()
         asleep_s = min(max(0.0, due - now()) / self.speed, LONGEST_SLEEP_S)
-        ready, _, _ = select.select(self._sources(), (), (), asleep_s)
+        sources = [source for door in self._doors for source in door.sources()]
+        ready, _, _ = select.select(sources, (), (), asleep_s)
         t = now()
         if t - due > self.latest_s:
             self.latest_s = t - due
@@ -112,9 +113,6 @@ class RigServer:
         """Shut every door."""
         for door in self._doors:
             door.close()
-
-    def _sources(self) -> Sequence[Readable]:
-        return [source for door in self._doors for source in door.sources()]
 
     def _due_s(self) -> float:
         """Return when the loop must turn next, s."""

@@ -46,13 +46,13 @@ class ConditionResult:
     temperature; ``correction`` leads from these to those.
 
     ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n). ``budget`` is that of the mounted
-    piece in this condition, ``compound_budget`` that of the compound (module ``measurand`` makes both); ``standard``,
-    ``coverage`` and ``expanded`` (95 %) are the former's. Drift and its bound (one-sided, 98.75 %; of repeats judged
-    alone 95 %) are per window, the trend over the repeats, all per cent of the coefficient (``Judgement``);
-    ``unsteady`` is their addition to the budget. ``change_percent`` is the greatest sudden change of level, within a
-    repeat or from one to the next, ``swing_percent`` and ``swing_hz`` those of the repeat that swings most
-    (``RepeatResult``). ``measured`` has the means over the valid repeats of the averaged channels.
-    ``mu_without_flagged`` leaves out flagged outliers.
+    piece in this condition, ``compound_budget`` that of the compound (module ``measurand`` makes both).
+
+    Drift and its bound (one-sided, 98.75 %; of repeats judged alone 95 %) are per window, the trend over the repeats,
+    all per cent of the coefficient (``Judgement``); ``unsteady`` is their addition to the budget. ``change_percent`` is
+    the greatest sudden change of level, within a repeat or from one to the next, ``swing_percent`` and ``swing_hz``
+    those of the repeat that swings most (``RepeatResult``). ``measured`` has the means over the valid repeats of the
+    averaged channels. ``mu_without_flagged`` leaves out flagged outliers.
     """
 
     status: ConditionStatus
@@ -108,21 +108,6 @@ class ConditionResult:
     def repeats_each(self) -> int:
         """Return the number of repeats behind each of its values."""
         return 1 if self.both_ways is None else 2
-
-    @property
-    def standard(self) -> float:
-        """Return the standard uncertainty of the mounted piece in this condition."""
-        return self.budget.standard
-
-    @property
-    def coverage(self) -> float:
-        """Return its coverage factor, 95 %."""
-        return self.budget.coverage
-
-    @property
-    def expanded(self) -> float:
-        """Return its expanded uncertainty, 95 %."""
-        return self.budget.expanded
 
     @property
     def ok(self) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import difflib
 import json
 from collections.abc import Iterator, Mapping
+from functools import partial
 from itertools import islice
 from typing import TYPE_CHECKING, cast, get_args
 
@@ -180,18 +181,14 @@ def _nearest(key: str, free: Mapping[str, FieldInfo]) -> list[str]:
     somewhat similar spelling.
     """
     due = {name: info for name, info in free.items() if info.is_required()}
-    for like in (_spelt_nearly, _of_the_words, _spelt_somewhat):
+    for like in (partial(_spelt, cutoff=NEARLY), _of_the_words, partial(_spelt, cutoff=SOMEWHAT)):
         if found := like(key, due) or like(key, free):
             return found
     return []
 
 
-def _spelt_nearly(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
-    return difflib.get_close_matches(_tidy(key), list(fields), n=1, cutoff=NEARLY)
-
-
-def _spelt_somewhat(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
-    return difflib.get_close_matches(_tidy(key), list(fields), n=1, cutoff=SOMEWHAT)
+def _spelt(key: str, fields: Mapping[str, FieldInfo], cutoff: float) -> list[str]:
+    return difflib.get_close_matches(_tidy(key), list(fields), n=1, cutoff=cutoff)
 
 
 def _of_the_words(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:

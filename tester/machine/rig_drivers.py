@@ -12,7 +12,7 @@ from drivers.ports import LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import ControllerKind, TemperatureController
-from tester.inputs.rig import DeviceConfig, LineConfig, Rig
+from tester.inputs.rig import DeviceConfig, Rig
 from tester.inputs.rig.cells import transmitters_of
 from tester.inputs.rig.further_sensors import further_sensors, title_of
 from tester.inputs.rig.profiles import profile_of
@@ -35,7 +35,7 @@ class RigDrivers:
         self.nodes = [SensorNode(config) for config in rig.can.nodes.values()]
         for node in (*self.drives.values(), *self.nodes):
             self.master.add(node)
-        self.links = {name: link_of(line) for name, line in rig.lines.items()}
+        self.links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
         self.devices: dict[str, Device] = {}
 
     def sensor(self, name: str, channels: tuple[str, ...] = ()) -> Sensor | None:
@@ -70,11 +70,6 @@ class RigDrivers:
             FieldDevice(name, self._titles.get(name, title_of(self.rig, name)), config.line, self.devices[name])
             for name, config in self.rig.devices.items()
         ]
-
-
-def link_of(config: LineConfig) -> ModbusLink:
-    """Return the master of a line."""
-    return ModbusLink(config.framing, config.baud, config.parity)
 
 
 def sensor_of(config: DeviceConfig, links: Mapping[str, ModbusLink], channels: tuple[str, ...] = ()) -> Sensor:

@@ -66,7 +66,9 @@ class Material:
 def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
     """Return the rows of a run that have a value; ``run``: its name among others."""
     return [
-        ChartValue(row.info.setpoint, row.result.mu, row.result.expanded, run) for row in results.rows if row.result.ok
+        ChartValue(row.info.setpoint, row.result.mu, row.result.budget.expanded, run)
+        for row in results.rows
+        if row.result.ok
     ]
 
 
@@ -264,7 +266,7 @@ def repeats_chart(measured: Measured) -> Chart:
     result = measured.result
     title = f"repeats of {condition_words(measured.info.setpoint)}"
     if isfinite(result.mu):
-        title += f": mu {coefficient(result.mu)} ± {coefficient(result.expanded)}"
+        title += f": mu {coefficient(result.mu)} ± {coefficient(result.budget.expanded)}"
     note = "along: from begin to end of each repeat; bars: standard deviation of its batch means"
     return Chart(f"repeats-{measured.info.condition}", title, "rig time (min)", AS_MEASURED,
                  (ChartPanel("", tuple(series)),), note, from_zero=False)  # fmt: skip

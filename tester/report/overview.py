@@ -70,9 +70,9 @@ def _words(placed: _Placed, several: bool) -> str:
     result = placed.measured.result
     of = f"{placed.run}: " if several else ""
     setpoints = f"{of}condition {placed.measured.info.condition}, {condition_words(placed.measured.info.setpoint)}"
-    return (
-        f"{setpoints}: {coefficient(result.mu)}\u00a0±\u00a0{coefficient(result.expanded)}" if result.ok else setpoints
-    )
+    if not result.ok:
+        return setpoints
+    return f"{setpoints}: {coefficient(result.mu)}\u00a0±\u00a0{coefficient(result.budget.expanded)}"
 
 
 def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
@@ -80,7 +80,7 @@ def _coefficients(placed: Sequence[_Placed], several: bool) -> Iterator[Series]:
     compounds = sorted({condition.measured.info.compound for condition in placed})
     for style, compound in enumerate(compounds):
         of_compound = [
-            Mark(condition.at, result.mu, result.expanded, condition.half, _words(condition, several))
+            Mark(condition.at, result.mu, result.budget.expanded, condition.half, _words(condition, several))
             for condition in placed
             if condition.measured.info.compound == compound and (result := condition.measured.result).ok
         ]

@@ -56,7 +56,7 @@ def terms_of(r: ConditionResult) -> list[Contribution]:
 
 def budgeted_rows(conditions: Table[ConditionRow]) -> list[ConditionRow]:
     """Return the recipe's rows that have a budget."""
-    return [row for row in recipe_rows(conditions).rows if isfinite(row.result.standard)]
+    return [row for row in recipe_rows(conditions).rows if isfinite(row.result.budget.standard)]
 
 
 def sums(conditions: Table[ConditionRow], condition_row: ConditionRow) -> tuple[str, str, str]:

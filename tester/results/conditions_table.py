@@ -177,10 +177,12 @@ _FOUND: tuple[Column[ConditionRow], ...] = (
 def _uncertainties(worn: str) -> tuple[Column[ConditionRow], ...]:
     """Return U and its companions, of the mounted piece and of the compound."""
     return (
-        Column("u_standard", f"u this {worn}", lambda row: row.result.standard, "", 3, frozenset({Output.SWEEP})),
-        Column("u_expanded", f"U this {worn}", lambda row: row.result.expanded, "", 3, _PEOPLE),
-        Column("u_expanded_percent", f"U this {worn}", lambda row: _percent(row.result.expanded, row), "%", 1),
-        Column("coverage_factor", "k", lambda row: row.result.coverage, "", 2),
+        Column(
+            "u_standard", f"u this {worn}", lambda row: row.result.budget.standard, "", 3, frozenset({Output.SWEEP})
+        ),
+        Column("u_expanded", f"U this {worn}", lambda row: row.result.budget.expanded, "", 3, _PEOPLE),
+        Column("u_expanded_percent", f"U this {worn}", lambda row: _percent(row.result.budget.expanded, row), "%", 1),
+        Column("coverage_factor", "k", lambda row: row.result.budget.coverage, "", 2),
         Column("u_standard_compound", "u compound", lambda row: row.result.compound_budget.standard, "", 3),
         Column("u_expanded_compound", "U compound", lambda row: row.result.compound_budget.expanded, "", 3,
                _PEOPLE - {Output.END}),

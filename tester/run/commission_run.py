@@ -74,7 +74,7 @@ def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str,
     angle = misalignment(measured)
     conditions = [
         {
-            "mu": row.mu, "s": finite(row.s), "n": row.n_valid, "expanded": finite(row.expanded),
+            "mu": row.mu, "s": finite(row.s), "n": row.n_valid, "expanded": finite(row.budget.expanded),
             "difference_percent": finite(row.both_ways.difference_percent) if row.both_ways is not None else None,
         }
         for row in measured

@@ -185,13 +185,10 @@ def points(stored: Stored, along: Axis, chosen: Row | None = None) -> list[Point
     """
     marked = series(stored, chosen, along) if chosen is not None else []
 
-    def sign_of(row: Row) -> str:
-        return _sign(row) if len(marked) < 2 else SERIES
-
     return [
         Point(
             along.number(row.held), row.mu,
-            OTHER if len(marked) > 1 and row not in marked else row.mark or sign_of(row),
+            OTHER if len(marked) > 1 and row not in marked else row.mark or (_sign(row) if len(marked) < 2 else SERIES),
         )
         for row in stored.rows
         if row.mu is not None

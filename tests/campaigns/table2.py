@@ -108,7 +108,7 @@ def _row(seed: int, one: TableRow, database: sqlite3.Connection) -> Row:
     this = true["model"] * true["condition"] * true["wheel"] if {"model", "condition", "wheel"} <= true.keys() else 0.0
     worst = max(result.budget.contributions, key=lambda term: term.standard).name
     off = 100.0 * (mu / this - 1.0) if this else float("nan")
-    u = 100.0 * result.expanded / mu
+    u = 100.0 * result.budget.expanded / mu
     return Row(seed, condition_words(setpoint), slow, True, tuple(result.doubts), u, off, worst)
 
 

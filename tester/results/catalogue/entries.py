@@ -195,23 +195,18 @@ def read_entries(folder: Path, origin: str, print_: str) -> tuple[RunEntry, list
     return entry, [_condition(measured) for measured in conditions]
 
 
-def held_text(setpoint: Setpoint) -> str:
-    """Return setpoints in the form of ``ConditionEntry.held``."""
-    return json.dumps({axis.column: axis.of(setpoint) for axis in setpoint.axes})
-
-
 def _condition(measured: Measured) -> ConditionEntry:
     i, r = measured.info, measured.result
     return ConditionEntry(
         condition=i.condition,
         replicate=i.replicate,
         compound=i.compound,
-        held=held_text(i.setpoint),
+        held=json.dumps({axis.column: axis.of(i.setpoint) for axis in i.setpoint.axes}),
         status=r.status.value,
         mu=finite(r.mu),
         s=finite(r.s),
-        u_standard=finite(r.standard),
-        u_expanded=finite(r.expanded),
+        u_standard=finite(r.budget.standard),
+        u_expanded=finite(r.budget.expanded),
         n_valid=r.n_valid,
         n=r.counts.asked,
         flags=r.flags,

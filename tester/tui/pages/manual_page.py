@@ -73,11 +73,6 @@ class ManualValues(Panel):
         return rows([value_row(value, width, linked=scene.linked) for value in values[:height]])
 
 
-def axis_words(axis: HandAxis) -> str:
-    """Return an axis and the size of its step, in words."""
-    return f"{clean(axis.title):<12} {clean(axis.step)}"
-
-
 class ManualPage(View):
     """Jog, zero, heat by hand."""
 
@@ -118,7 +113,8 @@ class ManualPage(View):
         if scene.machine.hand != self.axes:
             self.axes = scene.machine.hand
             listed = self.query_one("#manual-axes", OptionList)
-            listed.set_options([Option(Content(axis_words(axis)), id=axis.name) for axis in self.axes])
+            words = [(f"{clean(axis.title):<12} {clean(axis.step)}", axis.name) for axis in self.axes]
+            listed.set_options([Option(Content(text), id=name) for text, name in words])
             listed.highlighted = 0 if self.axes else None
 
     def _give_sign(self) -> None:

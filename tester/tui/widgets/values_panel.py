@@ -58,11 +58,6 @@ def beyond(value: Value) -> str:
     return ""
 
 
-def believable(value: Value) -> bool:
-    """Return whether the value is trustworthy: neither stale nor reported invalid."""
-    return value.quality == "good"
-
-
 LABEL, CELL, UNIT, FLAG = 15, 9, 5, 6
 
 
@@ -80,7 +75,7 @@ def value_row(value: Value, width: int, *, linked: bool = True) -> Parts:
     label = fit(clean(value.label), LABEL).ljust(LABEL)
     unit = clean(value.unit, UNIT).ljust(UNIT)
     wanted = decimal(value.setpoint, value.decimals).rjust(CELL)
-    fresh = believable(value) and linked
+    fresh = value.quality == "good" and linked
     measured = decimal(value.value, value.decimals)
     flag, style = beyond(value), ABNORMAL
     if value.quality == "none" or value.value is None:

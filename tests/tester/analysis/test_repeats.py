@@ -109,7 +109,7 @@ def test_one_valid_repeat_shows_its_mean_and_no_scatter() -> None:
     result = combine(FIVE[0], *[repeat(status=RepeatStatus.TOO_FEW)] * 4)
     assert result.mu_resultant == pytest.approx(0.70)
     assert isnan(result.s)
-    assert isnan(result.expanded)
+    assert isnan(result.budget.expanded)
 
 
 def test_a_condition_left_early_without_a_value_keeps_what_the_run_said() -> None:

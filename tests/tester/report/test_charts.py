@@ -59,7 +59,7 @@ def test_points_have_their_expanded_uncertainty_as_bars(results: RunResults, cha
     cold = labelled(found, "25 °C")
     assert cold.x == (100.0, 200.0, 400.0)  # at 300 N the run has no value
     row = next(row for row in results.rows if row.info.setpoint.number("load") == 100.0)
-    assert (cold.y[0], cold.bars[0]) == (row.result.mu, row.result.expanded)
+    assert (cold.y[0], cold.bars[0]) == (row.result.mu, row.result.budget.expanded)
     assert (found.x_label, found.panels[0].title) == ("load (N)", "1#, 300 mm/s")
 
 

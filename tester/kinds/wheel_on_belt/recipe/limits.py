@@ -44,11 +44,6 @@ def least_load_n(rig: RigConfig) -> float:
     return TOUCHES * rig.loops.load.touch_load_n
 
 
-def greatest_load_n(rig: RigConfig) -> float:
-    """Return the greatest load that a rig can hold, N: with the tread's runout it stays below limits.load."""
-    return rig.limits.load_n - RIPPLE_N
-
-
 class PlacedValue(NamedTuple):
     """A quantity in the file: its value in the requested unit, and its place."""
 
@@ -96,7 +91,8 @@ class _Limits:
 
     def problems(self) -> Iterator[Problem]:
         """Yield every problem, in no order, perhaps twice."""
-        yield from self._specimens()
+        for index in self._indices(("specimens",)):
+            yield from self._compound(("specimens", index, "compound"))
         yield from self._pre_grind()
         yield from self._rest()
         yield from self._wheel_speeds(("measure",))
@@ -162,7 +158,8 @@ class _Limits:
 
     def _too_heavy(self, entry: PlacedValue) -> Iterator[Problem]:
         """Yield a problem for a load that is beyond its limit, or gets there with every turn of the wheel."""
-        limit_n, most_n = self.rig.limits.load_n, greatest_load_n(self.rig)
+        limit_n = self.rig.limits.load_n
+        most_n = limit_n - RIPPLE_N  # with the tread's runout the load stays below limits.load
         yield from self._above(entry, limit_n, "N", "limits.load")
         if most_n < entry.value <= limit_n:
             message = f"load: {show(entry.value, 'N')} is too near to limits.load, {show(limit_n, 'N')}, to be held"
@@ -177,10 +174,6 @@ class _Limits:
             yield self.tree.problem(entry.at, f'{message} ({axis.drive} of rig "{self.rig.name}")')
 
     # -- what may be wrong --------------------------------------------------------------------------------------
-
-    def _specimens(self) -> Iterator[Problem]:
-        for index in self._indices(("specimens",)):
-            yield from self._compound(("specimens", index, "compound"))
 
     def _compound(self, at: Location) -> Iterator[Problem]:
         name = self._node(at)

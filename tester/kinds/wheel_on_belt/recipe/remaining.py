@@ -59,7 +59,8 @@ def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> lis
     assert isinstance(condition, WheelCondition)
     steps = [_mounted(plan, wheel), *_prepare(plan, wheel)]
     if numbers[begin] not in stand.begun:
-        steps += [s for s in segment[over + 1 : begin] if isinstance(s, PromptStep) and s.text not in _person(plan)]
+        asked = plan.prepare.person_steps
+        steps += [s for s in segment[over + 1 : begin] if isinstance(s, PromptStep) and s.text not in asked]
     steps.append(Heat(INSERTED, condition.setpoint.number("temperature")))
     return [*steps, *segment[begin:]]
 
@@ -92,7 +93,3 @@ def _prepare(plan: WheelPlan, wheel: Mounted) -> list[WheelStep]:
         return wanted
     ground = next((i for i, step in enumerate(wanted) if isinstance(step, PreGrind)), -1)
     return [step for step in wanted[ground + 1 :] if isinstance(step, Rest)]
-
-
-def _person(plan: WheelPlan) -> tuple[str, ...]:
-    return plan.prepare.person_steps

@@ -43,12 +43,6 @@ EQUAL_DECELERATIONS = 0.05
 _Found = Iterator[tuple[Location, str]]
 
 
-def problems_between(rig: RigConfig) -> _Found:
-    """Yield inconsistencies, with their places in the file."""
-    for check in (_speeds, _decelerations, _units, _press, _temperatures, _skew, _heat_off):
-        yield from check(rig)
-
-
 def _speeds(rig: RigConfig) -> _Found:
     """A drive that clamps below the rig's limit would silently run slower than commanded."""
     wheel = rig.axes.wheel.max_speed * 0.5e-3 * rig.geometry.wheel_diameter_mm
@@ -249,4 +243,5 @@ class RigConfig(Rig):
 
     def problems(self) -> Iterator[tuple[Location, str]]:
         """Yield inconsistencies between the kind's sections, with their places."""
-        return problems_between(self)
+        for check in (_speeds, _decelerations, _units, _press, _temperatures, _skew, _heat_off):
+            yield from check(self)
