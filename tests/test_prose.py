@@ -36,10 +36,10 @@ def test_parameters_and_locals_have_names() -> None:
 def test_pages_and_packages_are_read(tmp_path: Path) -> None:
     (tmp_path / "docs" / "how-to").mkdir(parents=True)
     (tmp_path / "sim").mkdir()
-    (tmp_path / "docs" / "how-to" / "run.md").write_text("What is\ntold\n", encoding="utf-8")
+    (tmp_path / "docs" / "how-to" / "doctor.md").write_text("What is\ntold\n", encoding="utf-8")
     (tmp_path / "sim" / "rig.py").write_text("# is heard\nheard = 1\n", encoding="utf-8")
     assert wrong_phrases(NEVER, tmp_path) == [
-        Place("docs/how-to/run.md", 1, "is told"),
+        Place("docs/how-to/doctor.md", 1, "is told"),
         Place("sim/rig.py", 1, "is heard"),
     ]
     assert wrong_names(NO_NAMES, tmp_path) == [Place("sim/rig.py", 2, "heard")]

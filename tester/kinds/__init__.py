@@ -51,6 +51,12 @@ def find(name: str) -> Kind:
         raise UnknownKindError(f"there is no kind of rig {name}{meant} (expected {known}); {error}") from error
     if not isinstance(found, Kind):
         raise UnknownKindError(f"the extension {name} is no kind of rig (expected a tester.kinds.kind.Kind)")
+    # Control evaluates the rig class's table: a row of the sheet that it lacks would be shown and never trip.
+    table = getattr(found.rig(), "table", None)
+    unseen = [row.name for row in found.interlocks().rows if table is not None and row not in table.rows]
+    if unseen:
+        lacking = f"the table of its rig class lacks {', '.join(unseen)}, which its interlocks list"
+        raise UnknownKindError(f"the kind of rig {name} is refused: {lacking} (make it by KIND.extended)")
     return found
 
 

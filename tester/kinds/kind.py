@@ -9,8 +9,8 @@ nothing: what is large is named by its place and imported when it is asked for::
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -19,10 +19,12 @@ if TYPE_CHECKING:
     from tester.analysis.fit.fit_part import FitPart
     from tester.analysis.master_curve.points import MasterPart
     from tester.analysis.papers.item import Paper
+    from tester.base.axes import Axis
     from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig
     from tester.machine.commission.commission_step import CommissionPart
     from tester.machine.interlock_table import InterlockSheet
+    from tester.machine.row import Interlock
     from tester.machine.run_parts import KindRun
     from tester.machine.served import ServedKind
     from tester.results.run_results import RingPart
@@ -75,3 +77,32 @@ class Kind:
     """How a rig of it is commissioned; None: nobody is guided."""
     ring: Callable[[], RingPart] | None = None
     """The ring over which a device on a turning part is reached; None: there is none."""
+
+    def extended(
+        self, name: str, title: str, *, rows: Iterable[Interlock[Any]] = (), axes: Iterable[Axis] = (), **parts: Any
+    ) -> Kind:
+        """Return a kind of a laboratory's own: this one with further interlock rows and axes, ahead of its own.
+
+        ``name``: of the new kind, ``module:KIND`` or an extension's; ``parts``: other members in place of this kind's.
+        A rig file states the rows' keys, or takes their defaults; control evaluates the rows in every scan::
+
+            KIND = wheel_on_belt.KIND.extended("lab_wheel:KIND", "wheel, its bearing watched", rows=[BEARING_HOT])
+        """
+        rows, axes = tuple(rows), tuple(axes)
+        changed: dict[str, Any] = {"name": name, "title": title, "rigs": {}}
+        if rows:
+            changed["rig"] = lambda: _extended("rig_with", name, self.rig(), rows)
+            changed["interlocks"] = lambda: _extended("sheet_with", self.interlocks(), rows)
+        recipe, served = parts.pop("recipe", self.recipe), parts.pop("served", self.served)
+        if axes and recipe is not None and served is not None:
+            recipe, of_kind = partial(_extended_part, recipe, name, axes), served
+            served = lambda: _extended("served_with", of_kind(), recipe())  # noqa: E731
+        return replace(self, **changed, recipe=recipe, served=served, **parts)
+
+
+def _extended(function: str, *arguments: Any) -> Any:
+    return getattr(import_module("tester.kinds.extended"), function)(*arguments)
+
+
+def _extended_part(recipe: Callable[[], RecipePart], name: str, axes: tuple[Axis, ...]) -> Any:
+    return _extended("recipe_with", name, recipe(), axes)

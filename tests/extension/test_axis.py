@@ -76,10 +76,10 @@ def test_a_plan_tells_it_in_words_and_as_json(folder: Path, capsys: pytest.Captu
 
 
 def test_what_the_wheel_holds_is_found_beside_it(folder: Path) -> None:
-    from lab_water import AXES as WITH_WATER
-
+    recipe = find("lab_water:KIND").recipe
+    assert recipe is not None
     values = {"slip_velocity": 0.3, "load": 200.0, "sideslip": 7.0, "temperature": 40.0}
-    plain, wet = AXES.setpoint("1#", **values), WITH_WATER.setpoint("1#", interface="wet", **values)
+    plain, wet = AXES.setpoint("1#", **values), recipe().axes.setpoint("1#", interface="wet", **values)
     assert held_by(wet) == held_by(plain) and plain.values != wet.values
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import pickle
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tester.base.source import InvalidSource
 from tester.cli.main import invoke
-from tester.kinds import find, load_rig, load_rig_text, packaged_keys, packaged_text
+from tester.inputs.rig import Rig
+from tester.kinds import UnknownKindError, find, load_rig, load_rig_text, packaged_keys, packaged_text, wheel_on_belt
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.store.run_reader import RunReader
 from tests.extension.installing import installed
@@ -68,3 +70,27 @@ def test_the_rig_is_stored_and_sent_to_other_processes_as_it_is() -> None:
 def test_the_kind_it_was_made_from_is_as_it_was() -> None:
     assert "rubber hotter than hub" in find("lab_wheel:KIND").interlocks().table()
     assert "rubber hotter than hub" not in {row.name for row in TABLE.rows}
+
+
+def test_a_row_that_control_would_not_evaluate_is_refused() -> None:
+    import lab_wheel
+
+    shown = replace(lab_wheel.KIND, rig=wheel_on_belt.KIND.rig)
+    lab_wheel.KIND, kind = shown, lab_wheel.KIND
+    try:
+        with pytest.raises(UnknownKindError, match="lacks rubber hotter than hub, which its interlocks list"):
+            find("lab_wheel:KIND")
+    finally:
+        lab_wheel.KIND = kind
+
+
+def test_a_rig_class_without_a_table_takes_no_row() -> None:
+    import lab_wheel
+
+    kind = wheel_on_belt.KIND.extended("lab:KIND", "a lab's", rows=[lab_wheel.HOTTER_THAN_HUB])
+    bare = replace(wheel_on_belt.KIND, rig=lambda: Rig).extended(
+        "lab:KIND", "a lab's", rows=[lab_wheel.HOTTER_THAN_HUB]
+    )
+    assert kind.rig().table.rows[0] is lab_wheel.HOTTER_THAN_HUB
+    with pytest.raises(TypeError, match="Rig has no interlock table that rows could join"):
+        bare.rig()

@@ -31,10 +31,11 @@ measure: {repeats: 1, min_valid: 1, window: 10 rev}
 grids: [{name: speed, speed: 20 mm/s}]
 """
 TRIPS = (
-    "CAN adapter gone", "CAN bus off", "guard opened", "load cell CRC errors", "load cell silent",
-    "load cell without supply", "pull drive data lost", "pull drive fault", "pull drive heartbeat lost",
-    "pull drive in local mode", "pull drive jammed", "pull drive off the bus", "pull drive reboots",
-    "pull drive torque off", "pull drive without supply", "safety chain opened", "scan stalled", "sledge jams",
+    "CAN adapter gone", "CAN bus off", "guard opened", "load cell CRC errors", "load cell replies cut short",
+    "load cell silent", "load cell without supply", "pull drive data lost", "pull drive fault",
+    "pull drive heartbeat lost", "pull drive in local mode", "pull drive jammed", "pull drive off the bus",
+    "pull drive reboots", "pull drive torque off", "pull drive without supply", "safety chain opened", "scan stalled",
+    "sledge jams",
 )  # fmt: skip
 
 

@@ -21,7 +21,13 @@ def page(name: str) -> str:
 
 @pytest.mark.parametrize(
     ("name", "example"),
-    [("add-a-format", "format"), ("add-a-law", "law"), ("add-an-axis", "axis"), ("add-a-kind-of-rig", "kind")],
+    [
+        ("add-a-format", "format"),
+        ("add-a-law", "law"),
+        ("add-an-axis", "axis"),
+        ("add-an-interlock", "interlock"),
+        ("add-a-kind-of-rig", "kind"),
+    ],
 )
 def test_a_page_has_every_file_of_its_example(name: str, example: str) -> None:
     said = {found["name"]: found["text"] for found in FILE.finditer(page(name))}

@@ -135,8 +135,8 @@ class PlainPart(SpecimenPart):
         top = tree.data if isinstance(tree.data, dict) else {}
         grids = top.get("grids")
         for index, grid in enumerate(grids if isinstance(grids, list) else []):
-            for axis in self.axes:
-                listed = grid.get(axis.name) if isinstance(grid, dict) and axis.limit else None
+            for axis in (axis for axis in self.axes if axis.limit):
+                listed = grid.get(axis.name) if isinstance(grid, dict) else None
                 most = value_at(rig, tuple(axis.limit.split("."))) if listed is not None else None
                 for place, value in enumerate(listed if isinstance(listed, list) else [listed]):
                     try:

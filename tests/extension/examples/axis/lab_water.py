@@ -1,33 +1,17 @@
 """The wheel on a belt with one axis more: a condition has a dry or a wet belt, and a person wets it."""
 
-from dataclasses import replace
-
-from tester.base.axes import Axes, Axis
-from tester.base.screen import axis_views
+from tester.base.axes import Axis
 from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds import wheel_on_belt
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image import axes
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
-from tester.kinds.wheel_on_belt.recipe.part import WheelPart
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED
 from tester.kinds.wheel_on_belt.run.runs import WheelRuns
-from tester.kinds.wheel_on_belt.served.screen import MACHINE
-from tester.kinds.wheel_on_belt.served.served import WheelOnBelt
 from tester.machine.executor import Unforeseen
 
-NAME = "lab_water:KIND"
 INTERFACE = Axis("interface", "", "interface", "", 1.0, "interface", "Interface", "Interface", "", "dry", False,
                  choices=("dry", "wet"))  # fmt: skip
-AXES = Axes((INTERFACE, *axes.AXES), blocks="temperature")
-
-
-class WetPart(WheelPart):
-    """Recipes with the axis."""
-
-    kind = NAME
-    axes = AXES
 
 
 class WetProcedures(WheelProcedures):
@@ -51,18 +35,6 @@ class WetRuns(WheelRuns):
     procedures = WetProcedures
 
 
-class WetService(WheelOnBelt):
-    """Screens show the axis."""
-
-    machine = replace(MACHINE, axes=axis_views(AXES))
-
-
-KIND = replace(
-    wheel_on_belt.KIND,
-    name=NAME,
-    title="rubber wheel on a belt that is dry or wet",
-    rigs={},
-    recipe=WetPart,
-    runs=WetRuns,
-    served=WetService,
+KIND = wheel_on_belt.KIND.extended(
+    "lab_water:KIND", "rubber wheel on a belt that is dry or wet", axes=[INTERFACE], runs=WetRuns
 )
