@@ -26,6 +26,7 @@ RIG: Final = "rig"
 SURE: Final = 0.9
 """Probability of detecting a real difference."""
 PIECES_AT_MOST: Final = 1000
+_NO_ERROR: Final = Contribution("", 0.0, input_u=0.0, sensitivity=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,18 +73,10 @@ def difference(first: ConditionResult, second: ConditionResult, *, same_rig: boo
         if not (same_rig and first_term.common == RIG)
     ]
     for name in dict.fromkeys(name for found in common for name in found):
-        first_term, second_term = (found.get(name) for found in common)
-        parts.append((abs(_error(first_term) - _error(second_term)), min(_df(first_term), _df(second_term))))
+        first_term, second_term = (found.get(name, _NO_ERROR) for found in common)
+        parts.append((abs(first_term.error - second_term.error), min(first_term.df, second_term.df)))
     standard = sqrt(sum(u * u for u, _ in parts))
     return Difference(value, standard, effective_df(parts, standard) if isfinite(standard) else NAN)
-
-
-def _error(contribution: Contribution | None) -> float:
-    return contribution.error if contribution is not None else 0.0
-
-
-def _df(contribution: Contribution | None) -> float:
-    return contribution.df if contribution is not None else inf
 
 
 def pieces_needed(percent: float, between_percent: float, repeats_percent: float) -> int:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator
+from dataclasses import asdict
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,28 +20,13 @@ if TYPE_CHECKING:
     from tester.results.formats import Format
     from tester.results.run_results import ReferenceWatch, RunResults
     from tester.results.table_rows import TableRow
-    from tester.store.journal_records import StoredEvent, StoredExclusion, StoredTrip
-    from tester.store.records import Change, SessionInfo
+    from tester.store.run_reader import RunReader
 
 
 # tester show
 
 SHOW_WIDTH = 120
 """Columns within which flags are printed behind a row of `tester show`."""
-
-
-@dataclass(frozen=True)
-class ShownRun:
-    """A run as `tester show` prints it: its results, and what happened to it."""
-
-    name: str
-    results: RunResults
-    sessions: Sequence[SessionInfo]
-    changes: Sequence[Change]
-    exclusions: Sequence[StoredExclusion]
-    trips: Sequence[StoredTrip]
-    commands: Sequence[StoredEvent]
-    holds: Sequence[StoredEvent]
 
 
 @command()
@@ -59,53 +44,51 @@ def show(run: str, as_json: bool, with_budget: bool) -> None:
 
     folder = run_folder(run)
     with RunReader(folder) as reader:
-        stored = ShownRun(
-            folder.name, results_of(reader), reader.sessions(), reader.changes(), reader.exclusions(),
-            [*reader.trips()], [*reader.commands()], [*reader.holds()],
-        )  # fmt: skip
-    if as_json:
-        dump(_summary(folder.name, stored.results) | _history_json(stored))
-        return
-    for line in _budgets(stored.results) if with_budget else (*_lines(folder.name, stored.results), *_history(stored)):
+        results = results_of(reader)
+        if as_json:
+            dump(_summary(folder.name, results) | _history_json(reader))
+            return
+        lines = [*_budgets(results)] if with_budget else [*_lines(folder.name, results), *_history(reader)]
+    for line in lines:
         click.echo(line)
 
 
-def _history(run: ShownRun) -> Iterator[str]:
+def _history(run: RunReader) -> Iterator[str]:
     """Yield what happened to a run, a line each."""
-    for session in run.sessions[1:]:
+    for session in run.sessions()[1:]:
         where = f"{duration(session.origin_s)} of rig time, {session.started_utc}"
         yield f"resumed at {where}, version {session.software_version}"
-    for change in run.changes:
+    for change in run.changes():
         yield f"{change.subject} changed before stretch {change.session}: {shown(change.reason)}"
-    for event in run.commands:
+    for event in run.commands():
         yield f"command at {duration(event.t_s)} of rig time, {event.utc}: {shown(event.text)}"
-    for event in run.holds:
+    for event in run.holds():
         yield f"{event.text}, until {duration(event.t_s)} of rig time, {event.utc}"
-    for trip in run.trips:
+    for trip in run.trips():
         compared = f" ({trip.compared})" if trip.compared else ""
         yield f"trip at {duration(trip.t_s)} of rig time, {trip.utc}: {trip.interlock}{compared}"
         yield f"  {shown(trip.acknowledged)}"
-    for word in run.exclusions:
+    for word in run.exclusions():
         what = "excluded" if word.excluded else "included again"
         who = f" by {shown(word.operator)}" if word.operator else ""
         yield f"{word.condition}/{word.repeat} {what} {word.utc}{who}: {shown(word.reason)}"
 
 
-def _history_json(run: ShownRun) -> dict[str, Json]:
+def _history_json(run: RunReader) -> dict[str, Json]:
     session = "session origin_s started_utc host operator software_version git_revision"
     change = "session utc subject before_sha256 after_sha256 reason"
     word = "condition repeat attempt excluded reason operator utc software_version"
     trip = "t_s utc interlock text value unit acknowledged_s acknowledged_utc acknowledged_by"
     return {
-        "sessions": [fields(one, session) for one in run.sessions],
-        "changes": [fields(one, change) for one in run.changes],
-        "exclusions": [fields(one, word, excluded=bool(one.excluded)) for one in run.exclusions],
+        "sessions": [fields(one, session) for one in run.sessions()],
+        "changes": [fields(one, change) for one in run.changes()],
+        "exclusions": [fields(one, word, excluded=bool(one.excluded)) for one in run.exclusions()],
         "trips": [
             fields(one, trip, limit=finite(one.limit_value), acknowledged_utc=one.acknowledged_utc or None)
-            for one in run.trips
+            for one in run.trips()
         ],
-        "holds": [fields(one, "t_s utc text") for one in run.holds],
-        "commands": [fields(one, "t_s utc text") for one in run.commands],
+        "holds": [fields(one, "t_s utc text") for one in run.holds()],
+        "commands": [fields(one, "t_s utc text") for one in run.commands()],
     }
 
 

@@ -175,7 +175,7 @@ class Connector:
             devices.transmit_lines(now)  # stay silent on the CAN bus until the listening has succeeded
         else:
             devices.transmit(now, scan=self.stage in _SCANNING)
-        if devices.lost and not devices.can_alive():
+        if devices.lost and not devices.can_alive:
             raise BusLost(devices.lost)
         measuring = not self.finished and devices.real_lines() and not line_speed.measured(devices)
         return now + (line_speed.FINE_S if measuring else CONNECT_S)

@@ -77,7 +77,8 @@ class DeviceList:
         """Further counts of a run, stored with the counters of the buses."""
         self.inspector = Inspector(self.modbus)
         self._prompts = tuple(prompts)
-        self._can_alive = True
+        self.can_alive = True
+        """Whether commands still reach the drives."""
         self._can_heard_s = NEVER
         self._retracting = retracting
         self._goal: Goal = _DISABLED
@@ -171,7 +172,7 @@ class DeviceList:
             self._lose_can(error)
         else:
             # A wire that was lost and came back is read, but its data is not trusted.
-            if frames and self._can_alive:
+            if frames and self.can_alive:
                 self._can_heard_s = frames[-1][0]
                 self.master.feed(frames, now)
         for port, link, foreseen in self._lines:
@@ -186,7 +187,7 @@ class DeviceList:
 
     def _lose_can(self, error: BusLost) -> None:
         self.lost = self.lost or f"bus lost: {error}"
-        self._can_alive = False
+        self.can_alive = False
 
     def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
         """Drop a line: its values are not valid any more."""
@@ -200,7 +201,7 @@ class DeviceList:
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
         """Send everything due and return the next time a driver needs service; ``next_scan_s`` if it is known."""
         deadline = inf
-        if self._can_alive:
+        if self.can_alive:
             try:
                 if scan:
                     self.master.scan(self.can, now, next_scan_s)
@@ -275,10 +276,6 @@ class DeviceList:
     def real_lines(self) -> bool:
         """Return whether the arrival of bytes on some Modbus line is unpredictable."""
         return any(foreseen is None for _, _, foreseen in self._lines)
-
-    def can_alive(self) -> bool:
-        """Return whether commands still reach the drives."""
-        return self._can_alive
 
     def answering(self) -> bool:
         """Return whether every Modbus device, and every node that measures, has reported a valid value."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count, product
 from typing import ClassVar
 
@@ -159,12 +159,10 @@ class PlainPart(SpecimenPart):
             elif not isinstance(step, ConditionStep) or step.condition not in stand.ended:
                 if mount is not None:
                     last += 1
-                    steps.append(
-                        Mount(len(steps), mount.specimen, mount.replicate, last, mount.compound, mount.note)
-                    )  # fmt: skip
+                    steps.append(replace(mount, index=len(steps), piece=last))
                     mount = None
                 steps.append(step)
-        return Plan(plan.name, tuple(steps), plan.specimens, plan.min_valid, plan.metadata, plan.kind, plan.axes)
+        return replace(plan, steps=tuple(steps))
 
     def words(self, step: Step, one: StepEstimate) -> str:
         if isinstance(step, ConditionStep):

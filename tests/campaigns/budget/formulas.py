@@ -78,8 +78,8 @@ def of_formulas() -> Iterator[Mutant]:
 def of_structure() -> Iterator[Mutant]:
     """Yield what is put together wrongly."""
     for name, path, old, new, tests in (
-        ("common errors stay in a difference", _DIFFERENCE, "abs(_error(first_term) - _error(second_term))",
-         "abs(_error(first_term)) + abs(_error(second_term))", _TESTS),
+        ("common errors stay in a difference", _DIFFERENCE, "abs(first_term.error - second_term.error)",
+         "abs(first_term.error) + abs(second_term.error)", _TESTS),
         ("own errors of the second drop out", _DIFFERENCE,
          "for budget in budgets\n        for first_term in budget\n        if not",
          "for budget in budgets[:1] for first_term in budget if not", _TESTS),
