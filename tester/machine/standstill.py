@@ -25,9 +25,11 @@ class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
         values = view.parameters = rig.values()
         view.note_further(rig)
         view.stop = state.stop
+        withdrawn, held = demands  # named, not starred: mypyc loses starred arguments before keywords
         super().__init__(
-            state, view, table, *demands, hold_at_most_s=values[hold_at_most], ack_wait_s=values[ACK_WAIT_S]
-        )
+            state, view, table, withdrawn, held,
+            hold_at_most_s=values[hold_at_most], ack_wait_s=values[ACK_WAIT_S],
+        )  # fmt: skip
 
     def enable(self, demand: DemandT, readings: ReadingsT) -> None:
         """Give the drives power where they are wanted and may move; end a quick stop."""
