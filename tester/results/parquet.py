@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from importlib import import_module
 from itertools import islice
 from math import isfinite
@@ -59,16 +58,12 @@ def write_parquet(reader: RunReader, file: BinaryIO) -> None:
         fields.append((RISK_COLUMN, pa.string()))
     schema = pa.schema(fields)
     with pq.ParquetWriter(file, schema) as writer:
-        for group in _groups(reader.sample_blocks()):
+        blocks = reader.sample_blocks()
+        while group := list(islice(blocks, _BLOCKS_PER_GROUP)):
             columns: dict[str, list[float | None] | list[str]] = {**_columns(group, owners, channels)}
             if risk:
                 columns[RISK_COLUMN] = [risk] * sum(block.rows for block in group)
             writer.write_table(pa.table(columns, schema=schema))
-
-
-def _groups(blocks: Iterator[SampleBlock]) -> Iterator[list[SampleBlock]]:
-    while group := list(islice(blocks, _BLOCKS_PER_GROUP)):
-        yield group
 
 
 def _columns(group: list[SampleBlock], owners: dict[int, StoredRepeat], channels: tuple[Channel, ...]) -> _Columns:

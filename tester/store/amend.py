@@ -74,13 +74,10 @@ def problems(exclusions: Iterable[StoredExclusion], repeats: Iterable[StoredRepe
     """Return faults of a run's exclusions: missing rows, and rows for repeats that are not committed."""
     listed = list(exclusions)
     committed = {repeat.target for repeat in repeats}
-    faults = [f"exclusion {number} is gone" for number in _gaps([exclusion.id for exclusion in listed])]
+    ids = {exclusion.id for exclusion in listed}
+    faults = [f"exclusion {number} is gone" for number in range(1, max(ids, default=0)) if number not in ids]
     for exclusion in listed:
         if exclusion.target not in committed:
             which = f"condition {exclusion.condition}, repeat {exclusion.repeat}, attempt {exclusion.attempt}"
             faults.append(f"exclusion {exclusion.id} names {which}, which is not committed")
     return faults
-
-
-def _gaps(ids: list[int]) -> list[int]:
-    return sorted(set(range(1, max(ids, default=0) + 1)) - set(ids))

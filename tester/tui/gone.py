@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tester.tui.formatting import clean, fit
-from tester.tui.screen_scene import ScreenScene
+from tester.tui.screen_scene import UNDER_WAY, ScreenScene
 from tester.tui.theme import SMALLEST
 from tester.tui.widgets.panel_base import Panel, Parts, rows
 
@@ -35,7 +35,7 @@ def death_text(scene: ScreenScene) -> str:
         *(clean(check) for check in scene.machine.look),
         "Leave this screen (q) and start `tester tui` again: it starts another service. Nothing moves.",
     ]
-    if scene.run_under_way and state is not None and state.run is not None:
+    if state is not None and state.run is not None and state.run.outcome == UNDER_WAY:
         name = clean(state.run.name)
         todo.append(f"{name} is interrupted. Its committed data is kept: `r`, or `tester resume {name}`, resumes it.")
     return "\n".join([*lines, *(f"{number}. {item}" for number, item in enumerate(todo, 1))])

@@ -73,11 +73,6 @@ class ScreenScene:
         return self.state is not None and not self.lost and self.age_s <= STALE_S
 
     @property
-    def run_under_way(self) -> bool:
-        """Return whether a run was under way in the last state received."""
-        return self.state is not None and self.state.run is not None and self.state.run.outcome == UNDER_WAY
-
-    @property
     def ended_run(self) -> RunView | None:
         """Return the last run; None while a run is under way, or if it has no folder (manual mode)."""
         run = self.state.run if self.state is not None else None

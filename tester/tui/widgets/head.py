@@ -113,7 +113,7 @@ class TabLine(Panel):
             return [(fit(f" ■ {gone}", width).ljust(width), ABNORMAL if scene.gone == "died" else NOTICE)]
         alarm = scene.top_alarm()
         if alarm is not None:
-            key = f" [{alarm_key(alarm)}] "
+            key = " [r resume] " if alarm.command == "release" else " [a acknowledge] "
             text = fit(f" {alarm_words(alarm)}", width - len(key))
             return [(text.ljust(width - len(key)) + key, ALARM_STYLES[alarm.priority])]
         parts: Parts = []
@@ -134,11 +134,6 @@ def alarm_words(alarm: Alarm) -> str:
     gone = ", gone by itself" if alarm.state == "returned" else ""
     then = f"; {clean(alarm.consequence)}" if alarm.consequence else ""
     return f"{text}: {clean(alarm.text)}{gone}{then}"
-
-
-def alarm_key(alarm: Alarm) -> str:
-    """Return the key that answers an alarm."""
-    return "r resume" if alarm.command == "release" else "a acknowledge"
 
 
 class KeyLine(Panel):
