@@ -70,7 +70,7 @@ MUTANTS: Mapping[str, Mutant] = {
         (REPORT,),
     ),
     "charts: bars are half as long": Mutant(
-        "tester.report.charts", "row.result.expanded, run)", "0.5 * row.result.expanded, run)",
+        "tester.report.charts", "row.result.budget.expanded, run)", "0.5 * row.result.budget.expanded, run)",
         (REPORT,),
     ),
     "overview: points are the coefficient as measured": Mutant(
