@@ -74,8 +74,7 @@ MUTANTS: Mapping[str, Mutant] = {
         (REPORT,),
     ),
     "overview: points are the coefficient as measured": Mutant(
-        "tester.report.overview", "tuple(condition.measured.result.mu for condition in of_compound)",
-        "tuple(one.measured.result.mu_resultant for one in own)",
+        "tester.report.overview", "Mark(condition.at, result.mu, ", "Mark(condition.at, result.mu_resultant, ",
         (REPORT,),
     ),
     "compare: the second coefficient is the one as measured": Mutant(
