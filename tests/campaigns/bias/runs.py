@@ -90,7 +90,7 @@ def run(case: Case) -> tuple[Case, list[Off]]:
         session = screen.session = Session(options, screen)
         session.run()
         if session.folder is None:
-            raise RuntimeError(f"the run did not begin: {' '.join(screen.said)}")
+            raise RuntimeError(f"the run did not begin: {' '.join(screen.messages)}")
         with RunReader(session.folder) as reader:
             measured = list(results_of(reader).conditions())
         return case, list(_judged(case, measured, session.folder / "run.db"))

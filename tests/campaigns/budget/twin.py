@@ -85,7 +85,7 @@ def _run(folder: Path, seed: int, condition: tuple[str, int, int, int, str]) -> 
     session = screen.session = Session(options, screen)
     session.run()
     if session.folder is None:
-        raise RuntimeError(f"the run did not begin: {' '.join(screen.said)}")
+        raise RuntimeError(f"the run did not begin: {' '.join(screen.messages)}")
     with RunReader(session.folder) as reader:
         (row,) = results_of(reader).rows
     first, second = (measured.result for measured in row.replicates)

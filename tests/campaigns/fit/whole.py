@@ -49,7 +49,7 @@ def ended(which: tuple[str, int]) -> Whole:
         session = screen.session = Session(options, screen)
         session.run()
         if session.folder is None:
-            raise RuntimeError(f"the run did not begin: {' '.join(screen.said)}")
+            raise RuntimeError(f"the run did not begin: {' '.join(screen.messages)}")
         points = FITS.run_points(session.folder).points
     (group, own), *_ = by_group(points).items()
     law = FITS.bound(FITS.laws["wlf_bell"], group, "", {})

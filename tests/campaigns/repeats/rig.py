@@ -17,5 +17,5 @@ def run(text: str, seed: int, folder: Path) -> Path:
     session = screen.session = Session(SessionOptions(str(recipe), "sim", out=folder / "runs", seed=seed), screen)
     session.run()
     if session.folder is None:
-        raise RuntimeError(f"the run did not begin: {' '.join(screen.said)}")
+        raise RuntimeError(f"the run did not begin: {' '.join(screen.messages)}")
     return session.folder

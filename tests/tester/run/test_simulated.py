@@ -37,7 +37,7 @@ def run(folder: Path, *overrides: str) -> Path:
     options = SessionOptions(str(folder / "recipe.yaml"), "sim", out=folder / "runs", seed=3, overrides=overrides)
     session = screen.session = Session(options, screen)
     session.run()
-    assert session.folder is not None, screen.said
+    assert session.folder is not None, screen.messages
     return session.folder
 
 
