@@ -80,7 +80,8 @@ class TemperatureController(Device):
         self._output_scale = profile.signal("output").scale
         self._working_scale = profile.signal("setpoint").scale
         self._register = profile.writes["setpoint"]
-        self._wanted: int | None = None
+        self._wanted: tuple[int, ...] = ()
+        """Registers of the setpoint that is commanded; none yet."""
         self._asked = False
         self._asked_c = nan
         self._run_wanted = False
@@ -128,10 +129,10 @@ class TemperatureController(Device):
         self._asked_c = celsius
         register = self._register
         bounded = min(max(celsius, register.least), register.greatest)
-        counts = round(bounded / register.scale)
-        if counts != self._wanted:
-            self._wanted = counts
-            self.link.rewrite(self._setpoint_write, register.words(bounded, self.profile.word_order))
+        words = register.words(bounded, self.profile.word_order)
+        if words != self._wanted:
+            self._wanted = words
+            self.link.rewrite(self._setpoint_write, words)
 
     def enable(self, on: bool) -> None:
         """Let the controller run (True) or stand by; standby goes before everything else on the line."""
@@ -182,7 +183,7 @@ class TemperatureController(Device):
 
     def resume(self) -> None:
         """Command again what is wanted now."""
-        if self._wanted is not None:
+        if self._wanted:
             self.link.enable(self._setpoint_write)
         self.link.enable(self._run_write)
 

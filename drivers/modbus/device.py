@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import inf
 
-from drivers.modbus.codec import READ_HOLDING
+from drivers.modbus.codec import READ_HOLDING, WRITE_MANY
 from drivers.modbus.link import ModbusLink
 from drivers.modbus.request import Request
 from drivers.modbus.schedule import PROBE_S
@@ -19,8 +19,8 @@ class SetupStep:
 
     what: str
     request: Request
-    expected: int | None = None
-    """What the register read must hold; None = any answer will do."""
+    expected: bytes | None = None
+    """What the registers read must hold, as on the wire; None = any answer will do."""
 
 
 class Device(ABC):
@@ -64,17 +64,18 @@ class Device(ABC):
         identity = self.profile.identity
         if identity is not None:
             request = self.link.read(self.station, identity.function, identity.address, 1)
-            self._steps.insert(0, SetupStep("device type", request, identity.value))
+            self._steps.insert(0, SetupStep("device type", request, identity.value.to_bytes(2, "big")))
         if not self._steps:
             self._steps.append(SetupStep("first reading", self._polls[0]))
         self.link.enable(self._steps[0].request)
 
     def add_write(self, what: str, address: int, words: tuple[int, ...], read_back: bool) -> None:
-        """Add a write to the set-up, and a comparison of what the first register then holds."""
-        function = self.profile.write_function
+        """Add a write to the set-up, and a comparison of what the registers then hold."""
+        function = self.profile.write_function if len(words) == 1 else WRITE_MANY
         self._steps.append(SetupStep(what, self.link.write(self.station, function, address, words)))
         if read_back:
-            self._steps.append(SetupStep(what, self.link.read(self.station, READ_HOLDING, address, 1), words[0]))
+            read = self.link.read(self.station, READ_HOLDING, address, len(words))
+            self._steps.append(SetupStep(what, read, b"".join(word.to_bytes(2, "big") for word in words)))
 
     def received(self, request: Request, data: bytes, t: float) -> None:
         """Take a good reply that arrived at ``t`` s: continue the set-up, or update the readings."""
@@ -98,9 +99,11 @@ class Device(ABC):
     def _proceed(self, step: SetupStep, data: bytes) -> None:
         """End a step of the set-up and begin the next one."""
         if step.expected is not None:
-            found = int.from_bytes(data[:2], "big")
-            if found != step.expected:
-                self.station.refused = f"{step.what}: register holds {found}, expected {step.expected}"
+            found, expected = data[: len(step.expected)], step.expected
+            if found != expected:
+                one = len(expected) == 2  # a number for people; of several registers the bytes
+                shown = [str(int.from_bytes(held, "big")) if one else held.hex(" ") for held in (found, expected)]
+                self.station.refused = f"{step.what}: register holds {shown[0]}, expected {shown[1]}"
                 return
         self._step += 1
         if step.request is not self._polls[0]:

@@ -6,6 +6,7 @@ own, and ``read_profile`` a text that comes from elsewhere. A new device is a ne
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Literal, cast, get_args
 
@@ -38,6 +39,8 @@ __all__ = [
 ]  # fmt: skip
 
 _FOLDER = Path(__file__).parent
+_WRITE_MANY = 16
+"""Function that writes several registers in one request."""
 _MOST_REGISTERS = 125
 """Registers in one read (Modbus application protocol V1.1b3, 6.3)."""
 SATURATED_SHARE = 0.98
@@ -77,9 +80,7 @@ def read_profile(name: str, text: str) -> DeviceProfile:
 def _profile(name: str, top: ProfileTable) -> DeviceProfile:
     kind = cast(Kind, top.choice("kind", get_args(Kind)))
     title = top.text("title")
-    functions = frozenset(
-        _whole(top, "functions", item, 127) for item in top.items("functions")
-    )
+    functions = frozenset(_whole(top, "functions", item, 127) for item in top.items("functions"))
     order = cast(WordOrder, top.choice("word_order", get_args(WordOrder), "high_first"))
     signals = _signals(top.table("signals", required=True))
     blocks = tuple(_block(read, signals, order) for read in top.tables("reads"))
@@ -109,7 +110,7 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
         status_bits=status_bits,
         identity=_identity(top.table("identity")) if "identity" in top else None,
         setup=tuple(_setup(write) for write in top.tables("setup")),
-        writes=_signals(top.table("writes")),
+        writes=_signals(top.table("writes"), functions),
         switches=_switches(top.table("switches")),
         tare=top.flag("tare", cell),
         saturated=top.share("saturated", SATURATED_SHARE if cell else None),
@@ -135,7 +136,8 @@ def _whole(table: ProfileTable, key: str, item: object, greatest: int) -> int:
     return item
 
 
-def _signals(table: ProfileTable) -> dict[str, Signal]:
+def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> dict[str, Signal]:
+    """Return signals by name; ``functions``: of a device whose registers to write they are."""
     found: dict[str, Signal] = {}
     for key in table.keys():  # noqa: SIM118 - not a dictionary
         row = table.table(key)
@@ -153,8 +155,20 @@ def _signals(table: ProfileTable) -> dict[str, Signal]:
             sign_bit=row.integer("sign_bit", 0, 31) if "sign_bit" in row else None,
             default=row.number("default") if "default" in row else None,
         )
+        if functions is not None:
+            _writable(row, found[key], functions)
         row.end()
     return found
+
+
+def _writable(row: ProfileTable, signal: Signal, functions: Collection[int]) -> None:
+    """Refuse a count that is coarser than the range, and several registers where one request cannot write them."""
+    if signal.type != "f32" and signal.scale > signal.greatest - signal.least:
+        raise row.error("scale", f"{signal.scale:g} is coarser than the range, {signal.least:g} to {signal.greatest:g}")
+    if signal.size > 1 and _WRITE_MANY not in functions:
+        raise row.error(
+            "type", f"{signal.type} takes {signal.size} registers, which only function {_WRITE_MANY} writes"
+        )
 
 
 def _block(table: ProfileTable, signals: dict[str, Signal], order: WordOrder) -> RegisterBlock:

@@ -27,6 +27,10 @@ LIMITS: dict[Number, tuple[int, int]] = {
 """Least and greatest count of each type; of f32, those it holds exactly."""
 
 
+MOST_F32 = 3.4028234e38
+"""Greatest number of an f32."""
+
+
 class ProfileError(ValueError):
     """A profile that is missing, not complete, or not what the driver needs."""
 
@@ -55,19 +59,30 @@ class Signal:
         """Registers it takes."""
         return SIZES[self.type]
 
-    def counts(self, value: float) -> int:
-        """Return the counts nearest to ``value``, within the type. Raises ValueError unless it is finite."""
+    def words(self, value: float, word_order: WordOrder) -> tuple[int, ...]:
+        """Return the registers that hold ``value``, in the order they are sent: the nearest number of the type.
+
+        Raises ValueError unless it is finite, and for more than an f32 holds.
+        """
         if not isfinite(value):
             raise ValueError(f"{self.name} must be a finite number, not {value}")
-        least, greatest = LIMITS[self.type]
-        return min(max(round(value / self.scale), least), greatest)
-
-    def words(self, value: float, word_order: WordOrder) -> tuple[int, ...]:
-        """Return the registers that hold ``value``, in the order they are sent."""
-        counts = self.counts(value)
-        data = Struct(">" + CODES[self.type]).pack(float(counts) if self.type == "f32" else counts)
+        counts = value / self.scale
+        if self.type == "f32":
+            if abs(counts) > MOST_F32:
+                raise ValueError(f"{self.name} is too great for its registers: {value}")
+            data = Struct(">f").pack(counts)
+        else:
+            least, greatest = LIMITS[self.type]
+            data = Struct(">" + CODES[self.type]).pack(min(max(round(counts), least), greatest))
         words = tuple(int.from_bytes(data[at : at + 2], "big") for at in range(0, len(data), 2))
         return words if word_order == "high_first" else words[::-1]
+
+    def value(self, data: bytes, word_order: WordOrder) -> float:
+        """Return the number that registers hold; ``data``: their bytes as they are sent."""
+        if word_order == "low_first" and self.size == 2:
+            data = data[2:] + data[:2]
+        counts: float = Struct(">" + CODES[self.type]).unpack(data)[0]
+        return counts * self.scale
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import floor, inf, isfinite
 from typing import Final, Protocol
 
-from drivers.profiles.model import LIMITS, DeviceProfile, Signal
+from drivers.profiles.model import LIMITS, DeviceProfile, Signal, WordOrder
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, PATTERN, ModbusSlave
 
 Quantity = Callable[[], float]
@@ -205,6 +205,7 @@ class IrSlave(SensorSlave):
         profile.expect("ir_thermometer")
         super().__init__(profile, unit_id)
         self._emissivity = profile.writes.get("emissivity")
+        self._word_order: WordOrder = profile.word_order
         self.source = source
         self.sensor_c = sensor_c
         self._of_itself = tuple(signal.name == "sensor" for signal in self._signals)
@@ -214,13 +215,17 @@ class IrSlave(SensorSlave):
         """Switch the supply; it starts with an emissivity of 1 [A]."""
         self.powered = on
         if on and self._emissivity is not None:
-            self.put(self._emissivity.address, round(1.0 / self._emissivity.scale).to_bytes(2, "big"))
+            words = self._emissivity.words(1.0, self._word_order)
+            self.put(self._emissivity.address, b"".join(word.to_bytes(2, "big") for word in words))
 
     @property
     def emissivity(self) -> float:
         """The emissivity set, 1 after power-on; 1 where the device has none to set."""
         register = self._emissivity
-        return self.get(register.address) * register.scale if register is not None else 1.0
+        if register is None:
+            return 1.0
+        words = (self.get(register.address + place).to_bytes(2, "big") for place in range(register.size))
+        return register.value(b"".join(words), self._word_order)
 
     def measure(self, t: float) -> list[float]:
         """Return the surface's temperature at ``t`` s on every channel but that of the device itself."""

@@ -210,19 +210,23 @@ def _status(name: str, unit: UnitSurvey, status: int) -> Iterator[Finding]:
 def _settings(name: str, unit: UnitSurvey) -> Iterator[Finding]:
     """Compare the registers that every connect writes with the rig file and the profile."""
     profile = unit.profile
-    wanted: dict[str, float] = {write.name: write.value for write in profile.setup}
+    wanted: dict[str, tuple[int, ...]] = {write.name: (write.value,) for write in profile.setup}
     for key, signal in profile.writes.items():
         value = unit.config.parameters.get(key, signal.default)
         if value is not None:
-            wanted[key] = signal.counts(value)
+            wanted[key] = signal.words(value, profile.word_order)
     differ = [
-        f"{key} {int.from_bytes(unit.configuration[key].data, 'big')} instead of {value:g}"
-        for key, value in wanted.items()
+        f"{key} {' '.join(map(str, held))} instead of {' '.join(map(str, words))}"
+        for key, words in wanted.items()
         if key in unit.configuration and unit.configuration[key].ok
-        and int.from_bytes(unit.configuration[key].data, "big") != value
+        and (held := _words(unit.configuration[key].data)) != words
     ]  # fmt: skip
     if differ:
         yield note(name, f"registers that differ from the rig file, every connect writes them: {'; '.join(differ)}")
+
+
+def _words(data: bytes) -> tuple[int, ...]:
+    return tuple(int.from_bytes(data[at : at + 2], "big") for at in range(0, len(data), 2))
 
 
 def units(e: Examination) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ from math import inf, isnan, nan
 import pytest
 
 from drivers.crc16 import with_crc
-from drivers.profiles import load_profile
+from drivers.profiles import DeviceProfile, ProfileError, load_profile, read_profile
 from drivers.sensor import Sensor
 from sim.nodes.sensor_slave import IrSlave
 from tests.drivers.modbus_bench import Bench, reply
@@ -116,3 +116,75 @@ def test_only_the_channels_asked_for_tell_of_a_change() -> None:
     bench.serve(0.12, (0.11, reply(400, 400, 250, 0, unit_id=2)))
     bench.serve(0.36, (0.35, reply(400, 401, 251, 0, unit_id=2)))
     assert (thermometer.values, thermometer.changed_s) == ([40.0], 0.11)
+
+
+FLOATS = """
+kind = "ir_thermometer"
+title = "thermometer with floats"
+functions = [3, 6, 16]
+word_order = "{order}"
+line = {{ baud = 38400, parity = "N" }}
+timing = {{ turnaround_ms = 5.0, reply_max_ms = 60.0, retries = 1 }}
+[signals]
+surface = {{ address = 0, type = "f32", unit = "degC", least = -40.0, greatest = 1000.0 }}
+status = {{ address = 2, type = "u16" }}
+[[reads]]
+signals = ["surface", "status"]
+period_ms = 100
+[writes]
+emissivity = {{ address = 10, type = "{type}", scale = {scale}, least = 0.1, greatest = 1.0, default = 1.0 }}
+[status]
+error = 0
+invalid = [0]
+"""
+
+
+def profile_of(type_: str, scale: float = 1.0, order: str = "high_first") -> DeviceProfile:
+    return read_profile("floats", FLOATS.format(type=type_, scale=scale, order=order))
+
+
+@pytest.mark.parametrize("order", ["high_first", "low_first"])
+@pytest.mark.parametrize(
+    ("type_", "scale"), [("f32", 1.0), ("f32", 0.01), ("u32", 1e-6), ("i32", 1e-6), ("u16", 1e-4), ("i16", 1e-4)]
+)
+@pytest.mark.parametrize("emissivity", [0.95, 0.8125, 0.1])
+def test_an_emissivity_arrives_as_it_was_stated_whatever_its_type(
+    type_: str, scale: float, emissivity: float, order: str
+) -> None:
+    profile = profile_of(type_, scale, order)
+    slave = IrSlave(profile, 2, Quantities())
+    rig = Rig(38400, slave)
+    thermometer = Sensor(profile, 2, rig.link, parameters={"emissivity": emissivity})
+    rig.run(1.0)
+    assert slave.emissivity == pytest.approx(emissivity, rel=1e-6 if type_ == "f32" else 0.0, abs=0.5 * scale * 1.001)
+    assert thermometer.ready and thermometer.refused is None
+
+
+def test_a_float_that_is_kept_in_its_first_register_alone_is_refused() -> None:
+    profile = profile_of("f32")
+    slave = IrSlave(profile, 2, Quantities())
+    put = slave.put
+
+    def lossy(address: int, data: bytes) -> None:
+        put(address, bytes(2) if address == 11 else data)
+
+    slave.put = lossy  # type: ignore[method-assign]
+    rig = Rig(38400, slave)
+    thermometer = Sensor(profile, 2, rig.link, parameters={"emissivity": 0.95})
+    rig.run(1.0)
+    assert thermometer.refused == "emissivity: register holds 3f 73 00 00, expected 3f 73 33 33"
+
+
+@pytest.mark.parametrize(
+    ("type_", "scale", "functions", "message"),
+    [
+        ("u16", 1.0, "[3, 6, 16]", "scale: 1 is coarser than the range, 0.1 to 1"),
+        ("f32", 1.0, "[3, 6]", "type: f32 takes 2 registers, which only function 16 writes"),
+    ],
+)
+def test_a_register_that_cannot_hold_its_range_is_refused(
+    type_: str, scale: float, functions: str, message: str
+) -> None:
+    text = FLOATS.format(type=type_, scale=scale, order="high_first").replace("[3, 6, 16]", functions)
+    with pytest.raises(ProfileError, match=message):
+        read_profile("floats", text)

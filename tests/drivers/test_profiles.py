@@ -113,7 +113,7 @@ def test_a_value_becomes_registers() -> None:
 
 
 def test_a_value_beyond_its_register_stays_at_the_end() -> None:
-    assert Signal("sp", 26, "i16", 0.1, "degC").counts(1e6) == 0x7FFF
+    assert Signal("sp", 26, "i16", 0.1, "degC").words(1e6, "high_first") == (0x7FFF,)
 
 
 def test_a_value_that_is_no_number_is_refused() -> None:
