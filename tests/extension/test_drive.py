@@ -85,9 +85,9 @@ def test_a_file_beside_the_rig_file_is_found_from_anywhere(folder: Path, monkeyp
     belt = load_rig(place / "rig.yaml").drives()["belt"]
     assert (belt.drive.name, belt.drive.vendor_id) == ("own", 0x1A2)
     assert belt.profile == str(place / "own.toml")
-    assert load_rig("rigs/rig.yaml").drives()["belt"].profile == str(Path("rigs/own.toml"))
+    assert load_rig("rigs/rig.yaml").drives()["belt"].profile == str(Path("rigs/own.toml").resolve())
     monkeypatch.chdir(place)
-    assert load_rig("rig.yaml").drives()["belt"].profile == "own.toml"
+    assert load_rig("rig.yaml").drives()["belt"].profile == str(place / "own.toml")
 
 
 def test_a_sensors_file_beside_the_rig_file_is_found_too(folder: Path) -> None:
@@ -105,3 +105,10 @@ def test_a_file_that_is_not_there_is_named(folder: Path) -> None:
     (folder / "rig.yaml").write_text(rig_text("gone.toml"), encoding="utf-8")
     with pytest.raises(InvalidSource, match=r"no drive profile 'gone\.toml'"):
         load_rig("rig.yaml")
+
+
+def test_a_rig_is_the_same_by_whatever_path_its_file_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "rig.yaml").write_text(rig_text("own.toml"), encoding="utf-8")
+    shutil.copy(PROFILE, tmp_path / "own.toml")
+    monkeypatch.chdir(tmp_path)
+    assert load_rig("rig.yaml").text == load_rig(tmp_path / "rig.yaml").text  # else a run is not resumed

@@ -49,7 +49,8 @@ def find_beside(tree: Tree, folder: Path) -> None:
 def _find_beside(part: dict[str, Value], folder: Path) -> None:
     name = part.get("profile")
     if isinstance(name, str) and name.endswith(".toml") and (folder / name).is_file():
-        part["profile"] = str(folder / name)
+        # Absolute: a run records it, and resumes from any folder, whatever path its rig file was named by.
+        part["profile"] = str((folder / name).resolve())
 
 
 def extension_law(name: str) -> LawMaker | None:
