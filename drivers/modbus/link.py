@@ -329,7 +329,7 @@ class ModbusLink(LineType):
             self._fail(request, t + BUSY_S, t + self.gap_s)
 
     def _unasked(self, t: float) -> None:
-        """Count unexpected bytes; after a time-out they are the late reply, and the silence starts anew."""
+        """Count unexpected bytes, after a time-out as a late reply; wait once more until the line is silent."""
         if self.socket:
             if not self._doubt:
                 self._doubt = "bytes that nobody asked for"

@@ -77,7 +77,7 @@ class Parametric:
 
     @property
     def ends(self) -> tuple[float, ...]:
-        """The greatest magnitudes of either sign."""
+        """Return ``least`` and ``most``, except one that equals ``normal``."""
         return tuple(end for end in (self.least, self.most) if end != self.normal)
 
     def between(self, end: float, share: float) -> float:

@@ -282,7 +282,7 @@ def _inner(step: Array, rise: Array) -> Array:
 
 
 def _end(step: float, next_step: float, rise: float, next_rise: float) -> float:
-    """Return the slope at an end: three points' one, limited to keep the shape."""
+    """Return the slope at an end from three points, limited so that the curve does not overshoot."""
     slope = ((2.0 * step + next_step) * rise - step * next_rise) / (step + next_step)
     if slope * rise <= 0.0:
         return 0.0

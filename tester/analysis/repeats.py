@@ -91,12 +91,12 @@ class ConditionResult:
 
     @property
     def longitudinal(self) -> float:
-        """Return its component along the sliding."""
+        """Return the coefficient's component along the direction of sliding."""
         return self.correction * self.mu_longitudinal
 
     @property
     def lateral(self) -> float:
-        """Return its component across the sliding."""
+        """Return the coefficient's component across the direction of sliding."""
         return self.correction * self.mu_lateral
 
     @property

@@ -20,7 +20,7 @@ Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 
 class ReportedCommand(click.Command):
-    """A command that reports the errors a person can mend as click does: their message, and exit code 1 or 2."""
+    """A command that prints the message of an error that a person can correct, and exits with 1 or 2, as click does."""
 
     def invoke(self, ctx: click.Context) -> object:
         try:

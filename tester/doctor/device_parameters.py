@@ -36,7 +36,7 @@ class ParameterDump:
 
     @property
     def text(self) -> str:
-        """The dump as a file."""
+        """Return the text of the dump's file, in JSON."""
         return json.dumps({"format": FORMAT, **asdict(self)}, indent=1, ensure_ascii=False) + "\n"
 
 

@@ -31,7 +31,7 @@ class Wanted:
 
 
 class RunPanel:
-    """The view of a run between two ticks. A kind adds its devices, setpoints and checks."""
+    """What clients see of a run, read between two ticks. A kind adds its devices, setpoints and checks."""
 
     gates_of: ClassVar[Mapping[str, int]] = {}
     """Bit of each gate in the channel ``gate``, by its key on the screen."""

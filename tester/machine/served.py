@@ -77,7 +77,7 @@ class ServedKind:
         raise NotImplementedError
 
     def panel(self, engine: Engine) -> RunPanel:
-        """Look at a run."""
+        """Return what clients see of a run."""
         raise NotImplementedError
 
     def alone(self, rig: Rig) -> str:

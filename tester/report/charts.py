@@ -123,7 +123,7 @@ def _overlaid(alike: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> 
 
 
 def _varied(values: Sequence[ChartValue]) -> list[Axis]:
-    """Return the numeric axes that differ between values, by their order on the abscissa."""
+    """Return the numeric axes on which the values differ, the preferred abscissa first."""
     if not values:
         return []
     axes = values[0].held.axes.differing(value.held for value in values)

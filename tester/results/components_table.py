@@ -43,7 +43,7 @@ class SharesMean(NamedTuple):
 
 
 def has_interfaces(results: RunResults) -> bool:
-    """Return whether the run's conditions have an interface in the contact."""
+    """Return whether the run's conditions have the axis ``interface`` (dry, or a film)."""
     return any(axis.name == AXIS for axis in results.axes)
 
 

@@ -46,7 +46,7 @@ class SkewedCan:
         return [(t + ahead_s, can_id, data) for t, can_id, data in self.port.receive(now - ahead_s)]
 
     def watch(self, watcher: CanWatcher) -> Unwatch:
-        """Call ``watcher`` with every frame, at the computer's time."""
+        """Call ``watcher`` with every frame, stamped with the computer's clock."""
         return self.port.watch(lambda t, can_id, data, sent: watcher(t + self.skew.ahead_s, can_id, data, sent))
 
 
@@ -68,7 +68,7 @@ class SkewedLine:
         return [(t + ahead_s, data) for t, data in self.port.read(now - ahead_s)]
 
     def watch(self, watcher: LineWatcher) -> Unwatch:
-        """Call ``watcher`` with all bytes, at the computer's time."""
+        """Call ``watcher`` with all bytes, stamped with the computer's clock."""
         return self.port.watch(lambda t, data, sent: watcher(t + self.skew.ahead_s, data, sent))
 
 

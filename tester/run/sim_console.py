@@ -94,7 +94,7 @@ class SpoiledLife:
 
     @property
     def due_s(self) -> float:
-        """When the next fault begins or ends, s of the rig."""
+        """Return when the next fault begins or ends, in s of rig time."""
         return self.script.due_s
 
     def advance(self, now: float) -> None:

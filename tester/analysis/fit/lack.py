@@ -194,7 +194,7 @@ def neighbours(points: Sequence[FitPoint], variable: int) -> Places:
 
 
 def _holm(p: Sequence[float]) -> list[bool]:
-    """Return which of several tests fail at ``LEVEL`` in all."""
+    """Return which tests fail, at ``LEVEL`` for all of them together (Holm's method)."""
     failed = [False] * len(p)
     for rank, place in enumerate(sorted(range(len(p)), key=lambda i: p[i])):
         if p[place] > LEVEL / (len(p) - rank):

@@ -99,7 +99,7 @@ def peaks_of(collapse: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], 
 
 
 def _maxima_again(collapse: Collapse, i: int, reference_c: float) -> list[float]:
-    """Return the maxima of the curve of a set drawn anew, x at the reference temperature."""
+    """Return x, at the reference temperature, of each maximum of the curve fitted to resampled set ``i``."""
     assert collapse.drawn is not None
     ts_c = float(collapse.drawn.ts_c[i])
     x = collapse.of.log_v + shifts(collapse.of.celsius, ts_c)

@@ -88,7 +88,7 @@ Place = Callable[[int], tuple[int, int]]
 
 @dataclass(slots=True)
 class Findings:
-    """Problems, for which a file is refused; doubts, which stay with it; notes on conversions."""
+    """Problems, which make a file invalid; doubts, which commands print and a run records; notes on conversions."""
 
     file: str
     problems: list[Problem] = field(default_factory=list[Problem])

@@ -130,7 +130,7 @@ def _profiles(rig: Rig, profiles: Mapping[str, DeviceProfile]) -> _Found:
 
 
 def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own: bool) -> _Found:
-    """Check the parameters written to a sensor; a device that heats takes none from its section."""
+    """Check the parameters in a device's section; a jacket or chamber may have none there."""
     registers = profile.writes if profile.kind not in COMMANDED else {}
     optical = profile.kind == "ir_thermometer"
     for key, value in device.parameters.items():

@@ -1,4 +1,4 @@
-"""This machine, for a run (``tester.machine.run_parts``)."""
+"""Builds the runs of a specimen on a track (``tester.machine.run_parts``)."""
 
 from __future__ import annotations
 

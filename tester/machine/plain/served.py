@@ -112,7 +112,7 @@ class PlainServed(ServedKind):
         return self.runs.part.title(step)
 
     def panel(self, engine: Engine) -> PlainPanel:
-        """Return the view of a run."""
+        """Return what clients see of a run."""
         return PlainPanel(engine)
 
     def alone(self, rig: Rig) -> str:

@@ -1,4 +1,4 @@
-"""The fixed lines: 1 the state, 2 the screens or the top alarm, last the keys with STOP."""
+"""The lines on every screen: first the state, second the tabs or the top alarm, last the keys with STOP."""
 
 from __future__ import annotations
 

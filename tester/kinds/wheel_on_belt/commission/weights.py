@@ -223,7 +223,7 @@ def _judge(channel: HungChannel) -> None:
 
 
 def _due() -> Generator[Waits, str, str]:
-    """Ask for the last day of the calibration."""
+    """Ask until which day the calibration is valid, and return that day."""
     text = "until which day does this calibration count (2027-01-31)? A year is usual for a cell in daily use [A]"
     while True:
         answer = yield from line("due", text)

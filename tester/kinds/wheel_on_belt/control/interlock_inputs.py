@@ -33,7 +33,7 @@ class InterlockInputs(Inputs):
     """What earlier runs make known of the heat balance, in words."""
 
     def __post_init__(self) -> None:
-        """Take over the rig file's limits for the conditions, and control's state."""
+        """Read the rig file's limits, link the control's state, and create the observers and monitors."""
         rig, state = self.rig, self.state
         self.parameters = p = values_of(rig.interlocks, rig.table.parameters)
         self.note_further(rig)

@@ -166,7 +166,7 @@ def _claims(result: Errors) -> tuple[Claim, ...]:
 
 
 def quoted_rows(quoted: Sequence[Quoted]) -> list[FitPoint]:
-    """Return the rows of the appendices that errors are quoted of, in their order."""
+    """Return the row of the appendices for each quoted error, in the same order."""
     rows = (*appendix(FIT).points, *appendix(VALIDATION).points)
     at = {entry.nominal: entry for entry in rows if entry.group == QUOTED_COMPOUND}
     return [at[entry.nominal] for entry in quoted]

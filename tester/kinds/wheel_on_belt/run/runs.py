@@ -1,4 +1,4 @@
-"""This machine, for a run (``tester.machine.run_parts``)."""
+"""Builds the runs of a wheel on a belt, and splits their plans (``tester.machine.run_parts``)."""
 
 from __future__ import annotations
 

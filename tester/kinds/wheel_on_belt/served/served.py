@@ -56,7 +56,7 @@ class WheelOnBelt(ServedKind):
         return title(step)
 
     def panel(self, engine: Engine) -> WheelPanel:
-        """Look at a run."""
+        """Return what clients see of a run."""
         return WheelPanel(engine)
 
     def alone(self, rig: Rig) -> str:
