@@ -1,4 +1,4 @@
-"""What is configured of an axis, and what its drive reports about itself."""
+"""Configuration of an axis, and the reports of its drive about itself."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class AxisConfig:
     """One axis: its node, its scaling and its limits; raises ValueError where they contradict each other.
 
     ``unit`` is the axis' engineering unit: a speed for "rad/s", "m/s" and "mm/s" (positions are then rad,
-    m, mm), and "deg" for the yaw axes (speeds deg/s). Increments are counts of 0x60FF, 0x606C, 0x6080,
-    0x6081 and 0x6083-85 per unit of speed or acceleration, and of 0x6064 and 0x607A per unit of position;
-    0 = not used. ``feedback`` names the 32-bit field of TPDO1. Torque: 0x6077 is per mille of
+    m, mm), and "deg" for the yaw axes (speeds deg/s). ``velocity_increments`` are counts of 0x60FF, 0x606C, 0x6080,
+    0x6081 and 0x6083-85 per unit of speed or acceleration; ``position_increments`` are counts of 0x6064 and 0x607A
+    per unit of position; 0 = not used. ``feedback`` names the 32-bit field of TPDO1. Torque: 0x6077 is per mille of
     ``rated_torque_nm`` (0x6076). ``vendor_id``, ``product_code`` and ``serial_number`` are compared with
     0x1018 at connect; 0 = not compared. [A] marks an assumption: check it against the drive's manual.
-    ``profile`` names what is particular to the maker's drives (drivers.drives). Where its accelerations or its
-    greatest speed do not follow from 0x60FF's counts, the two further increments state them; 0 = by the profile.
+    ``profile`` names the file that describes the maker's drives (drivers.drives). The two further increments state the
+    drive's accelerations or its greatest speed if they do not follow from 0x60FF's counts; 0 = by the profile.
     """
 
     name: str
@@ -46,19 +46,19 @@ class AxisConfig:
     deceleration: float                              # speed unit per s
     quick_stop_deceleration: float                   # speed unit per s
     max_torque_per_mille: int = 3000                 # 0x6072, of rated; 3000 is a usual servo's peak [A]
-    screw: Screw | None = None                       # what the torque moves, where that is a screw
+    screw: Screw | None = None                       # screw that the torque turns; None: no screw
     software_limits: tuple[float, float] | None = None   # position unit; 0x607D
     home_offset: float = 0.0                         # position unit; 0x607C: the zero lies this far beyond the switch,
-                                                     # which then is at -home_offset (CiA 402-2, home offset)
+                                                     # so the switch is at -home_offset (CiA 402-2, home offset)
     homing_method: int = 19                          # 0x6098; 19: home switch, no index pulse [A]
     homing_speed: float = 0.0                        # 0x6099:01; 0: a fifth of max_speed
     homing_zero_speed: float = 0.0                   # 0x6099:02; 0: a twentieth of max_speed
     home_timeout_s: Annotated[float, "s"] = 60.0
     position_window: float = 0.0                     # position unit; 0x6067; 0: leave the drive's
-    speed_zero: float = 0.0                          # unit; 0x606F: slower than this it stands, and says so at once
+    speed_zero: float = 0.0                          # unit; 0x606F: a slower axis is at rest, reported at once
                                                      # by PDO 2, not with the next SYNC; 0: the drive's own, no PDO 2
     digital_io: bool = False                         # PDO 2 carries 0x60FE:01 and 0x60FD
-    inputs_period_s: Annotated[float, "s"] = 0.1     # 0x1801:05: 0x60FD comes at least this often, besides by event
+    inputs_period_s: Annotated[float, "s"] = 0.1     # 0x1801:05: longest time between two 0x60FD; events come besides
     vendor_id: int = VENDOR_ID                       # default: the simulated drive's
     product_code: int = PRODUCT_CODE
     serial_number: int = 0
@@ -69,7 +69,7 @@ class AxisConfig:
     profile: str = GENERIC                           # of drivers/profiles/drives, or a path that ends in .toml
     acceleration_increments: float = 0.0             # counts of 0x6083-85 and 0x609A per speed unit per s
     max_speed_increments: float = 0.0                # counts of 0x6080 per unit of speed
-    gear: float = 1.0                                # motor turns in one of the shaft that rated_torque is of
+    gear: float = 1.0                                # motor turns per turn of the shaft that has rated_torque
     wiring: DigitalWiring | None = None              # bits of 0x60FD and 0x60FE:01; None: USUAL_WIRING of digital_io
     parameters: Mapping[str, float] = field(default_factory=dict[str, float])
     """Values of the profile's further objects (its table ``writes``), by name."""
@@ -114,7 +114,7 @@ class AxisConfig:
         return problems
 
     def _check_profile(self, problems: list[str]) -> None:
-        """Raise ProfileError where there is no such profile; note parameters that it does not have."""
+        """Raise ProfileError where there is no such profile; note parameters that the profile does not have."""
         known = self.drive.parameters
         for name, value in self.parameters.items():
             if name not in known:
@@ -127,7 +127,7 @@ class AxisConfig:
 
     @property
     def drive(self) -> DriveProfile:
-        """What is particular to the maker's drives."""
+        """Profile of the maker's drives."""
         return drive_profile(self.profile)
 
     @property
@@ -147,23 +147,23 @@ class AxisConfig:
 
     @property
     def rated_torque_counts(self) -> float:
-        """What 0x6076, of the motor, has to say: the rated torque of the axis over its gear."""
+        """Counts expected in 0x6076, which is of the motor: the rated torque of the axis over its gear."""
         return self.rated_torque_nm / self.gear / self.drive.units.rated_torque_nm
 
     @property
     def io(self) -> DigitalWiring:
-        """Which bits of the digital inputs and outputs mean what."""
+        """Meaning of the bits of the digital inputs and outputs."""
         return self.wiring or USUAL_WIRING
 
     @property
     def standstill_by_pdo(self) -> bool:
-        """PDO 2 carries the statusword, for its bit 12."""
+        """Whether PDO 2 carries the statusword, for its bit 12."""
         return self.speed_zero > 0.0 and self.drive.standstill
 
 
 @dataclass(frozen=True, slots=True)
 class DeviceIdentity:
-    """Who answered at a node id: 0x1000 and 0x1018."""
+    """Identity of the device at a node id: 0x1000 and 0x1018."""
 
     device_type: int
     vendor_id: int
@@ -174,9 +174,9 @@ class DeviceIdentity:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """What a drive reports about its fault: 0x603F, 0x1001 and 0x1003 (newest first).
+    """Fault objects of a drive: 0x603F, 0x1001 and 0x1003 (newest first).
 
-    ``failed`` names the request that was not answered, if any; the rest is then what had been read before.
+    ``failed`` names the request that was not answered, if any; the other fields then hold what was read before it.
     """
 
     error_code: int
@@ -186,7 +186,7 @@ class Diagnosis:
 
     @property
     def text(self) -> str:
-        """One line for the journal."""
+        """The diagnosis in one line, for the journal."""
         history = "; ".join(emergency_text(entry & 0xFFFF) for entry in self.history) or "empty"
         line = (f"error code {emergency_text(self.error_code)}, error register {register_text(self.register)}, "
                 f"history {history}")

@@ -1,4 +1,4 @@
-"""What is wanted of a drive, and the RPDO1 that says it: goal, target, halt, fault reset, homing start."""
+"""Commands to a drive (goal, target, halt, fault reset, homing start), and the RPDO1 that carries them."""
 
 from __future__ import annotations
 
@@ -25,15 +25,16 @@ _OPERATING: Final = State.OPERATION_ENABLED
 
 _STOPPED_BY_ITSELF: Final = frozenset(
     (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION, State.FAULT))
-"""A drive that leaves one of these for less, with the goal still ENABLED, is not enabled again by itself."""
+"""If a drive falls from one of these states to a lower one while the goal is ENABLED, it is not enabled again by
+itself."""
 
 
 class AxisCommand(CanNode):
-    """The command side of a drive: composes RPDO1 from what is wanted and from the last statusword.
+    """The command side of a drive: composes RPDO1 from the commands and from the last statusword.
 
     The bytes are composed again only when something they depend on has changed.
-    ``aimed`` is the target as it was last asked for, NaN when it has to be asked for again. ``news`` is set with
-    every change of what is known of the drive's state; whoever takes note of it clears it.
+    ``aimed`` is the last target that was set, NaN when it has to be set again. ``news`` is set with
+    every change of the drive's known state; the reader clears it.
     ``inhibited``: the drive left operation, or a fault, while the goal was ENABLED; another goal must be set
     before ENABLED counts again, so that nothing restarts by itself.
     """
@@ -55,7 +56,7 @@ class AxisCommand(CanNode):
         self.clear_commands()
 
     def clear_commands(self) -> None:
-        """Set every command, and what is known of the device's state, to nothing."""
+        """Reset every command, and all that is known of the device's state."""
         self.state = State.NOT_READY
         self.statusword: int = 0
         self.connected = False
@@ -81,9 +82,9 @@ class AxisCommand(CanNode):
 
     @property
     def target(self) -> float:
-        """Speed or position wanted, ``config.unit``; clamped to max_speed or the software limits.
+        """Commanded speed or position, ``config.unit``; clamped to max_speed or the software limits.
 
-        Sent only while the drive reports OPERATION_ENABLED; before that it is sent 0, in position mode the
+        It is sent only while the drive reports OPERATION_ENABLED. Before that the drive gets 0, in position mode the
         actual position. Setting NaN or an infinity raises ValueError and changes nothing.
         """
         return self._target
@@ -93,7 +94,7 @@ class AxisCommand(CanNode):
         self.aim(value)
 
     def aim(self, value: float) -> None:
-        """Set ``target``; the same as last time costs a comparison (compare ``aimed`` to save the call, too)."""
+        """Set ``target``; an unchanged value costs a comparison (compare ``aimed`` first to save even the call)."""
         if value == self.aimed:
             return
         if not -_INF < value < _INF:
@@ -111,7 +112,7 @@ class AxisCommand(CanNode):
 
     @property
     def goal(self) -> Goal:
-        """State wanted; a level, reached one transition per scan."""
+        """Commanded power state: a level, reached one transition per scan."""
         return self._goal
 
     @goal.setter
@@ -136,7 +137,7 @@ class AxisCommand(CanNode):
 
     @property
     def outputs(self) -> int:
-        """Digital outputs wanted, bits of 0x60FE:01; sent with the next scan after a change."""
+        """Commanded digital outputs, bits of 0x60FE:01; sent with the next scan after a change."""
         return self._outputs
 
     @outputs.setter
@@ -149,8 +150,8 @@ class AxisCommand(CanNode):
     def reached(self) -> bool:
         """Whether the drive reports its target reached (bit 10).
 
-        In position mode only for the present target: an earlier one does not count. A velocity has no
-        handshake: for two scans after a change the bit still speaks of the target before.
+        In position mode the bit counts only for the present target. A velocity has no
+        handshake: for two scans after a change the bit still belongs to the target before.
         """
         current = not self._position_mode or (
             not self._new_set_point and self._set_point == self._target_counts)
@@ -158,7 +159,7 @@ class AxisCommand(CanNode):
 
     @property
     def remote(self) -> bool:
-        """Whether the drive listens to the bus (bit 9, where its make has it); enabling is not tried without."""
+        """Whether the drive obeys the bus (bit 9, where its make has it); without it the axis is not enabled."""
         return self.statusword & self._remote_bit == self._remote_bit
 
     def emit(self, sync: bool) -> bytes | None:
@@ -166,13 +167,13 @@ class AxisCommand(CanNode):
         if self.dirty:
             self._compose()
         rpdo = self._rpdo
-        if self._resetting and sync:        # a synchronous RPDO acts at the SYNC: the edge has been seen
+        if self._resetting and sync:        # a synchronous RPDO acts at the SYNC: the drive has seen the edge
             self._resetting = False
             self.dirty = True
         return rpdo
 
     def set_homing(self, active: bool, start: bool = False) -> None:
-        """Return whether the device is in homing mode, and whether to start (controlword bit 4).
+        """Set whether the device is in homing mode, and whether to start homing (controlword bit 4).
 
         ``homing_scans`` counts the scans sent with the start bit.
         """
@@ -182,7 +183,7 @@ class AxisCommand(CanNode):
         self.dirty = True
 
     def take_statusword(self, statusword: int) -> None:
-        """Take a statusword that differs from the last one."""
+        """Act on a statusword that differs from the last one."""
         state = cia402.decode(statusword)
         previous = self.state
         if state is not previous:
@@ -221,7 +222,7 @@ class AxisCommand(CanNode):
             if self.state is State.FAULT:
                 word |= cia402.FAULT_RESET
             else:
-                self._resetting = False      # it has gone without us
+                self._resetting = False      # the fault went without our reset
         if goal is _ENABLED and self.state is _OPERATING:
             self._rpdo = self._compose_motion(word | cia402.HALT if self._halt else word)
             return
@@ -242,7 +243,7 @@ class AxisCommand(CanNode):
         if self._at_rest:
             self._at_rest = False
             self._new_set_point = False
-            self._set_point = self._raw      # begins by holding the axis where it is
+            self._set_point = self._raw      # first hold the axis where it is
         acknowledged = self.statusword & cia402.SET_POINT_ACKNOWLEDGED != 0
         if self._new_set_point:
             self._new_set_point = not acknowledged

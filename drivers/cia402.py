@@ -23,10 +23,10 @@ class State(IntEnum):
 
 
 class Goal(IntEnum):
-    """What the caller wants of the drive.
+    """Power states that the caller can command.
 
     DISABLED: ramp down (0x605C), then power off. ENABLED: power on and follow the target. QUICK_STOP: ramp
-    down as fast as set (0x6085), then power off. FREE: power off at once, the axis coasts.
+    down at the rate of 0x6085, then power off. FREE: power off at once, the axis coasts.
     """
 
     DISABLED = 0
@@ -79,14 +79,14 @@ def _state_of(word: int) -> State:
     for mask, value, state in _MASKS:
         if word & mask == value:
             return state
-    return State.NOT_READY    # no state of the standard: command nothing
+    return State.NOT_READY    # not in the standard: command nothing
 
 
 _STATES: Final = tuple(_state_of(word) for word in range(_STATE_BITS + 1))
 
 
 def decode(statusword: int) -> State:
-    """Return the state of a statusword (0..0xFFFF); a pattern the standard does not know is NOT_READY."""
+    """Return the state of a statusword (0..0xFFFF); NOT_READY for a pattern that the standard does not define."""
     return _STATES[statusword & _STATE_BITS]
 
 
@@ -95,7 +95,7 @@ _UP: Final = {
     State.READY_TO_SWITCH_ON: SWITCH_ON,
     State.SWITCHED_ON: ENABLE_OPERATION,
     State.OPERATION_ENABLED: ENABLE_OPERATION,
-    State.QUICK_STOP_ACTIVE: QUICK_STOP,      # a stop that has begun is finished first
+    State.QUICK_STOP_ACTIVE: QUICK_STOP,      # finish a stop that has begun
 }
 _DOWN: Final = {
     State.OPERATION_ENABLED: SWITCH_ON,       # disable operation: ramps down (0x605C = 1)
@@ -120,6 +120,6 @@ _WORDS: Final = tuple(tuple(_word(state, goal) for goal in Goal) for state in St
 def controlword(state: State, goal: Goal) -> int:
     """Return the controlword that leads from a state one step towards a goal.
 
-    It never has bit 7, so no call leaves FAULT: that takes an explicit reset by the caller.
+    The word never has bit 7, so no call leaves FAULT: the caller must reset a fault explicitly.
     """
     return _WORDS[state][goal]

@@ -1,11 +1,11 @@
-"""CRC of a Modbus RTU frame: the one door to ``fastcrc`` (docs/decisions/0015)."""
+"""CRC of a Modbus RTU frame: the only module that uses ``fastcrc`` (docs/decisions/0015)."""
 
 from __future__ import annotations
 
 from fastcrc.crc16 import modbus
 
 crc16 = modbus
-"""Return the CRC of bytes; on the wire its low byte goes first, and the CRC of a whole frame with its CRC is 0."""
+"""Return the CRC of bytes; its low byte is sent first. The CRC of a frame together with its CRC is 0."""
 
 
 def with_crc(frame: bytes) -> bytes:

@@ -1,6 +1,7 @@
-"""Which bits of a drive's digital inputs (0x60FD) and outputs (0x60FE:01) mean what.
+"""Meaning of the bits in a drive's digital inputs (0x60FD) and outputs (0x60FE:01).
 
-The program knows one arrangement, the usual one below; a drive with another is translated at its edge.
+The program uses one arrangement of bits, the usual one below. ``DigitalWiring`` translates the words of a drive that
+has another.
 """
 
 from __future__ import annotations
@@ -11,16 +12,16 @@ from typing import Final
 SAFETY_CHAIN: Final = 1 << 16
 GUARD: Final = 1 << 17
 CONTACTOR: Final = 1 << 18
-"""Inputs, as the program knows them (docs/safety.md)."""
+"""Inputs, in the program's arrangement (docs/safety.md)."""
 REQUEST: Final = 1 << 16
 """Output: pull the contactor in."""
 
 
 @dataclass(frozen=True, slots=True)
 class DigitalWiring:
-    """Bit numbers, 0..31; raises ValueError for one out of range or taken twice.
+    """Bit numbers, 0..31; raises ValueError for a number out of range or used twice.
 
-    Only the contactor's feedback may be inverted: an inverted safety chain or guard would read a broken wire as
+    Only the contactor's feedback may be inverted: with an inverted safety chain or guard a broken wire would read as
     closed, and an inverted request would pull the contactor in without a request.
     """
 
@@ -31,7 +32,7 @@ class DigitalWiring:
     contactor_inverted: bool = False
 
     def __post_init__(self) -> None:
-        """Look at the numbers."""
+        """Check the numbers."""
         for one in fields(self):
             value: int = getattr(self, one.name)
             if not 0 <= value <= 31:
@@ -45,27 +46,27 @@ class DigitalWiring:
         return 0xFFFF_0000 if self == USUAL_WIRING else 1 << self.request
 
     def from_drive(self, word: int) -> int:
-        """Return the drive's input word as the program knows it."""
+        """Return the drive's input word in the program's arrangement."""
         if self == USUAL_WIRING:
             return word
         found = (word >> self.safety_chain & 1) * SAFETY_CHAIN | (word >> self.guard & 1) * GUARD
         return found | ((word >> self.contactor & 1) ^ self.contactor_inverted) * CONTACTOR
 
     def to_drive(self, outputs: int) -> int:
-        """Return the drive's output word for one of the program's."""
+        """Return the drive's output word for an output word of the program."""
         if self == USUAL_WIRING:
             return outputs
         return int(bool(outputs & REQUEST)) << self.request
 
     def inputs_shown(self, inputs: int) -> int:
-        """Return what a simulated drive shows for its contacts, in the program's arrangement."""
+        """Return a simulated drive's input word for ``inputs`` in the program's arrangement."""
         if self == USUAL_WIRING:
             return inputs
         found = bool(inputs & SAFETY_CHAIN) << self.safety_chain | bool(inputs & GUARD) << self.guard
         return found | (bool(inputs & CONTACTOR) ^ self.contactor_inverted) << self.contactor
 
     def outputs_meant(self, word: int) -> int:
-        """Return what a simulated drive's output word switches, in the program's arrangement."""
+        """Return a simulated drive's output word in the program's arrangement."""
         if self == USUAL_WIRING:
             return word
         return (word >> self.request & 1) * REQUEST

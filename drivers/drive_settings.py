@@ -1,8 +1,8 @@
-"""Which objects of a drive an axis needs, with which values, and what becomes of those that its drive lacks.
+"""The objects and values that an axis needs in its drive, and the treatment of objects that the drive lacks.
 
-Pure: from the axis' configuration and the objects that are absent follow the writes, what is done without (and what is
-lost by that) and what is refused. Connecting (drivers.servo_setup), a look at a data sheet (drivers.canopen.data_sheet)
-and lists of a drive's parameters all ask here.
+Pure functions. From the axis' configuration and the absent objects they derive the writes, the objects that are
+dispensable (and the loss without each), and the refusals. Connecting (drivers.servo_setup), the check of a data sheet
+(drivers.canopen.data_sheet) and lists of a drive's parameters all use this module.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from drivers.canopen.pdo import PdoMap
 from drivers.drives.drive_model import Key, Substitute
 
 ABORT_CONNECTION_QUICK_STOP: Final = 3     # 0x6007: heartbeat lost -> quick stop
-NO_STATE_CHANGE: Final = 1                 # 0x1029:01: a communication error leaves the NMT state alone
+NO_STATE_CHANGE: Final = 1                 # 0x1029:01: a communication error leaves the NMT state as it is
 STATUS_INHIBIT_100_US: Final = 50          # 0x1801:03: 5 ms between two statuswords sent by themselves [A]
 RATED_TORQUE_SHARE: Final = 0.02
-"""By so much 0x6076 may differ from the rig file: it is entered rounded, from a nameplate [A]."""
+"""Greatest relative difference of 0x6076 from the rig file: it is entered rounded, from a nameplate [A]."""
 
 _DEADLINE: Final = (o.RPDO_COMMUNICATION, 5)
 _WATCH: Final = (o.CONSUMER_HEARTBEAT, 1)
@@ -48,17 +48,17 @@ LOST: Final[Mapping[Key, str]] = {
     (o.HOME_OFFSET, 0): "the home switch is at position 0",
     (o.RATED_TORQUE, 0): "the drive does not say its rated torque: the rig file's is believed",
 }
-"""Objects that a profile may call missing, and what is lost without them; "" = nothing. Any other is refused, but for
-those that ``_Plan`` knows something to take the place of."""
+"""Objects that a profile may call missing, and the loss without each; "" = nothing. Any other missing object is
+refused, unless ``_Planner`` has a replacement for it."""
 
 
 USED: Final = frozenset({*LOST, _DEADLINE, (o.MAX_TORQUE, 0)})
-"""Objects that would be used if they were there, and without which some axis can be."""
+"""Objects that are used if present; some axes can do without them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One write; ``mask``: the bits that have to read back. ``per_mille_of``: see
+    """One write; only bits of ``mask`` have to read back. ``per_mille_of``: see
     drivers.drives.drive_model.Substitute."""
 
     index: int
@@ -70,13 +70,13 @@ class Setting:
 
     @property
     def key(self) -> Key:
-        """Its address."""
+        """Address of the object."""
         return self.index, self.sub
 
 
 @dataclass(frozen=True, slots=True)
 class PdoSetting:
-    """One PDO; ``mapped`` None: it is off."""
+    """One PDO; it is off where ``mapped`` is None."""
 
     communication: int
     mapping: int
@@ -87,38 +87,38 @@ class PdoSetting:
 
 @dataclass(slots=True)
 class DrivePlan:
-    """What connecting an axis writes, does without, and refuses."""
+    """The writes of connecting an axis, the missing objects, and the refusals."""
 
     settings: list[Setting] = field(default_factory=list[Setting])
     pdos: list[PdoSetting] = field(default_factory=list[PdoSetting])
     homing: list[Setting] = field(default_factory=list[Setting])
     watched: bool = True
-    """0x1016 is armed."""
+    """Whether 0x1016 is armed."""
     rated_torque: bool = True
-    """0x6076 is read and compared."""
+    """Whether 0x6076 is read and compared."""
     without: list[str] = field(default_factory=list[str])
-    """What is missing, and what is lost by that, a sentence each."""
+    """Each missing object, and the loss without it, in one sentence."""
     refused: list[str] = field(default_factory=list[str])
 
 
 def mode_of(config: AxisConfig) -> OperationMode:
-    """Return the mode in which an axis works."""
+    """Return the mode of operation of an axis."""
     return OperationMode.PROFILE_POSITION if config.mode == "position" else OperationMode.PROFILE_VELOCITY
 
 
 def plan(config: AxisConfig, absent: Collection[Key] = ()) -> DrivePlan:
-    """Return the plan for an axis; ``absent``: objects that the drive lacks beside those its profile says."""
+    """Return the plan for an axis; ``absent``: objects that the drive lacks besides those that its profile lists."""
     return _Planner(config, frozenset(absent)).plan()
 
 
 def tried(config: AxisConfig) -> tuple[Key, ...]:
-    """Return the objects that are to be asked for before the plan is made, as some drives of the make lack them."""
+    """Return the objects to ask the drive for before the plan is made: some drives of the make lack them."""
     silent = (o.SYNC_PERIOD, 0), (o.ERROR_BEHAVIOUR, 1)
     return tuple(sorted(key for key in config.drive.optional if key not in silent))
 
 
 class _Planner:
-    """One axis' plan in the making."""
+    """The plan of one axis while it is made."""
 
     def __init__(self, config: AxisConfig, absent: frozenset[Key]) -> None:
         self.config = config
@@ -127,12 +127,12 @@ class _Planner:
         self.made = DrivePlan()
 
     def lacks(self, *key: int) -> bool:
-        """Return whether the drive has no such object."""
+        """Return whether the drive lacks an object."""
         index, sub = key
         return (index, sub) in self.absent or self.profile.lacks((index, sub))
 
     def plan(self) -> DrivePlan:
-        """Make it."""
+        """Return the finished plan."""
         made, config = self.made, self.config
         for parameter in self._parameters():
             made.settings.append(parameter)
@@ -142,7 +142,7 @@ class _Planner:
             before = len(made.without), len(made.refused)
             for index, sub, value in _homing(config):
                 self._take(made.homing, index, sub, value)
-            if config.mode != "position":        # it is not homed in the course of a run
+            if config.mode != "position":        # no homing during a run
                 del made.without[before[0]:], made.refused[before[1]:]
         self._watches()
         self._torque()
@@ -157,7 +157,7 @@ class _Planner:
                 yield Setting(*one.key, round(value), one.type, None, name.replace("_", " "))
 
     def _take(self, settings: list[Setting], index: int, sub: int, value: int) -> None:
-        """Note one write, what stands in for it, or that it cannot be."""
+        """Add one write or its substitute, or note the refusal."""
         key = index, sub
         if not self.lacks(index, sub):
             settings.append(Setting(index, sub, self.profile.options.get(key, value)))
@@ -183,7 +183,7 @@ class _Planner:
             self.made.refused.append(f"{absent}; {why}")
 
     def _watches(self) -> None:
-        """Without the PC the drive has to stop: its heartbeat is watched, or else its setpoints are."""
+        """Make the drive stop without the PC: it watches the PC's heartbeat, or else the arrival of its setpoints."""
         deadline = self.config.rpdo_deadline_s > 0.0 and not self.lacks(*_DEADLINE)
         self.made.watched = not self.lacks(*_WATCH)
         if not self.made.watched and not deadline:
@@ -197,7 +197,7 @@ class _Planner:
                                   "its heartbeat is watched by 0x1016")
 
     def _torque(self) -> None:
-        """The press' torque limit caps the force whatever the load cell says: without it that axis is refused."""
+        """Refuse an axis without the press' torque limit, which caps the force whatever the load cell shows."""
         key = o.MAX_TORQUE, 0
         if self.lacks(o.RATED_TORQUE, 0):
             self.made.rated_torque = False
@@ -260,12 +260,12 @@ def _settings(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
         threshold = config.velocity_increments * config.drive.units.threshold
         yield o.VELOCITY_THRESHOLD, 0, round(config.speed_zero * threshold)
         yield o.VELOCITY_THRESHOLD_TIME, 0, 0
-        # 65 bits in 5 ms: a statusword that chatters takes 3 % of a 500 kbit/s bus.
+        # 65 bits in 5 ms: a statusword that changes all the time takes 3 % of a 500 kbit/s bus.
         yield o.TPDO_COMMUNICATION + 1, 3, STATUS_INHIBIT_100_US
     if config.digital_io:
         yield o.DIGITAL_OUTPUTS, 2, config.io.mask
         yield o.DIGITAL_OUTPUTS, 1, 0
-        # An event comes once, and a lost frame is not repeated: the timer shows that the inputs still arrive.
+        # An event is sent once, and a lost frame is not repeated: frames by timer show that the inputs still arrive.
         yield o.TPDO_COMMUNICATION + 1, 5, round(config.inputs_period_s * 1000)
     if config.rpdo_deadline_s:
         yield o.RPDO_COMMUNICATION, 5, round(config.rpdo_deadline_s * 1000)

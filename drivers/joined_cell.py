@@ -1,7 +1,7 @@
 """A load cell of several transmitters: each measures some of its forces, on a line and at an address of its own.
 
-What belongs together is read one after the other. How far apart that was, the skew, the time stamps of the readings
-say; a reading of the cell is whole only where its parts lie within a limit.
+The transmitters are read one after the other. The time stamps of the readings give the time between them, the skew. A
+reading of the cell is whole only if its parts lie within a limit.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from drivers.profiles.model import DeviceProfile
 from drivers.sensor import Sensor
 
 PERIOD_S: Final = 0.01
-"""Every transmitter is asked this often, or as often as its line carries: as one alone is in the fastest scans [A]."""
+"""Polling period of every transmitter, or what its line allows: that of one transmitter in the fastest scans [A]."""
 STILL_N: Final = 5.0
-"""A transmitter that shows less may show the same for long: it is not taken for one that repeats itself [A]."""
+"""A transmitter below this force may show the same value for long: this does not count as a repeated reading [A]."""
 
 _STAMP: Final = attrgetter("stamp_s")
 
 
 class Transmitter(Sensor):
-    """One of a cell's transmitters, under the name that people know it by.
+    """One of a cell's transmitters; ``title`` is its name for people.
 
     It is read every ``PERIOD_S`` whatever the scan's rate, so that the parts of a reading lie close together.
     """
@@ -38,14 +38,14 @@ class Transmitter(Sensor):
         channels: Mapping[str, str],
         parameters: Mapping[str, float],
     ) -> None:
-        """Put it on ``link``; ``channels``: the cell's names of the profile's channels, where they differ.
+        """Put it on ``link``; ``channels``: the cell's names of the profile's channels, if they differ.
 
         Raises ProfileError and ValueError as a sensor does.
         """
         super().__init__(profile, unit_id, link, (), parameters)
         self.title = title
         self.forces: tuple[str, ...] = tuple(channels.get(name, name) for name in self.channels)
-        """What it measures of the cell, in the order of its values."""
+        """Channels of the cell that it measures, in the order of its values."""
         self.cell: JoinedCell | None = None
         poll = self._poll
         poll.period_s, poll.slack_s = PERIOD_S, 0.0
@@ -59,25 +59,25 @@ class Transmitter(Sensor):
             self.cell.join()
 
     def suspend(self) -> None:
-        """Distrust the last reading, and that of the cell."""
+        """Mark the last reading, and that of the cell, as invalid."""
         self.valid = False
         if self.cell is not None:
             self.cell.valid = False
 
 
 class JoinedCell:
-    """Reads a cell's channels from its transmitters; to its machine it is what a sensor with all of them is.
+    """Reads a cell's channels from its transmitters; its machine uses it like one sensor with all channels.
 
-    ``values`` and ``raw`` (without tare) are in the order of ``channels``, NaN for one that no transmitter has.
-    ``valid``: every transmitter's last reading is. ``stamp_s`` is when the oldest part of the last whole reading
-    arrived: it stays where parts lie farther apart than ``most_skew_s``. ``changed_s`` is when the transmitter that
-    has repeated itself for longest last did not.
+    ``values`` and ``raw`` (without tare) are in the order of ``channels``, NaN for a channel that no transmitter has.
+    ``valid``: the last reading of every transmitter is valid. ``stamp_s`` is the arrival of the oldest part of the last
+    whole reading: it stays while parts lie farther apart than ``most_skew_s``. ``changed_s`` is the earliest of the
+    transmitters' last changes: the time since when one of them has repeated itself.
     """
 
     def __init__(self, transmitters: Sequence[Transmitter], channels: Sequence[str], most_skew_s: float) -> None:
-        """Join them; the parts of a whole reading arrived within ``most_skew_s``.
+        """Join the transmitters; the parts of a whole reading arrived within ``most_skew_s``.
 
-        Raises ValueError where there is none, or where two measure the same.
+        Raises ValueError for no transmitters, or for two that measure the same channel.
         """
         if not transmitters:
             raise ValueError("a load cell has one transmitter at least")
@@ -102,27 +102,27 @@ class JoinedCell:
         self.stamp_s: float = -inf
         self.changed_s: float = -inf
         self.skew_s: float = inf
-        """Between the oldest and the newest part as they are now, s."""
+        """Time between the oldest and the newest part now, s."""
         self.greatest_skew_s: float = 0.0
-        """Of a whole reading, since the start, s."""
+        """Greatest skew of a whole reading since the start, s."""
         self.apart = 0
-        """How often a part came while another was older than the skew allows."""
+        """Number of parts that came while another was older than the skew allows."""
         for one in self.transmitters:
             one.cell = self
 
     @property
     def ready(self) -> bool:
-        """Every transmitter is set up and being read."""
+        """Whether every transmitter is set up and being read."""
         return all(one.ready for one in self.transmitters)
 
     @property
     def links(self) -> tuple[ModbusLink, ...]:
-        """The lines that it is on, each once."""
+        """The cell's lines, each once."""
         return tuple(dict.fromkeys(one.link for one in self.transmitters))
 
     @property
     def usual_skew_s(self) -> float:
-        """Skew at the usual times: those on one line are read in turn, those on two within a period, s."""
+        """Usual skew, s: transmitters on one line are read in turn, those on two lines within a period."""
         rounds: list[float] = []
         for link in self.links:
             times = [one.exchange_s for one in self.transmitters if one.link is link]
@@ -131,14 +131,14 @@ class JoinedCell:
         return max(rounds) + between_s
 
     def set_tare(self, values: tuple[float, ...]) -> None:
-        """Take ``values``, one a channel, off every reading from now on. Raises ValueError for another number."""
+        """Subtract ``values``, one a channel, from every reading from now on. Raises ValueError for another number."""
         if len(values) != len(self.channels):
             raise ValueError(f"no tare of {len(values)} values can be taken from {len(self.channels)} channels")
         self.tare = values
         self.values = [raw - zero for raw, zero in zip(self.raw, values, strict=True)]
 
     def join(self) -> None:
-        """Take in what a transmitter has just read: it makes a whole reading where the others are near enough."""
+        """Use a transmitter's new reading: it completes a whole reading if the others are near enough in time."""
         oldest, newest, changed, valid = inf, -inf, inf, True
         for one in self.transmitters:
             stamp = one.stamp_s
@@ -164,10 +164,11 @@ class JoinedCell:
         self.stamp_s, self.changed_s = oldest, changed
 
     def blame(self, now: float, limit_s: float) -> str:
-        """Return which transmitter keeps the cell from being read at ``now`` s, and why; "" = none does.
+        """Return the transmitter that keeps the cell from being read at ``now`` s, and the reason; "" = no transmitter
+        does.
 
-        ``limit_s``: how old a reading may be. Of those on one line that are too old the oldest holds the line up: it
-        alone is named, with those that are known not to answer.
+        ``limit_s``: greatest age of a reading. Where several readings of one line are older, the transmitter with the
+        oldest blocks the line. It alone is named, besides transmitters that are known not to answer.
         """
         found: list[str] = []
         oldest = {one.link: one for one in sorted(self.transmitters, key=_STAMP, reverse=True)}
@@ -196,17 +197,17 @@ class JoinedCell:
 
 
 FROZEN_SAID_S: Final = 0.3
-"""From then on a transmitter that repeats itself is named, s [A]: below ``frozen_cell`` of a rig file."""
+"""A transmitter that has repeated itself this long is named, s [A]: below ``frozen_cell`` of a rig file."""
 
 LoadCell: TypeAlias = Sensor | JoinedCell
 """A load cell: one transmitter with all channels, or several."""
 
 
 def links_of(cell: LoadCell) -> tuple[ModbusLink, ...]:
-    """Return the lines that a load cell is on, each once."""
+    """Return the lines of a load cell, each once."""
     return cell.links if isinstance(cell, JoinedCell) else (cell.link,)
 
 
 def _bears(one: Transmitter) -> bool:
-    """Return whether it shows a force that cannot stand still while a wheel turns under it."""
+    """Return whether a transmitter shows a force that cannot stay constant while a wheel turns under it."""
     return any(not -STILL_N < value < STILL_N for value in one.raw)

@@ -1,9 +1,9 @@
-"""What a driver needs of a wire: frames or bytes in and out, with time stamps.
+"""Interfaces between drivers and wires: frames or bytes in and out, with time stamps.
 
 A log or a screen that shows the frames of a port watches the port itself; any number may.
 
-A port never blocks. Real ports live in ``drivers.transports``; simulated ones in ``sim``. Times are seconds on the
-caller's monotonic clock (simulated or real); the caller passes ``now`` and no port reads a clock for it.
+A port never blocks. Real ports are in ``drivers.transports``, simulated ones in ``sim``. Times are seconds on the
+caller's monotonic clock (simulated or real); the caller passes ``now``, and no port reads a clock for it.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class CanPort(Protocol):
     def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
         """Queue the frames of one bus cycle, identifiers and data beside each other, in this order; raises BusLost.
 
-        The very same bytes again in a place say that nothing has changed there: a port may make use of that.
+        A payload that is the same object as last time is unchanged: a port may make use of that.
         """
         ...
 
@@ -57,19 +57,19 @@ class CanPort(Protocol):
 
 @runtime_checkable
 class TellingCanPort(CanPort, Protocol):
-    """An adapter that passes error frames on, and may know its own state."""
+    """An adapter that reports error frames, and may know its own state."""
 
     errors: dict[str, int]
-    """Error frames since it was opened, by what they say; one that says two things counts for both."""
+    """Error frames since it was opened, by kind; a frame of two kinds counts for both."""
 
     @property
     def state(self) -> str:
-        """Active, passive or error; "" where it is not known."""
+        """Adapter state: active, passive or error; "" if it is not known."""
         ...
 
 
 def add_watcher(watchers: list[Watcher], watcher: Watcher) -> Unwatch:
-    """Add to a port's watchers; return how to take this one off again."""
+    """Add to a port's watchers; return the function that removes this one."""
     watchers.append(watcher)
     return partial(_drop, watchers, watcher)
 
@@ -80,7 +80,7 @@ def _drop(watchers: list[Watcher], watcher: Watcher) -> None:
 
 
 class FrameByFrame(ABC):
-    """A port that sends the frames of a cycle one by one; who implements it tells the ``watchers``."""
+    """A port that sends the frames of a cycle one by one; subclasses report to the ``watchers``."""
 
     def __init__(self) -> None:
         """Begin without watchers."""
@@ -100,12 +100,12 @@ class FrameByFrame(ABC):
         return add_watcher(self.watchers, watcher)
 
     def tell_sent(self, can_id: int, data: bytes, now: float) -> None:
-        """Tell the watchers of a frame that ``send`` handed over."""
+        """Report a frame that ``send`` handed over to the watchers."""
         for watcher in self.watchers:
             watcher(now, can_id, data, True)
 
     def tell_received(self, frames: list[CanFrame]) -> None:
-        """Tell the watchers of what ``receive`` returns."""
+        """Report the frames that ``receive`` returns to the watchers."""
         for watcher in self.watchers:
             for t, can_id, data in frames:
                 watcher(t, can_id, data, False)
@@ -137,7 +137,7 @@ class RenewablePort(LinePort, Protocol):
 
 
 class WatchedLine:
-    """What lines have in common: the watchers of their bytes, and advice for a slow adapter (``remedy``)."""
+    """Common base of lines: the watchers of their bytes, and advice for a slow adapter (``remedy``)."""
 
     remedy = ""
 
@@ -150,15 +150,15 @@ class WatchedLine:
         return add_watcher(self.watchers, watcher)
 
     def tell(self, t: float, data: bytes, sent: bool) -> None:
-        """Tell the watchers of bytes that were handed over or fetched at ``t`` s."""
+        """Report bytes that were handed over or fetched at ``t`` s to the watchers."""
         for watcher in self.watchers:
             watcher(t, data, sent)
 
 
 @runtime_checkable
 class ForeseeingPort(LinePort, Protocol):
-    """A simulated line, which knows what a real one cannot: when bytes that are on their way will be there."""
+    """A simulated line. Unlike a real line it knows when bytes that are on their way will arrive."""
 
     arrives_s: float
-    """Arrival of the next bytes not read yet, s: before it there is nothing to read. Infinity when none are on their
+    """Arrival of the next unread bytes, s: there is nothing to read before it. Infinity when none are on their
     way, -infinity when the line is gone."""

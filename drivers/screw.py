@@ -9,15 +9,15 @@ from typing import Annotated
 
 @dataclass(frozen=True, slots=True)
 class Screw:
-    """What a lead screw makes of torque, between the least and the most of its friction; raises ValueError if wrong.
+    """A lead screw's conversion of torque to force, with bounds of its friction; raises ValueError if wrong.
 
-    Pressing with a force F takes K (F + spring) / efficiency + drag, with K = lead / 2 pi; where the force drives the
-    screw back, friction is on the other side: K (F + spring) (2 - 1 / efficiency) - drag (machine elements: a screw's
+    Pressing with a force F takes K (F + spring) / efficiency + drag, with K = lead / 2 pi. If the force drives the
+    screw back, friction acts the other way: K (F + spring) (2 - 1 / efficiency) - drag (machine elements: a screw's
     efficiency as a drive and driven back). The ranges hold for every temperature and lubrication, and for the error of
     the drive's torque reading: they are measured against the load cell when the machine is put into operation.
     """
 
-    lead_mm: Annotated[float, "mm"]                  # travel in a turn
+    lead_mm: Annotated[float, "mm"]                  # travel per turn
     efficiency_least: Annotated[float, "1"]
     efficiency_most: Annotated[float, "1"]
     drag_least_nm: Annotated[float, "N.m"]           # of nut and seals, whatever the force
@@ -42,27 +42,27 @@ class Screw:
         return 1e-3 * self.lead_mm / (2.0 * pi)
 
     def torque_nm(self, force_n: float) -> float:
-        """Return the torque that brings about a force (N, at least 0) whatever the friction is, N m."""
+        """Return the torque that reaches a force (N, at least 0) at any friction within the bounds, N m."""
         return self._m * (force_n + self.spring_n) / self.efficiency_least + self.drag_most_nm
 
     def pushed_n(self, torque_nm: float) -> float:
-        """Return the greatest force that a torque can bring about by pressing, N; at least 0."""
+        """Return the greatest force that a torque can reach by pressing, N; at least 0."""
         return max(0.0, (torque_nm - self.drag_least_nm) * self.efficiency_most / self._m - self.spring_n)
 
     def reached_n(self, torque_nm: float) -> float:
-        """Return the force that a torque brings about whatever the friction is, N; at least 0."""
+        """Return the force that a torque reaches at any friction within the bounds, N; at least 0."""
         return max(0.0, (torque_nm - self.drag_most_nm) * self.efficiency_least / self._m - self.spring_n)
 
     def held_n(self, torque_nm: float) -> float:
-        """Return the greatest force under which a press can stand, or be driven back, with a torque shown, N."""
+        """Return the greatest force on a press that stands or is driven back, at a torque that the drive shows, N."""
         return max(0.0, (torque_nm + self.drag_most_nm) * self.held_n_per_nm - self.spring_n)
 
     @property
     def reached_n_per_nm(self) -> float:
-        """Least force that a torque brings about by pressing, N per N m beyond ``drag_most_nm``."""
+        """Least force that a torque reaches by pressing, N per N m beyond ``drag_most_nm``."""
         return self.efficiency_least / self._m
 
     @property
     def held_n_per_nm(self) -> float:
-        """Greatest force that a torque bears, being driven back, N per N m and ``drag_most_nm`` more."""
+        """Greatest force that a torque holds when driven back, N per N m, with ``drag_most_nm`` added to the torque."""
         return 1.0 / (self._m * (2.0 - 1.0 / self.efficiency_least))

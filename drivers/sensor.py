@@ -1,4 +1,4 @@
-"""A Modbus sensor of any make: what it measures, in which registers and with which status bits, its profile says."""
+"""A Modbus sensor of any make: its profile states its channels, registers and status bits."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from drivers.modbus import Device, ModbusLink, Request
 from drivers.profiles.model import DeviceProfile, Signal
 
 STALE_PERIODS: Final = 3.0
-"""Readings of so many poll periods may be missing before the last one is too old [A]."""
+"""Number of poll periods without a reading before the last one is stale [A]."""
 STALE_LEAST_S: Final = 0.5
-"""No reading is too old before this, however often the sensor is asked [A]."""
+"""Least age at which a reading is stale, s, however often the sensor is asked [A]."""
 _NO_PARAMETERS: Final[dict[str, float]] = {}
 
 
 class Sensor(Device):
     """Reads channels, each scaled to its unit.
 
-    ``values`` are the channels in the order of ``channels``: what was read less ``tare``, NaN before the first reading
-    and always for a channel that the sensor does not have. ``raw`` and ``counts`` are the same without tare, and as
-    bare numbers of the registers (0 for a missing channel). ``valid``: no status bit speaks against the last reading
-    and every channel is within its range. ``stamp_s`` is when it arrived, ``changed_s`` when a count last differed from
-    the one before (-inf = never). Parameters of the profile are written, and read back, whenever it is connected.
+    ``values`` are the readings less ``tare`` in the order of ``channels``, NaN before the first reading and always for
+    a channel that the sensor does not have. ``raw`` are the same without tare, ``counts`` the bare numbers of the
+    registers (0 for a missing channel). ``valid``: the last reading has no invalid status bit and every channel is
+    within its range. ``stamp_s`` is its arrival; ``changed_s`` is the time at which a count last differed from the one
+    before (-inf = never). The profile's parameters are written, and read back, at every connection.
     """
 
     def __init__(
@@ -36,9 +36,9 @@ class Sensor(Device):
     ) -> None:
         """Put the sensor on ``link``.
 
-        ``channels``: the wanted ones in the order wanted, all of the profile by default. ``parameters``: values of the
-        profile's ``writes`` by name; one that the profile does not have is left out. Raises ProfileError for a profile
-        of no sensor and ValueError for a parameter that is missing or out of its range.
+        ``channels``: the wanted channels in this order, by default all of the profile. ``parameters``: values of the
+        profile's ``writes`` by name; names that the profile does not have are ignored. Raises ProfileError for the
+        profile of another kind of device and ValueError for a parameter that is missing or out of its range.
         """
         profile.expect_sensor()
         super().__init__(profile, unit_id, link)
@@ -55,7 +55,7 @@ class Sensor(Device):
         self._invalid_bits = profile.invalid_bits
         self._poll = self._polls[0]
         self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * block.period_s)
-        """A reading older than this is stale."""
+        """Age above which a reading is stale, s."""
         size = len(self.channels)
         self.counts: list[float] = [0.0] * size
         self.raw: list[float] = [nan] * size
@@ -81,7 +81,7 @@ class Sensor(Device):
             self.link.retime(self._poll, period_s)
 
     def set_tare(self, values: tuple[float, ...]) -> None:
-        """Take ``values``, one a channel, off every reading from now on: usually the mean of unloaded ``raw`` ones.
+        """Subtract ``values``, one a channel, from every later reading: usually the mean of unloaded ``raw`` readings.
 
         Raises ValueError for another number of values, and for a sensor whose profile allows no tare.
         """
@@ -91,18 +91,18 @@ class Sensor(Device):
         self.values = [raw - zero for raw, zero in zip(self.raw, values, strict=True)]
 
     def fresh(self, now: float) -> bool:
-        """Return whether the last reading is valid and, at ``now`` s, not too old."""
+        """Return whether the last reading is valid and, at ``now`` s, not stale."""
         return self.valid and now - self.stamp_s <= self.stale_s
 
     def received(self, request: Request, data: bytes, t: float) -> None:
-        """Take a good reply; the way of the usual reading is short."""
+        """Process a good reply; the usual reading takes a short path."""
         if request is self._poll and self.ready:
             self.take(0, data, t)
         else:
             Device.received(self, request, data, t)
 
     def take(self, block: int, data: bytes, t: float) -> None:
-        """Update the readings from the registers of the first block; others are not looked at."""
+        """Update the readings from the registers of the first block; other blocks are ignored."""
         if block:
             return
         found: tuple[Any, ...] = self._unpack(data)  # whole numbers, and floats of f32
@@ -126,17 +126,17 @@ class Sensor(Device):
         self.stamp_s = t
 
     def suspend(self) -> None:
-        """Distrust the last reading."""
+        """Mark the last reading as invalid."""
         self.valid = False
 
     def resume(self) -> None:
-        """Leave the last reading distrusted until the next comes."""
+        """Leave the last reading invalid until the next one comes."""
 
 
 def _row(
     number: int, place: int, signal: Signal, saturated: float | None
 ) -> tuple[int, int, int, float, float, float]:
-    """Return a channel's number, place in the block, sign bit's mask, scale, and the bounds its values lie between."""
+    """Return a channel's number, place in the block, sign bit's mask, scale, and the bounds of its values."""
     sign = 1 << signal.sign_bit if signal.sign_bit is not None else 0
     if saturated is None:
         low, high = nextafter(signal.least, -inf), nextafter(signal.greatest, inf)
@@ -147,7 +147,7 @@ def _row(
 
 
 def _parameter(profile: DeviceProfile, register: Signal, given: float | None) -> float:
-    """Return what a register is to hold: the value given, or the profile's."""
+    """Return the value for a register: the given value, or the profile's."""
     value = register.default if given is None else given
     bounds = f"{register.least:g} to {register.greatest:g}"
     if value is None:

@@ -1,4 +1,4 @@
-"""A CiA 402 servo drive as the rig sees it: its readings and commands, and the conversations it is connected by."""
+"""A CiA 402 servo drive for the rig: its readings and commands, and the conversations that connect it."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from drivers.servo_axis import ServoAxis
 
 
 class ServoDrive(ServoAxis):
-    """One drive, with the conversations that ``CanMaster.start`` runs."""
+    """One drive, with its conversations for ``CanMaster.start``."""
 
     __slots__ = ()
 
     def connect(self, pc_node_id: int = 127) -> Conversation:
-        """Return the conversation that resets, checks, configures and starts the drive, commands zero."""
+        """Return the conversation that resets, checks, configures and starts the drive, with all commands zero."""
         return servo_setup.connect(self, pc_node_id)
 
     def home(self) -> Conversation:
-        """Return the conversation that finds the axis' reference; it enables the drive for that."""
+        """Return the conversation that finds the axis' reference; it enables the drive for this."""
         return servo_service.home(self)
 
     def diagnose(self) -> Conversation:

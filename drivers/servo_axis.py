@@ -24,8 +24,8 @@ _IO_UNPACK: Final = struct.Struct("<I").unpack
 _IO_SIZE: Final = 4
 _STATUS_UNPACK: Final = struct.Struct("<H").unpack
 _STATUS_SIZE: Final = 2
-_MAX_EMERGENCIES: Final = 64     # kept for the journal between two calls of take_emergencies
-OUTPUTS_AGAIN_S: Final = 0.1       # RPDO2 goes again while its effect does not show: a frame may be lost [A]
+_MAX_EMERGENCIES: Final = 64     # kept between two calls of take_emergencies, for the journal
+OUTPUTS_AGAIN_S: Final = 0.1       # RPDO2 is sent again until its effect shows: a frame may be lost [A]
 _HOMING_SCANS: Final = 3         # until the statusword surely answers the start bit: sent, sampled, reported
 _HOMED: Final = cia402.HOMING_ATTAINED | cia402.TARGET_REACHED
 
@@ -33,22 +33,22 @@ _HOMED: Final = cia402.HOMING_ATTAINED | cia402.TARGET_REACHED
 class ServoAxis(AxisCommand):
     """One drive: readings as of the last frames, commands for the next scan.
 
-    Units are ``config.unit`` for ``target`` and ``actual`` (of TPDO1's field: a speed, or with position
-    feedback rad, m, mm, deg) and N m. ``stamp_s`` is the arrival of the last TPDO1, -inf before the first;
-    the user of a reading decides how old it may be. ``actual`` and ``torque_nm`` are NaN before they were
-    ever read.
+    Torque is in N m. ``target`` and ``actual`` have the unit ``config.unit``: a speed, or with position feedback a
+    position in rad, m, mm, deg (``actual`` is TPDO1's field). ``stamp_s`` is the arrival of the last TPDO1, -inf before
+    the first; the user of a reading decides how old it may be. ``actual`` and ``torque_nm`` are NaN before the first
+    reading.
 
-    ``online``: configured, OPERATIONAL and its heartbeat present. ``lost``: its heartbeat stopped, or it
-    booted while in use (``rebooted``); stays until the next connect, and until then it is sent a quick stop
-    (nothing, once rebooted). ``refused`` says why connect or home failed. ``emergency`` is the last EMCY that
-    was neither reset by the device nor acknowledged. ``parameters`` holds what was read back of the device,
-    by (index, sub-index). ``plan`` says since connect what the drive is done without, and what is lost by that
+    ``online``: configured, OPERATIONAL and with a heartbeat. ``lost``: the heartbeat stopped, or the drive
+    booted while in use (``rebooted``). This stays until the next connect, and until then the drive is sent a quick stop
+    (nothing, once rebooted). ``refused`` is the reason why connect or home failed. ``emergency`` is the last EMCY that
+    was neither reset by the device nor acknowledged. ``parameters`` holds the values read back from the device,
+    by (index, sub-index). Since connect ``plan`` lists the objects that the drive lacks, and the loss by that
     (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is the
     arrival of the last TPDO2, -inf before the first. A caller that sees no effect of the outputs sets
-    ``outputs_unanswered``: they are then sent again. ``stands``: it has reported between two SYNCs that it stands now;
+    ``outputs_unanswered``: they are then sent again. ``stands``: between two SYNCs the drive reported standstill;
     the caller clears it.
 
-    The methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds`` are the master's.
+    The master calls the methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds``.
     """
 
     __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "diagnosis",
@@ -66,7 +66,7 @@ class ServoAxis(AxisCommand):
         self._forget()
 
     def _forget(self) -> None:
-        """Set everything to what is known of a drive before its first answer."""
+        """Reset everything to the state before the drive's first answer."""
         self.clear_commands()
         self.actual = math.nan
         self.torque_nm = math.nan
@@ -96,7 +96,7 @@ class ServoAxis(AxisCommand):
     def reset_fault(self) -> None:
         """Acknowledge: forget the last emergency and, in FAULT, raise bit 7 once with the next scan.
 
-        The drive then stops in SWITCH_ON_DISABLED: ENABLED counts only after another goal was set.
+        The drive then stays in SWITCH_ON_DISABLED: ENABLED counts only after another goal was set.
         """
         self.emergency = None
         self.news = True
@@ -116,7 +116,7 @@ class ServoAxis(AxisCommand):
 
     @property
     def warning(self) -> bool:
-        """Bit 7."""
+        """Bit 7: the drive reports a warning."""
         return self.statusword & cia402.WARNING != 0
 
     @property
@@ -126,13 +126,13 @@ class ServoAxis(AxisCommand):
 
     @property
     def homing_succeeded(self) -> bool:
-        """Whether, in homing mode, the reference is found and the axis stands (bits 12 and 10, not 13)."""
+        """Whether, in homing mode, the reference is found and the axis is at rest (bits 12 and 10, not 13)."""
         return self.statusword & (_HOMED | cia402.HOMING_ERROR) == _HOMED
 
-    # --- what the master calls ------------------------------------------------------------------------------
+    # --- methods for the master -----------------------------------------------------------------------------
 
     def on_tpdo1(self, t: float, data: bytes) -> None:
-        """Take a TPDO1 that arrived at ``t``; one of a wrong length is counted and ignored."""
+        """Decode a TPDO1 that arrived at ``t``; one of a wrong length is counted and ignored."""
         if not self.connected:
             return
         if len(data) != _TPDO1_SIZE:
@@ -151,7 +151,7 @@ class ServoAxis(AxisCommand):
         self.tpdo1_data = data
 
     def on_tpdo2(self, t: float, data: bytes) -> None:
-        """Take the digital inputs, or the statusword that has changed, that arrived at ``t``."""
+        """Decode a TPDO2 that arrived at ``t``: the digital inputs, or a changed statusword."""
         if self.config.standstill_by_pdo:
             self._on_status(t, data)
         elif len(data) != _IO_SIZE:
@@ -165,7 +165,7 @@ class ServoAxis(AxisCommand):
                 self.news = True
 
     def _on_status(self, t: float, data: bytes) -> None:
-        """Take a statusword that came by itself: that the axis stands is known now, not with the next SYNC."""
+        """Process a statusword sent by event: it reports standstill now, not with the next SYNC."""
         if len(data) != _STATUS_SIZE:
             self.malformed += 1
         elif self.connected:
@@ -182,7 +182,7 @@ class ServoAxis(AxisCommand):
                 self.stands = self.news = True
 
     def on_heartbeat(self, t: float, nmt_state: int) -> None:
-        """Take a heartbeat or boot-up message that arrived at ``t``."""
+        """Record a heartbeat or boot-up message that arrived at ``t``."""
         self.nmt_state = nmt_state
         if nmt_state == o.NmtState.BOOT_UP:
             self.booted = True
@@ -195,7 +195,7 @@ class ServoAxis(AxisCommand):
         self.online = self.connected and not self.lost and nmt_state == o.NmtState.OPERATIONAL
 
     def on_emergency(self, t: float, data: bytes) -> None:
-        """Take an EMCY message that arrived at ``t``."""
+        """Record an EMCY message that arrived at ``t``."""
         emergency = decode_emergency(data, t)
         self.emergency = None if emergency.is_reset else emergency
         self.news = True
@@ -205,7 +205,7 @@ class ServoAxis(AxisCommand):
             self.emergencies_dropped += 1
 
     def check_heartbeat(self, now: float) -> None:
-        """Call the drive lost when its heartbeat is overdue."""
+        """Mark the drive as lost when its heartbeat is overdue."""
         if self.heartbeat.expired(now):
             self.lost = True
             self.online = False
@@ -213,7 +213,7 @@ class ServoAxis(AxisCommand):
             self.dirty = self.news = True
 
     def emit_outputs(self, now: float) -> bytes | None:
-        """Return RPDO2 when the outputs have changed, or are unanswered after a while; else None.
+        """Return RPDO2 if the outputs have changed, or show no effect after a while; else None.
 
         A lost drive is sent zeros.
         """
@@ -227,7 +227,7 @@ class ServoAxis(AxisCommand):
         return _IO_PACK(self.config.io.to_drive(wanted))
 
     def holds(self, condition: AwaitedCondition) -> bool:
-        """Whether a condition a conversation waits for is true."""
+        """Return whether a condition that a conversation waits for is true."""
         if condition is AwaitedCondition.BOOTED:
             return self.booted
         if condition is AwaitedCondition.OPERATIONAL:
@@ -240,14 +240,14 @@ class ServoAxis(AxisCommand):
             return True
         return self.homing_scans >= _HOMING_SCANS and (self.deviation or self.homing_succeeded)
 
-    # --- what the conversations call (servo_setup, servo_service) --------------------------------------------------
+    # --- methods for the conversations (servo_setup, servo_service) ------------------------------------------------
 
     def begin_connect(self) -> None:
         """Forget the device: nothing is commanded until finish_connect."""
         self._forget()
 
     def finish_connect(self, statusword: int, raw: int, inputs: int) -> None:
-        """Take over a device that is configured and OPERATIONAL; ``raw`` is TPDO1's field in counts."""
+        """Accept a device that is configured and OPERATIONAL; ``raw`` is TPDO1's field in counts."""
         self.connected = True
         self.news = True
         self.online = self.nmt_state == o.NmtState.OPERATIONAL
@@ -259,7 +259,7 @@ class ServoAxis(AxisCommand):
         self._take_position(raw)
 
     def disconnect(self) -> None:
-        """Command nothing any more; the readings stay, and age."""
+        """Send no commands any more; the readings stay, and age."""
         self.connected = False
         self.online = False
         self.tpdo1_data = self.usual_heartbeat = b""
@@ -267,7 +267,7 @@ class ServoAxis(AxisCommand):
         self.dirty = self.news = True
 
     def finish_homing(self, raw: int) -> None:
-        """Take the position of a homed axis, counts, as reading and as target."""
+        """Use the position of a homed axis, counts, as reading and as target."""
         self.homed = True
         self._take_position(raw)
 

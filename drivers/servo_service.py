@@ -1,4 +1,4 @@
-"""Conversations with a connected drive, outside the scan: homing, fault diagnosis, the way back, the end.
+"""Conversations with a connected drive, outside the scan: homing, fault diagnosis, restart, release.
 
 Each function is a conversation for ``CanMaster.start``.
 """
@@ -15,13 +15,13 @@ from drivers.servo_axis import ServoAxis
 from drivers.servo_setup import START_TIMEOUT_S, STOP_TIMEOUT_S
 from drivers.servo_talk import SetupRefusedError, Step, apply, set_mode, write
 
-ENABLE_TIMEOUT_S = 3.0      # brake release and power stage [A]
+ENABLE_TIMEOUT_S = 3.0      # time for brake release and power stage [A]
 
 
 def home(drive: ServoAxis) -> Conversation:
-    """Find the reference of an axis with a position (mode 6), then go back to its own mode, disabled.
+    """Find the reference of a positioning axis (mode 6), then return to the axis' own mode, disabled.
 
-    Sets the goal itself (DISABLED, ENABLED, DISABLED); a caller who sets another meanwhile ends the homing.
+    It sets the goal itself (DISABLED, ENABLED, DISABLED); another goal from the caller meanwhile ends the homing.
     """
     config = drive.config
     drive.refused = None
@@ -49,7 +49,7 @@ def home(drive: ServoAxis) -> Conversation:
         if failure is None:
             drive.finish_homing(raw)
     except (RequestError, SetupRefusedError) as error:
-        drive.disconnect()                    # in an unknown mode it must not be commanded
+        drive.disconnect()                    # a drive in an unknown mode must not get commands
         failure = failure or error
     if failure is not None:
         drive.refused = str(failure)
@@ -96,7 +96,7 @@ def diagnose(drive: ServoAxis) -> Conversation:
 
 
 def ask(drive: ServoAxis) -> Conversation:
-    """Take the statusword of a drive that is connected, but sends no process data at present."""
+    """Read the statusword of a connected drive that sends no process data at present."""
     try:
         drive.take_statusword((yield from read_number(o.STATUSWORD)))
     except RequestError as error:
@@ -104,16 +104,16 @@ def ask(drive: ServoAxis) -> Conversation:
 
 
 def start_again(drive: ServoAxis) -> Conversation:
-    """Bring a connected drive back to OPERATIONAL; it is still configured, and its goal decides what it does there."""
+    """Return a connected drive to OPERATIONAL; it is still configured, and its goal decides what it does then."""
     yield SendNmt(NmtCommand.START)
     yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
 
 
 def release(drive: ServoAxis) -> Conversation:
-    """Leave a drive: power off, its watch on our heartbeat ended, PRE-OPERATIONAL, nothing commanded.
+    """Release a drive: power off, its watch on our heartbeat ended, PRE-OPERATIONAL, nothing commanded.
 
-    Without this a drive reports the end of our program as a fault. While its power is on it keeps watching,
-    and ``refused`` says so.
+    Without this a drive reports the end of our program as a fault. A drive whose power stays on keeps its watch,
+    and ``refused`` reports this.
     """
     drive.refused = None
     try:

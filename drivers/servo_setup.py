@@ -1,8 +1,8 @@
 """The conversation that connects a drive (CiA 402-2, CiA 301), for ``CanMaster.start``.
 
-Everything written is read back and kept in ``drive.parameters``. What a drive refuses while it is configured is
-collected, so that ``drive.refused`` tells all of it at once; what is done without stands in ``drive.plan``. An answer
-that does not come ends the conversation.
+Every value written is read back and kept in ``drive.parameters``. Refusals of the drive are collected, so that
+``drive.refused`` reports all of them at once; ``drive.plan`` lists the objects that are done without. A missing answer
+ends the conversation.
 """
 
 from __future__ import annotations
@@ -50,13 +50,13 @@ BOOT_TIMEOUT_S = 2.0        # a servo's restart of its communication takes well 
 START_TIMEOUT_S = 1.0       # NMT start to the first heartbeat that says OPERATIONAL: 20 periods of 50 ms
 STOP_TIMEOUT_S = 10.0       # the slowest ramp from full speed [A]
 
-COB_ID_COMPARED = o.COB_INVALID | o.COB_ID_MASK     # devices are free to answer bit 30 as they like
+COB_ID_COMPARED = o.COB_INVALID | o.COB_ID_MASK     # devices may answer any bit 30
 
 
 def connect(drive: ServoAxis, pc_node_id: int) -> Conversation:
     """Bring a drive from any state to OPERATIONAL and SWITCH_ON_DISABLED with all commands zero.
 
-    A drive that stands in FAULT is connected as it is: a fault is only ever reset by ``reset_fault``.
+    A drive in FAULT is connected in that state: only ``reset_fault`` resets a fault.
     """
     drive.begin_connect()
     try:
@@ -68,7 +68,7 @@ def connect(drive: ServoAxis, pc_node_id: int) -> Conversation:
     except (RequestError, SetupRefusedError) as error:
         drive.disconnect()
         drive.refused = str(error)
-        yield SendNmt(NmtCommand.PRE_OPERATIONAL)      # where it takes no process data
+        yield SendNmt(NmtCommand.PRE_OPERATIONAL)      # the drive takes no process data there
 
 
 def _boot() -> Step:
@@ -77,13 +77,13 @@ def _boot() -> Step:
     if booted:
         return
     try:
-        yield from read_number(o.DEVICE_TYPE)      # a boot-up can be missed; an answer cannot
+        yield from read_number(o.DEVICE_TYPE)      # the boot-up message can be missed; an answer cannot
     except RequestError as error:
         raise SetupRefusedError(f"no boot-up message within {BOOT_TIMEOUT_S:g} s; {error}") from error
 
 
 def _identify(drive: ServoAxis) -> Step:
-    """See that it is the drive of the configuration: nothing is written to any other."""
+    """Check that the drive is the configured one: nothing is written to any other."""
     config = drive.config
     wrong: list[str] = []
     device_type = yield from keep(drive, o.DEVICE_TYPE)
@@ -107,7 +107,7 @@ def _identify(drive: ServoAxis) -> Step:
 
 
 def _make_quiet(drive: ServoAxis) -> Step:
-    """Have the power off before anything is changed; a fault stays as it is."""
+    """Switch the power off before anything is changed; a fault stays as it is."""
     statusword = yield from read_number(o.STATUSWORD)
     state = cia402.decode(statusword)
     if state in (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE):
@@ -122,14 +122,14 @@ def _is_off(statusword: int) -> bool:
 
 
 def _is_stopped(statusword: int) -> bool:
-    """Whether the power is off, or a quick stop that holds the axis (0x605A = 5..8) has come to rest."""
+    """Return whether the power is off, or a quick stop that holds the axis (0x605A = 5..8) has come to rest."""
     if cia402.decode(statusword) is State.QUICK_STOP_ACTIVE:
         return statusword & cia402.TARGET_REACHED != 0
     return _is_off(statusword)
 
 
 def _await(condition: Callable[[int], bool], timeout_s: float) -> Read:
-    """Return the statusword once the condition holds for it; raises RefusedError after ``timeout_s``."""
+    """Return the statusword that fulfils the condition; raises RefusedError after ``timeout_s``."""
     for _ in range(round(timeout_s / POLL_S)):
         statusword = yield from read_number(o.STATUSWORD)
         if condition(statusword):
@@ -141,11 +141,11 @@ def _await(condition: Callable[[int], bool], timeout_s: float) -> Read:
 
 
 def _configure(drive: ServoAxis, pc_node_id: int) -> Step:
-    """Write everything; raise SetupRefusedError with all that was refused."""
+    """Write all settings; raise SetupRefusedError with everything that was refused."""
     config = drive.config
     made = yield from _plan(drive)
     refused = list(made.refused)
-    # SYNC comes with the tick: no period to watch.
+    # SYNC comes with the tick: it has no period to watch.
     yield from _collect(refused, write_where_present(drive, o.SYNC_PERIOD, 0, 0))
     # Without our heartbeat the drive stops by 0x6007 and stays OPERATIONAL: its TPDOs show how it stops.
     yield from _collect(refused, write_where_present(drive, o.ERROR_BEHAVIOUR, 1, NO_STATE_CHANGE))
@@ -164,13 +164,13 @@ def _configure(drive: ServoAxis, pc_node_id: int) -> Step:
     if refused:
         raise SetupRefusedError("; ".join(refused))
     if made.watched:
-        # Last: the watch on us begins with our next heartbeat, and those have been sent since the first service.
+        # Last: the drive's watch begins with our next heartbeat. We have sent heartbeats since the first service.
         watched = heartbeat.consumer_entry(pc_node_id, config.consumer_heartbeat_s)
         yield from write(drive, o.CONSUMER_HEARTBEAT, 1, watched)
 
 
 def _plan(drive: ServoAxis) -> Generator[Request, Reply, DrivePlan]:
-    """Return what is to be written, once it is known which objects this drive has."""
+    """Return the plan of writes, after asking the drive for the objects that may be absent."""
     absent: list[Key] = []
     for index, sub in tried(drive.config):
         try:
@@ -184,7 +184,7 @@ def _plan(drive: ServoAxis) -> Generator[Request, Reply, DrivePlan]:
 
 
 def _collect(refused: list[str], step: Step) -> Step:
-    """Go on after what the drive refuses; a drive that does not answer is given up."""
+    """Run a step and collect its refusal; a drive that does not answer ends the conversation."""
     try:
         yield from step
     except SetupRefusedError as error:
@@ -196,7 +196,7 @@ def _collect(refused: list[str], step: Step) -> Step:
 
 
 def _check_rated_torque(drive: ServoAxis) -> Step:
-    """Torques are per mille of it: another one than the rig file's makes every torque and every torque limit wrong."""
+    """Compare 0x6076: torques are per mille of it, so another value than the rig file's would make them all wrong."""
     counts = yield from keep(drive, o.RATED_TORQUE)
     config = drive.config
     expected = config.rated_torque_counts
@@ -213,7 +213,7 @@ def _aim_where_it_stands(drive: ServoAxis) -> Step:
 
 
 def _map(drive: ServoAxis, one: PdoSetting) -> Step:
-    """Change a PDO in the order CiA 301 (7.5.2.36) asks: off, map empty, map, count, type, on."""
+    """Change a PDO in the order of CiA 301 (7.5.2.36): off, map empty, map, count, type, on."""
     limits = drive.config.drive.pdo
     settable = limits.cob_ids == "set"
     if settable:

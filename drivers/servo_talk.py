@@ -1,4 +1,4 @@
-"""The words of a conversation with a drive: an object read and kept, written and read back, or compared."""
+"""Steps of a conversation with a drive: read and keep an object, write and read it back, or compare it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Read = Generator[Request, Reply, int]
 
 
 class SetupRefusedError(Exception):
-    """The device is not what the configuration says, or does not do as told."""
+    """The device differs from the configuration, or does not follow a command."""
 
 
 def keep(drive: ServoAxis, index: int, sub: int = 0, kind: DataType | None = None) -> Read:
@@ -46,7 +46,7 @@ def compare(drive: ServoAxis, index: int, sub: int, value: int, mask: int = -1) 
 
 
 def write_where_present(drive: ServoAxis, index: int, sub: int, value: int) -> Step:
-    """Write an optional object and read it back; a device without it needs no write."""
+    """Write an optional object and read it back; a device without the object needs no write."""
     try:
         yield from write(drive, index, sub, value)
     except RequestError as error:
@@ -55,7 +55,7 @@ def write_where_present(drive: ServoAxis, index: int, sub: int, value: int) -> S
 
 
 def apply(drive: ServoAxis, setting: Setting) -> Step:
-    """Write one setting, or what stands in for it."""
+    """Write one setting, or its substitute."""
     value, instead = setting.value, setting.substitute
     if instead is not None:
         reference = 0
@@ -74,7 +74,7 @@ def apply(drive: ServoAxis, setting: Setting) -> Step:
 
 
 def set_mode(drive: ServoAxis, mode: OperationMode) -> Step:
-    """Select a mode of operation and see it confirmed by 0x6061."""
+    """Select a mode of operation and wait until 0x6061 confirms it."""
     yield from write(drive, o.MODE, 0, mode)
     shown = yield from keep(drive, o.MODE_DISPLAY)
     for _ in range(round(MODE_TIMEOUT_S / POLL_S)):

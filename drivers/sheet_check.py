@@ -1,4 +1,4 @@
-"""Holds an axis against a drive's data sheet: what connecting would refuse, and what it would do without."""
+"""Checks an axis against a drive's data sheet: refusals at connecting, and missing objects that it accepts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _READ: Final = ((o.DEVICE_TYPE, 0), (o.IDENTITY, 1), (o.SUPPORTED_MODES, 0), (o.
 
 @dataclass(frozen=True, slots=True)
 class SheetVerdict:
-    """What a drive with this data sheet is to an axis; a sentence each."""
+    """Result for an axis on a drive with this data sheet, in sentences."""
 
     refused: tuple[str, ...]
     without: tuple[str, ...]
@@ -28,7 +28,7 @@ class SheetVerdict:
 
 
 def check_sheet(config: AxisConfig, sheet: DataSheet) -> SheetVerdict:
-    """Return what connecting the axis to a drive that is as its data sheet says would refuse and do without."""
+    """Return what connecting the axis would refuse and do without, on a drive that matches its data sheet."""
     absent = [key for key in tried(config) if key not in sheet.objects]
     made = plan(config, absent)
     refused: dict[str, str] = {}             # once for each object, with the first reason
@@ -107,7 +107,7 @@ def _setting(sheet: DataSheet, setting: Setting) -> Iterator[str]:
             stated = sheet.objects.get(instead.per_mille_of)
             yield from _readable(sheet, instead.per_mille_of)
             if stated is None or not stated.default:
-                return                       # which value will be written is only known at the drive
+                return                       # the value to write is known only at the drive
             reference = stated.default
         value = instead.value(value, reference)
     if (entry.low is not None and entry.low > value) or (entry.high is not None and entry.high < value):

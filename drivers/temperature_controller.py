@@ -1,6 +1,6 @@
-"""A temperature controller with a loop of its own: the heating jacket's, or a climate chamber's.
+"""A temperature controller with its own control loop: the heating jacket's, or a climate chamber's.
 
-Software gives the setpoint and watches; the loop, its limit and what happens without a master are in the controller.
+Software sends the setpoint and watches; the loop, its limit and the reaction to a missing master are in the controller.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ from drivers.modbus import Device, ModbusLink, Request
 from drivers.profiles.model import DeviceProfile, ProfileError
 
 JACKET_RENEW_S: Final = 0.45
-"""The jacket's command registers are written again after this: twice a second also with scans at 20 Hz [A]."""
+"""Period of rewriting the jacket's command registers, s: twice a second also with scans at 20 Hz [A]."""
 JACKET_LEASE_S: Final = 2.0
-"""Without a setpoint for this long the jacket stops heating by itself [A]."""
+"""Time without a setpoint after which the jacket stops heating by itself, s [A]."""
 CHAMBER_RENEW_S: Final = 2.0
-"""The chamber's command registers are written again after this, s [A]."""
+"""Period of rewriting the chamber's command registers, s [A]."""
 CHAMBER_LEASE_S: Final = 30.0
-"""Without a setpoint for this long the chamber stands by, s [A]: its air then changes by 1.5 K."""
+"""Time without a setpoint after which the chamber stands by, s [A]: its air changes by 1.5 K in that time."""
 ControllerKind = Literal["jacket", "chamber"]
 UNHEARD: Final = "our setpoint does not reach it, its lease has run out"
 STATUS_AGE_S: Final = 2.0
-"""A status older than this against the temperature makes the reading invalid [A]."""
+"""Greatest lag of the status behind the temperature; above it the reading is invalid, s [A]."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Commanding:
-    """How a kind of controller is commanded."""
+    """Command timing of a kind of controller."""
 
     renew_s: float
     lease_s: float
     needs_lease: bool
     reads_at_once: bool
-    """Run and standby are followed by a read: a wheel that stops must not be taken for one that is still heated."""
+    """A read follows run and standby: a wheel that stops must not count as still heated."""
 
 
 _COMMANDED: Final[Mapping[ControllerKind, _Commanding]] = {
@@ -45,20 +45,21 @@ _COMMANDED: Final[Mapping[ControllerKind, _Commanding]] = {
 
 
 class TemperatureController(Device):
-    """Commands and reads a controller. Standby until ``enable(True)``.
+    """Commands and reads a controller. It stands by until ``enable(True)``.
 
-    ``measured_c`` (NaN while the sensor is broken) and ``setpoint_c`` (the working setpoint, read back) in degC,
-    ``output_percent`` (below 0 cooling), ``sensor_break``, ``out_of_range``, ``lease_expired`` (the controller reports
-    that our setpoint does not come); ``stamp_s`` is when the temperature arrived (-inf = never); ``counts`` is its bare
-    register.
+    ``measured_c`` (NaN while the sensor is broken) and ``setpoint_c`` (the working setpoint, read back) are in degC,
+    ``output_percent`` is below 0 for cooling. ``sensor_break`` and ``out_of_range`` are status bits; ``lease_expired``:
+    the controller reports that our setpoint does not arrive. ``stamp_s`` is the arrival of the temperature (-inf =
+    never); ``counts`` is its bare register.
     """
 
     def __init__(self, kind: ControllerKind, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
-        """Put a controller of ``kind`` (jacket, chamber) on ``link``; its lease is written where the profile has one.
+        """Put a controller of ``kind`` (jacket, chamber) on ``link``; its lease is written if the profile has one.
 
-        ``has_lease``: it has. ``ends_s`` is when it heats no more by itself without a setpoint, s: by its lease, or by
-        a setpoint of its own; None: the hardware must switch the heat off when the PC is silent.
-        Raises ProfileError for a profile without pv, output, setpoint, status, or a way to write setpoint and run.
+        ``has_lease``: the profile has a lease. ``ends_s`` is the time without a setpoint after which the controller
+        stops heating by itself, s: by its lease, or by its own setpoint; None: the hardware must switch the heat off
+        when the PC is silent. Raises ProfileError for a profile without pv, output, setpoint, status, or a way to write
+        setpoint and run.
         """
         profile.expect(kind)
         super().__init__(profile, unit_id, link)
@@ -81,7 +82,7 @@ class TemperatureController(Device):
         self._working_scale = profile.signal("setpoint").scale
         self._register = profile.writes["setpoint"]
         self._wanted: tuple[int, ...] = ()
-        """Registers of the setpoint that is commanded; none yet."""
+        """Registers of the commanded setpoint; none yet."""
         self._asked = False
         self._asked_c = nan
         self._run_wanted = False
@@ -101,7 +102,7 @@ class TemperatureController(Device):
         self._set_up(commanding.lease_s)
 
     def _set_up(self, lease_s: float) -> None:
-        """Have standby, the profile's own writes and the lease (s, where there is one) written at every connection."""
+        """Add standby, the profile's own writes and the lease (s, if there is one) to the set-up."""
         profile, switch = self.profile, self._switch
         self.add_write("standby", switch.address, (switch.off,), read_back=False)
         for write in profile.setup:
@@ -114,8 +115,8 @@ class TemperatureController(Device):
     def set_setpoint(self, celsius: float) -> None:
         """Ask for a temperature, in degC, kept inside the profile's bounds; call it in every scan.
 
-        It is written when it changes and at the period of renewal; what is not asked for any more is not renewed
-        either, and the controller's lease runs out. Raises ValueError unless it is a finite number.
+        The setpoint is written after a change and at the period of renewal. If the calls stop, the renewal stops as
+        well, and the controller's lease runs out. Raises ValueError unless the number is finite.
         """
         if celsius != self._asked_c:
             self._change_setpoint(celsius)
@@ -135,14 +136,14 @@ class TemperatureController(Device):
             self.link.rewrite(self._setpoint_write, words)
 
     def enable(self, on: bool) -> None:
-        """Let the controller run (True) or stand by; standby goes before everything else on the line."""
+        """Run the controller (True) or let it stand by; standby is sent before everything else on the line."""
         if on != self._run_wanted:
             self._run_wanted = on
             self._unconfirmed = self._reads_at_once
             self.link.rewrite(self._run_write, (self._switch.on if on else self._switch.off,), urgent=not on)
 
     def received(self, request: Request, data: bytes, t: float) -> None:
-        """Take a good reply; a setpoint that was not asked for since the last one is not renewed."""
+        """Process a good reply; a setpoint that was not asked for since the last renewal is not renewed."""
         if request is self._setpoint_write:
             if not self._asked:
                 self.link.disable(self._setpoint_write)
@@ -175,14 +176,14 @@ class TemperatureController(Device):
         self.valid = usable and not self.status & self._invalid_bits and self._status_s >= stamp_s - STATUS_AGE_S
 
     def suspend(self) -> None:
-        """Distrust the last reading and stop commanding; the set-up begins with standby."""
+        """Mark the last reading as invalid and stop commanding; the set-up begins with standby."""
         self.valid = False
         self._status_s = -inf
         self.link.disable(self._setpoint_write)
         self.link.disable(self._run_write)
 
     def resume(self) -> None:
-        """Command again what is wanted now."""
+        """Resume the present commands."""
         if self._wanted:
             self.link.enable(self._setpoint_write)
         self.link.enable(self._run_write)
@@ -195,7 +196,7 @@ def _place(profile: DeviceProfile, names: list[str], name: str) -> int:
 
 
 def _find_status(profile: DeviceProfile) -> tuple[int, int]:
-    """Return the block that holds the status and its place there."""
+    """Return the number of the block that holds the status, and its place there."""
     for number, block in enumerate(profile.blocks):
         for place, signal in enumerate(block.signals):
             if signal.name == "status":

@@ -1,8 +1,8 @@
-"""Conversations with a device in many steps, each written as a generator and run by the master.
+"""Conversations with a device in many steps: each is a generator that the master runs.
 
-A conversation yields one request at a time and is sent the reply: the value read (SdoRead), True or False
-(Until: whether the condition came true in time), else None. A failed SDO request is thrown into it as
-RequestError. Generators cannot be copied: a conversation has ended before the drivers are copied.
+A conversation yields one request at a time and receives the reply: the value read (SdoRead), True or False
+(Until: whether the condition came true in time), else None. A failed SDO request raises RequestError in it.
+Generators cannot be copied: a conversation has ended before the drivers are copied.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from drivers.canopen.objects import DataType, NmtCommand
 from drivers.canopen.sdo import SdoClient, SdoError
 
 POLL_S = 0.002
-"""How soon the master wants to be served again while an SDO reply is outstanding: a pair of frames takes
-0.54 ms of wire at 500 kbit/s, 2.2 ms at 125 kbit/s."""
+"""Longest time until the master wants to be served again while an SDO reply is outstanding: a pair of frames takes
+0.54 ms on the wire at 500 kbit/s, 2.2 ms at 125 kbit/s."""
 
 
 class AwaitedCondition(Enum):
-    """What a conversation can wait for; the drive answers whether it holds."""
+    """Conditions that a conversation can wait for; the drive answers whether one holds."""
 
-    BOOTED = auto()              # boot-up message heard since the reset
-    OPERATIONAL = auto()         # heartbeat says OPERATIONAL
+    BOOTED = auto()              # boot-up message received since the reset
+    OPERATIONAL = auto()         # heartbeat reports OPERATIONAL
     DISABLED = auto()            # SWITCH_ON_DISABLED or a fault: power is off
     ENABLED = auto()             # OPERATION_ENABLED
     HOMING_ENDED = auto()        # homing done, failed or interrupted
@@ -89,7 +89,7 @@ class RequestError(Exception):
 
 
 class Peer(Protocol):
-    """What a conversation needs of the device it is held with."""
+    """The interface of a device that a conversation needs."""
 
     @property
     def node_id(self) -> int:
@@ -131,14 +131,14 @@ class Dialogue:
         self._inbox.append(data)
 
     def step(self, now: float, send: Send) -> None:
-        """Go as far as the replies allow; ``send`` takes identifier and data."""
+        """Continue as far as the replies allow; ``send`` takes identifier and data."""
         if self._request is None:
             self._resume(None, now, send)
         while not self.ended and self._advance(now, send):
             pass
 
     def close(self) -> None:
-        """End the conversation where it stands."""
+        """End the conversation at its present step."""
         self.ended = True
         self._conversation.close()
 
@@ -201,7 +201,7 @@ class Dialogue:
 
     def _begin(self, request: Request, now: float, send: Send) -> None:
         self._request = request
-        self._inbox.clear()      # what came before the request is no reply to it
+        self._inbox.clear()      # a message from before the request is no reply to it
         if isinstance(request, SdoRead):
             send(o.SDO_REQUEST_BASE + self._peer.node_id, self._sdo.upload(request.index, request.sub, now))
         elif isinstance(request, SdoWrite):

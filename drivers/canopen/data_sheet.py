@@ -25,7 +25,7 @@ class DataSheetError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class SheetEntry:
-    """One object of a data sheet; None: the sheet does not say."""
+    """One object of a data sheet; None where the sheet gives no value."""
 
     name: str
     type: int
@@ -38,18 +38,18 @@ class SheetEntry:
 
     @property
     def writable(self) -> bool:
-        """An SDO may write it."""
+        """Whether an SDO may write it."""
         return self.access in _WRITABLE
 
     @property
     def readable(self) -> bool:
-        """An SDO may read it."""
+        """Whether an SDO may read it."""
         return self.access in _READABLE
 
 
 @dataclass(frozen=True, slots=True)
 class DataSheet:
-    """What a maker says of a device."""
+    """A device as its maker describes it."""
 
     title: str
     vendor_id: int
@@ -58,7 +58,7 @@ class DataSheet:
 
 
 def read_data_sheet(path: Path, node_id: int = 1) -> DataSheet:
-    """Return what a file says of the device with this node id; raises DataSheetError, and OSError."""
+    """Return a file's description of the device with this node id; raises DataSheetError, and OSError."""
     parser = configparser.RawConfigParser(strict=False, allow_no_value=True, delimiters=("=",), comment_prefixes=(";",))
     try:
         parser.read_string(path.read_bytes().decode("latin-1"), path.name)
@@ -113,12 +113,12 @@ def _entry(where: str, keys: Mapping[str, str | None], node_id: int) -> SheetEnt
 
 
 def _signed(value: int | None, bits: int) -> int | None:
-    """Return what is meant where a negative number is written as its bits, 0x80000000."""
+    """Return a signed number from its bits: files write negative numbers as 0x80000000 and the like."""
     return value - (1 << bits) if value is not None and value >= 1 << bits - 1 else value
 
 
 def _number(where: str, text: str | None, node_id: int) -> int | None:
-    """Return a number as data sheets write it, ``$NODEID+0x200`` among them; None for nothing."""
+    """Return a number from a data sheet's notation, which includes ``$NODEID+0x200``; None for an empty text."""
     text = (text or "").split(";")[0].strip()
     if not text:
         return None

@@ -1,8 +1,8 @@
 """The servo drive's object dictionary, described once.
 
-The client takes the types of its SDO requests from here, the simulated drive its objects and defaults, and
-the EDS writer its text. Contents: CiA 301, CiA 402-2. Defaults are those of a drive
-out of its box: no heartbeat, no consumer, PDO 1 mapped for profile velocity, PDO 2 off.
+The client takes the types of its SDO requests from here, the simulated drive takes its objects and defaults, and
+the EDS writer takes its text. Contents: CiA 301, CiA 402-2. Defaults are those of a new drive:
+no heartbeat, no consumer, PDO 1 mapped for profile velocity, PDO 2 off.
 """
 
 from __future__ import annotations
@@ -200,6 +200,6 @@ DICTIONARY: dict[tuple[int, int], Entry] = {
 
 
 def describe(index: int, sub: int) -> str:
-    """Return an object's address and name as messages show it: ``0x1016:01 (consumer heartbeat ...)``."""
+    """Return an object's address and name for messages: ``0x1016:01 (consumer heartbeat ...)``."""
     entry = DICTIONARY.get((index, sub))
     return f"0x{index:04X}:{sub:02X}" + (f" ({entry.name})" if entry else "")

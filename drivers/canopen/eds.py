@@ -19,7 +19,7 @@ _VAR, _ARRAY, _RECORD = 7, 8, 9
 _RECEIVED_PDOS = range(o.RPDO_COMMUNICATION, o.RPDO_MAPPING)
 _SENT_PDOS = range(o.TPDO_COMMUNICATION, o.TPDO_MAPPING)
 
-# CiA 306-1, 4.4: identical text for every run, so that the file changes only with the dictionary.
+# CiA 306-1, 4.4: every run writes the same text, so that the file changes only with the dictionary.
 _HEAD = """\
 [FileInfo]
 FileName=cia402_servo.eds

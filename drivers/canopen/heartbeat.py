@@ -17,7 +17,7 @@ def consumer_entry(node_id: int, timeout_s: float) -> int:
 def state_of(data: bytes) -> int | None:
     """Return the NMT state of a heartbeat frame, or None where it is not one byte long.
 
-    Bit 7 is the toggle of the obsolete node guarding and is masked.
+    Bit 7, the toggle of the obsolete node guarding, is masked.
     """
     if len(data) != 1:
         return None
@@ -25,9 +25,9 @@ def state_of(data: bytes) -> int | None:
 
 
 class HeartbeatMonitor:
-    """Watches one producer: silent until armed, lost for good when a time-out has passed.
+    """Watches one producer, from ``arm`` on; a lost producer stays lost until the next ``arm``.
 
-    ``due`` is the time (s) at which the producer counts as lost; infinite while not armed or once lost.
+    ``due`` is the time (s) at which the producer counts as lost; infinite while not armed, or after a loss.
     """
 
     def __init__(self, period_s: float) -> None:
@@ -44,13 +44,13 @@ class HeartbeatMonitor:
             self.due = t + self.timeout_s
 
     def arm(self) -> None:
-        """Begin to watch; the next heartbeat is due one time-out after the last one heard."""
+        """Begin to watch; the next heartbeat is due one time-out after the last one received."""
         self.armed = True
         self.lost = False
         self.due = self.heard_s + self.timeout_s
 
     def disarm(self) -> None:
-        """Stop watching, and forget what was heard."""
+        """Stop watching, and forget earlier heartbeats."""
         self.heard_s = -math.inf
         self.armed = False
         self.lost = False

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivers.ports import CanFrame, CanPort
 
 EARLY_S: Final = 0.0005
-"""Work due within half a millisecond is done at once: it saves a tick of its own and hides rounding of times."""
+"""Work due within half a millisecond is done at once: this saves a tick and tolerates rounding of times."""
 
 _FUNCTION: Final = 0x780
 _NODE: Final = 0x07F
@@ -23,20 +23,20 @@ _MASTER_FUNCTIONS: Final = {
     o.RPDO1_BASE: "RPDO1", o.RPDO2_BASE: "RPDO2", o.RPDO3_BASE: "RPDO3", o.RPDO4_BASE: "RPDO4",
     o.SDO_REQUEST_BASE: "SDO request",
 }
-"""Sent by masters only: a received one is another master's."""
+"""Only masters send this identifier: a received frame comes from another master."""
 _SYNC_ID: Final = o.SYNC_ID
 
 
 class CanMaster:
     """Serves the nodes of one bus; sans-IO: frames and times come in as arguments, frames go out to the port.
 
-    Each tick: ``feed`` what the port received, decide, then ``scan``. Between ticks, when ``deadline`` has
-    come or frames arrived: ``feed`` and ``service``. Heartbeats leave only from these two: no scan, no
+    Each tick: ``feed`` the frames that the port received, decide, then ``scan``. Between ticks, at ``deadline`` or when
+    frames arrive: ``feed`` and ``service``. Only these two send heartbeats: no scan, no
     heartbeat. Calls that send raise BusLost when the wire is gone.
 
-    ``deadline`` (s) is the earliest time it wants service; it may lie in the past ("at once").
+    ``deadline`` (s) is the earliest time at which the master wants service; a time in the past means "at once".
     ``foreign_master`` is set by the first frame that only a master sends, and ``foreign_frame`` describes
-    it; the caller clears them. ``unknown_frames`` counts frames of nodes that were not added.
+    that frame; the caller clears them. ``unknown_frames`` counts frames of nodes that were not added.
     """
 
     def __init__(self, node_id: int = 127, heartbeat_s: float = 0.05, sdo_timeout_s: float = 0.3) -> None:
@@ -54,7 +54,7 @@ class CanMaster:
         self._withheld = False
         self._commands: list[bytes | None] = []
         self._cycle_ids: tuple[int, ...] = ()
-        self._cycle_key: int = 0                # whose commands are in the cycle, and whether SYNC is
+        self._cycle_key: int = 0                # nodes with commands in the cycle, and whether SYNC is in it
         self._payloads: tuple[bytes, ...] = ()
         self._cycle_syncs = False
         self._nodes: list[CanNode] = []
@@ -71,7 +71,7 @@ class CanMaster:
 
     @property
     def withhold_heartbeat(self) -> bool:
-        """Whether our heartbeat is kept back: only to prove that the drives notice (safety.md, principle 4)."""
+        """Whether our heartbeat is withheld: only to prove that the drives notice (safety.md, principle 4)."""
         return self._withheld
 
     @withhold_heartbeat.setter
@@ -80,7 +80,7 @@ class CanMaster:
         self.deadline = -math.inf
 
     def add(self, node: CanNode) -> None:
-        """Take a node onto the bus; raises ValueError where its id is taken."""
+        """Add a node to the bus; raises ValueError where its id is taken."""
         node_id = node.node_id
         if node_id == self.node_id or node_id in self._by_node:
             raise ValueError(f"{node.name}: node id {node_id} is taken")
@@ -104,7 +104,7 @@ class CanMaster:
         return node.node_id in self._dialogues
 
     def cancel(self, node: CanNode) -> None:
-        """End this node's conversation where it stands, if one runs."""
+        """End this node's conversation at its present step, if one runs."""
         dialogue = self._dialogues.pop(node.node_id, None)
         if dialogue is not None:
             dialogue.close()
@@ -132,8 +132,8 @@ class CanMaster:
     def scan(self, port: CanPort, now: float, until: float = -math.inf) -> None:
         """Send every node's commands, then SYNC (while ``sync``), then what ``service`` sends.
 
-        A heartbeat that would fall due before ``until`` (s), the next scan, leaves with this one: it keeps its
-        period at most, and needs no tick of its own.
+        A heartbeat that would fall due before ``until`` (s), the next scan, leaves with this one. So its period is
+        never exceeded, and it needs no tick of its own.
         """
         sync = self.sync
         for node in self._io_nodes:
@@ -157,7 +157,7 @@ class CanMaster:
             self._serve(port, now)
 
     def _compose(self, sync: bool) -> None:
-        """Put the commands of all nodes, and SYNC, into the cycle; what has not changed stays the same object."""
+        """Put the commands of all nodes, and SYNC, into the cycle; unchanged payloads stay the same object."""
         payloads: list[bytes] = []
         key = bit = 1
         for command in self._commands:
@@ -178,7 +178,7 @@ class CanMaster:
             self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)
 
     def service(self, port: CanPort, now: float) -> None:
-        """Send our heartbeat when due and continue the conversations; notice nodes that fell silent."""
+        """Send our heartbeat when due, continue the conversations, and notice nodes whose heartbeat stopped."""
         if self._dialogues or now + EARLY_S >= self.deadline:
             self._serve(port, now)
 
@@ -212,7 +212,7 @@ class CanMaster:
         self.deadline = deadline
 
     def _route(self, t: float, can_id: int, data: bytes) -> None:
-        """Take a frame that is no TPDO1 of a node of ours, by its function code."""
+        """Route a frame that is no TPDO1 of our nodes, by its function code."""
         function = can_id & _FUNCTION
         if can_id in (o.NMT_ID, o.SYNC_ID) or function in _MASTER_FUNCTIONS:
             self._foreign(can_id, data)
@@ -243,7 +243,7 @@ class CanMaster:
             self.unknown_frames += 1
             return
         node.on_heartbeat(t, state)
-        # While it is online, the same byte again says only that it is still there.
+        # While the node is online, the same state byte again brings no news.
         node.usual_heartbeat = data if node.online else b""
         if node.node_id in self._dialogues:
             self.deadline = min(self.deadline, t)

@@ -25,7 +25,7 @@ def state_name(state: int) -> str:
 class Emergency:
     """One EMCY frame: error code, error register (0x1001), vendor bytes, text, arrival time in s.
 
-    Code 0x0000 says that an error has gone.
+    Code 0x0000 means that an error has gone.
     """
 
     code: int
@@ -36,7 +36,7 @@ class Emergency:
 
     @property
     def is_reset(self) -> bool:
-        """Whether the device reports an error gone, not come (codes 0x00xx)."""
+        """Whether the device reports that an error has gone (codes 0x00xx)."""
         return self.code >> 8 == 0
 
 
@@ -48,7 +48,7 @@ def encode_emergency(code: int, register: int, vendor: bytes = b"") -> bytes:
 def decode_emergency(data: bytes, t: float) -> Emergency:
     """Return the emergency in a frame that arrived at ``t``.
 
-    A frame shorter than eight bytes is not refused: what is missing counts as an unknown error of that
+    A frame shorter than eight bytes is accepted: the missing bytes make it an unknown error of that
     device.
     """
     code = int.from_bytes(data[:2], "little") if len(data) >= 2 else 0x1000

@@ -1,4 +1,4 @@
-"""A CANopen node as its master serves it, whatever it is for."""
+"""A CANopen node of any kind, as its master serves it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from drivers.canopen.heartbeat import HeartbeatMonitor
 class CanNode:
     """One node of a bus, as its master reads and commands it.
 
-    ``connected``: configured, and its frames are believed. ``online``: connected, OPERATIONAL and its heartbeat there.
-    ``lost``: its heartbeat stopped, or it booted while in use; stays until the next connect. ``stamp_s`` is the arrival
-    of its last TPDO1, -inf before the first; the same bytes as ``tpdo1_data`` again renew it and are not taken apart.
-    ``dirty``: its RPDO1 has to be composed anew. ``has_outputs``: it is asked for RPDO2 in every scan. ``refused`` says
-    why it cannot be used, None where it can.
+    ``connected``: the node is configured, and its frames are believed. ``online``: connected, OPERATIONAL and with a
+    heartbeat. ``lost``: the heartbeat stopped, or the node booted while in use; this stays until the next connect.
+    ``stamp_s`` is the arrival of its last TPDO1, -inf before the first; bytes equal to ``tpdo1_data`` renew the stamp
+    and are not decoded. ``dirty``: its RPDO1 has to be composed anew. ``has_outputs``: the master asks for its RPDO2 in
+    every scan. ``refused`` is the reason why the node cannot be used, None if it can.
     """
 
     __slots__ = ("booted", "connected", "dirty", "has_outputs", "heartbeat", "lost", "malformed", "name", "nmt_state",
@@ -43,25 +43,25 @@ class CanNode:
         self.refused: str | None = None
 
     def emit(self, sync: bool) -> bytes | None:
-        """Return RPDO1 for this scan, None where the node takes none; ``sync``: a SYNC follows."""
+        """Return RPDO1 for this scan, None if the node takes none; ``sync``: a SYNC follows."""
         self.dirty = False
         return None
 
     def emit_outputs(self, now: float) -> bytes | None:
-        """Return RPDO2 where it is to be sent now."""
+        """Return RPDO2 if it is to be sent now, else None."""
         return None
 
     def on_tpdo1(self, t: float, data: bytes) -> None:
-        """Take a TPDO1 that arrived at ``t``."""
+        """Decode a TPDO1 that arrived at ``t``."""
 
     def on_tpdo2(self, t: float, data: bytes) -> None:
-        """Take a TPDO2 that arrived at ``t``."""
+        """Decode a TPDO2 that arrived at ``t``."""
 
     def on_emergency(self, t: float, data: bytes) -> None:
-        """Take an EMCY message that arrived at ``t``."""
+        """Record an EMCY message that arrived at ``t``."""
 
     def on_heartbeat(self, t: float, nmt_state: int) -> None:
-        """Take a heartbeat or boot-up message that arrived at ``t``."""
+        """Record a heartbeat or boot-up message that arrived at ``t``."""
         self.nmt_state = nmt_state
         if nmt_state == o.NmtState.BOOT_UP:
             self.booted = True
@@ -79,14 +79,14 @@ class CanNode:
             self.usual_heartbeat = b""
 
     def disconnect(self) -> None:
-        """Believe nothing any more; the readings stay, and age."""
+        """Accept no frames any more; the readings stay, and age."""
         self.connected = False
         self.online = False
         self.tpdo1_data = self.usual_heartbeat = b""
         self.heartbeat.disarm()
 
     def holds(self, condition: AwaitedCondition) -> bool:
-        """Whether a condition a conversation waits for is true."""
+        """Return whether a condition that a conversation waits for is true."""
         if condition is AwaitedCondition.BOOTED:
             return self.booted
         return condition is AwaitedCondition.OPERATIONAL and self.nmt_state == o.NmtState.OPERATIONAL

@@ -1,4 +1,4 @@
-"""What is configured of a CANopen node that measures: a rig file's section ``can.nodes``."""
+"""Configuration of a CANopen node that measures: a rig file's section ``can.nodes``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 SIZES: dict[str, int] = {"u8": 1, "i8": 1, "u16": 2, "i16": 2, "u32": 4, "i32": 4, "f32": 4}
-"""Bytes of each type that a process datum can have."""
+"""Size in bytes of each data type that a value in a PDO can have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,16 +15,16 @@ class NodeChannel:
     """One number in a node's first transmit PDO; raises ValueError where it does not fit into the 8 bytes."""
 
     byte: int
-    """Where it begins in the PDO, from 0; low byte first."""
+    """Its first byte in the PDO, from 0; low byte first."""
     type: Literal["u8", "i8", "u16", "i16", "u32", "i32", "f32"]
     scale: float
     """Value of one count, in ``unit``."""
     unit: str
     simulated: float = 0.0
-    """What the simulated node shows, in ``unit``."""
+    """Value that the simulated node sends, in ``unit``."""
 
     def __post_init__(self) -> None:
-        """Look at place and scale."""
+        """Check place and scale."""
         if not 0 <= self.byte <= 8 - SIZES[self.type]:
             raise ValueError(f"byte {self.byte}: {self.type} does not fit into the 8 bytes of a PDO")
         if self.scale == 0.0:
@@ -33,7 +33,7 @@ class NodeChannel:
 
 @dataclass(frozen=True, slots=True)
 class NodeConfig:
-    """A node that measures: it sends TPDO1 by itself, as its maker or its set-up tool has configured it.
+    """A node that measures: it sends TPDO1 by itself, as set by its maker or with its set-up tool.
 
     ``vendor_id`` and ``product_code`` are compared with 0x1018 at connect; 0 = not compared.
     """

@@ -201,7 +201,7 @@ EMERGENCY_TEXT: dict[int, str] = {
     0x8400: "velocity control deviation",
     0x8611: "following error",
 }
-"""EMCY and 0x603F codes the rig meets (CiA 301 table 26, CiA 402-2 table of 0x603F)."""
+"""EMCY and 0x603F codes that occur on the rig (CiA 301 table 26, CiA 402-2 table of 0x603F)."""
 
 _EMERGENCY_CLASS: dict[int, str] = {
     0x10: "generic error", 0x20: "current", 0x21: "current, input side", 0x22: "current inside the device",
@@ -220,7 +220,7 @@ ERROR_REGISTER_BITS = ("generic", "current", "voltage", "temperature", "communic
 
 
 def emergency_text(code: int) -> str:
-    """Return what an error code (0..0xFFFF) means, by its class where the code itself is not listed."""
+    """Return the meaning of an error code (0..0xFFFF); for a code that is not listed, the meaning of its class."""
     text = EMERGENCY_TEXT.get(code)
     if text is None:
         text = _EMERGENCY_CLASS.get(code >> 8) or _EMERGENCY_CLASS.get((code >> 8) & 0xF0) or "unknown error"

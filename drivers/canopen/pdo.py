@@ -1,4 +1,4 @@
-"""Process data objects: which objects lie where in eight bytes.
+"""Process data objects: the place of each object in eight bytes.
 
 A map is fixed while a device is OPERATIONAL, so its codec is one precompiled ``struct`` call.
 """
@@ -17,7 +17,7 @@ MAX_BITS = 64
 
 
 class PdoMapError(ValueError):
-    """A mapping is not possible; ``abort_code`` is the SDO abort a device answers (CiA 301, table 22)."""
+    """An impossible mapping; ``abort_code`` is the SDO abort that a device answers (CiA 301, table 22)."""
 
     def __init__(self, abort_code: int, text: str) -> None:
         super().__init__(text)

@@ -1,6 +1,6 @@
-"""Read objects of many nodes at once, without a clock or a port of its own: what a look at a bus is made of.
+"""Read objects of many nodes at once, without a clock or a port of its own: the base of a survey of a bus.
 
-Nothing is written and no NMT command is sent: a node is asked by SDO alone, which every state but STOPPED answers
+Nothing is written and no NMT command is sent. Nodes are asked by SDO alone, because every state but STOPPED answers it
 (CiA 301, table 37).
 """
 
@@ -19,9 +19,9 @@ Key = tuple[int, int]
 """Index and sub-index."""
 
 ANSWER_S: Final = 0.1
-"""A node that has not answered by then is not there, s: servers answer within some milliseconds [A]."""
+"""A node without an answer after this time is absent, s: servers answer within some milliseconds [A]."""
 PATIENCE_S: Final = 0.5
-"""A node that ought to be there is waited for so long, s: a busy computer hears an answer 0.1 s late."""
+"""Longest wait for a node that should be present, s: a busy computer may see an answer 0.1 s late."""
 AT_ONCE: Final = 4
 """Nodes asked at the same time: a SocketCAN interface queues ten frames by default (txqueuelen)."""
 _FUNCTION: Final = 0x780
@@ -30,7 +30,7 @@ _NODE: Final = 0x07F
 
 @dataclass(frozen=True, slots=True)
 class ObjectAnswer:
-    """What a node answered to the upload of an object: its bytes, or why there are none (``code``: of the abort)."""
+    """A node's answer to the upload of an object: its bytes, or the reason for none (``code``: of the abort)."""
 
     key: Key
     data: bytes = b""
@@ -49,12 +49,12 @@ class ObjectAnswer:
 
     @property
     def missing(self) -> bool:
-        """Whether the node says that it has no such object."""
+        """Whether the node reports that it has no such object."""
         return self.code in (NO_OBJECT, NO_SUB_INDEX)
 
     @property
     def number(self) -> int | None:
-        """The value as a number: by its type in the dictionary, else without a sign; None where it is none."""
+        """The value as a number: by its type in the dictionary, else unsigned; None if it is no number."""
         if self.error or not 1 <= len(self.data) <= 4:
             return None
         entry = DICTIONARY.get(self.key)
@@ -65,7 +65,7 @@ class ObjectAnswer:
 
     @property
     def text(self) -> str:
-        """The value as people read it: a text, a number, or bytes."""
+        """The value for people: a text, a number, or bytes."""
         entry = DICTIONARY.get(self.key)
         if entry is not None and entry.type is o.DataType.TEXT:
             return self.data.rstrip(b"\0").decode("latin-1")
@@ -89,14 +89,14 @@ class _Node:
 
 
 class SdoScan:
-    """Uploads objects from nodes: ``feed`` what arrived, ``service`` what is due, until ``done``.
+    """Uploads objects from nodes: pass arrivals to ``feed`` and call ``service`` until ``done``.
 
-    A node that does not answer the first question is not asked the others. ``surplus`` counts answers that were
-    not awaited: two nodes of one number answer every question twice.
+    A node that does not answer the first question is not asked the others. ``surplus`` counts unexpected
+    answers: two nodes of one number answer every question twice.
     """
 
     def __init__(self, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> None:
-        """``wanted``: objects by node id (1..127); ``timeout_s`` for each answer."""
+        """Plan the uploads: ``wanted`` holds objects by node id (1..127); ``timeout_s`` is for each answer."""
         self._nodes = {node: _Node(keys, timeout_s) for node, keys in wanted.items()}
         self._waiting = [node for node, keys in wanted.items() if keys]
         self._asked: list[int] = []
@@ -108,7 +108,7 @@ class SdoScan:
 
     @property
     def answers(self) -> dict[int, dict[Key, ObjectAnswer]]:
-        """The answers by node, of those that gave one."""
+        """The answers by node, of the nodes that gave any."""
         return {
             number: node.answers
             for number, node in self._nodes.items()
@@ -117,7 +117,7 @@ class SdoScan:
 
     @property
     def surplus(self) -> dict[int, int]:
-        """How many answers too many came, by node, of those that sent any; one that came too late is none."""
+        """Number of surplus answers by node, of the nodes that sent any; an answer that came late does not count."""
         found = {number: node.surplus - node.timeouts for number, node in self._nodes.items()}
         return {number: times for number, times in found.items() if times > 0}
 
@@ -133,7 +133,7 @@ class SdoScan:
                 self._go_on(can_id & _NODE, port, now)
 
     def service(self, port: CanPort, now: float) -> None:
-        """Ask what is to be asked and give up what is overdue at ``now`` s; raises BusLost."""
+        """Ask the next questions, and give up the overdue ones at ``now`` s; raises BusLost."""
         for number in list(self._asked):
             abort = self._nodes[number].client.expire(now)
             if abort is not None:

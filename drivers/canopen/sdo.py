@@ -77,7 +77,7 @@ def abort_text(code: int) -> str:
 
 
 def abort_frame(index: int, sub: int, code: int) -> bytes:
-    """Return the frame that aborts a transfer, the same from either side."""
+    """Return the frame that aborts a transfer; client and server send the same."""
     return _ABORT.pack(0x80, index, sub, code)
 
 
@@ -92,9 +92,9 @@ class SdoError(Exception):
 class SdoClient:
     """Transfers values to and from one SDO server.
 
-    ``busy`` while a transfer runs. Then either ``error`` is set, or ``result`` holds the bytes read (empty
-    after a download). ``due`` is the time (s) at which the server's answer is overdue. ``ignored`` counts
-    replies for another object: late ones of an earlier transfer, never taken for this one's.
+    ``busy`` while a transfer runs. Afterwards either ``error`` is set, or ``result`` holds the bytes read (empty
+    after a download). The server's answer is overdue at the time ``due`` (s). ``ignored`` counts
+    replies for another object: late replies of an earlier transfer, which must not count for this one.
     """
 
     def __init__(self, timeout_s: float = 0.3) -> None:
@@ -117,12 +117,12 @@ class SdoClient:
         return self._phase != _NONE
 
     def upload(self, index: int, sub: int, now: float) -> bytes:
-        """Begin to read an object; returns the request frame."""
+        """Begin to read an object; return the request frame."""
         self._begin(index, sub, now, _UPLOAD)
         return _MUX.pack(0x40, index, sub) + b"\0\0\0\0"
 
     def download(self, index: int, sub: int, data: bytes, now: float) -> bytes:
-        """Begin to write an object; returns the request frame. More than four bytes go in segments."""
+        """Begin to write an object; return the request frame. More than four bytes go in segments."""
         self._begin(index, sub, now, _DOWNLOAD)
         self._buffer = data
         self._position = 0
@@ -133,7 +133,7 @@ class SdoClient:
         return _MUX.pack(0x21, index, sub) + _LENGTH.pack(size)
 
     def feed(self, data: bytes, now: float) -> bytes | None:
-        """Take one reply that arrived; returns the next frame to send, if any."""
+        """Process one reply that arrived; return the next frame to send, if any."""
         if self._phase == _NONE or len(data) != 8:
             self.ignored += 1
             return None
@@ -153,7 +153,7 @@ class SdoClient:
         return self._on_download_segment(data)
 
     def expire(self, now: float) -> bytes | None:
-        """Give up when the answer is overdue; returns the abort frame to send then, else None."""
+        """Give up when the answer is overdue; return the abort frame to send then, else None."""
         if self._phase == _NONE or now < self.due:
             return None
         late = f", {self.ignored} reply of another object ignored" if self.ignored else ""

@@ -25,13 +25,13 @@ from drivers.canopen.node_config import SIZES, NodeConfig
 from drivers.canopen.objects import NmtCommand
 
 BOOT_TIMEOUT_S: Final = 2.0
-"""A restart of its communication takes well under a second [A]."""
+"""Longest restart of its communication, s: well under a second is usual [A]."""
 START_TIMEOUT_S: Final = 1.0
-"""NMT start to the first heartbeat that says OPERATIONAL [A]."""
+"""Longest time from NMT start to the first OPERATIONAL heartbeat, s [A]."""
 STALE_PERIODS: Final = 3.0
-"""So many frames may be missing before the last one is too old [A]."""
+"""Number of frames that may be missing before the last one is stale [A]."""
 STALE_LEAST_S: Final = 0.5
-"""No frame is too old before this [A]."""
+"""Least age at which a frame is stale, s [A]."""
 CODES: Final = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
 
 
@@ -47,15 +47,15 @@ class SensorNode(CanNode):
         ]
         self._least_bytes = max((one.byte + SIZES[one.type] for one in config.channels.values()), default=0)
         self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * config.period_s)
-        """A frame older than this is stale."""
+        """Age above which a frame is stale, s."""
         self.values: list[float] = [nan] * len(config.channels)
 
     def fresh(self, now: float) -> bool:
-        """Return whether the node is there and its last frame, at ``now`` s, not too old."""
+        """Return whether the node is online and its last frame, at ``now`` s, not stale."""
         return self.online and now - self.stamp_s <= self.stale_s
 
     def on_tpdo1(self, t: float, data: bytes) -> None:
-        """Take the channels; a frame that is too short is counted and ignored."""
+        """Decode the channels; a frame that is too short is counted and ignored."""
         if not self.connected:
             return
         if len(data) < self._least_bytes:
@@ -81,7 +81,7 @@ class SensorNode(CanNode):
         self.refused = None
 
     def finish_connect(self) -> None:
-        """Believe a device that is OPERATIONAL."""
+        """Accept a device that is OPERATIONAL."""
         self.connected = True
         self.online = self.nmt_state == o.NmtState.OPERATIONAL
         self.heartbeat.arm()
@@ -103,12 +103,12 @@ def _connect(node: SensorNode) -> Conversation:
 
 
 def _check(node: SensorNode) -> Generator[Request, Reply, None]:
-    """Restart the node's communication, compare who it is, and have it send heartbeats."""
+    """Restart the node's communication, compare its identity, and set its heartbeat."""
     config = node.config
     yield SendNmt(NmtCommand.RESET_COMMUNICATION)
     booted = yield Until(AwaitedCondition.BOOTED, BOOT_TIMEOUT_S)
     if not booted:
-        yield from read_number(o.DEVICE_TYPE)  # a boot-up can be missed; an answer cannot
+        yield from read_number(o.DEVICE_TYPE)  # the boot-up message can be missed; an answer cannot
     for sub, expected in ((1, config.vendor_id), (2, config.product_code)):
         if expected:
             found = yield from read_number(o.IDENTITY, sub)

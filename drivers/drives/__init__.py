@@ -1,1 +1,1 @@
-"""Drives as data: what a maker's drive has, in which units, and what stands in for what it lacks."""
+"""Drives as data: the objects of each maker's drive, their units, and substitutes for missing objects."""

@@ -1,4 +1,4 @@
-"""What a drive profile says: objects that a maker's drive lacks or has elsewhere, its units, bits and PDO limits."""
+"""Contents of a drive profile: objects that a maker's drive lacks or has elsewhere, its units, bits and PDO limits."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ Key = tuple[int, int]
 
 
 def address(key: Key) -> str:
-    """Return an object's address as profiles and messages write it: ``0x1400:05``."""
+    """Return an object's address in the notation of profiles and messages: ``0x1400:05``."""
     return f"0x{key[0]:04X}:{key[1]:02X}"
 
 
 @dataclass(frozen=True, slots=True)
 class Substitute:
-    """The maker's object in the place of a missing one: ``factor`` times the standard object's value is written.
+    """The maker's object in the place of a missing one: ``factor`` times the standard object's value is written to it.
 
-    ``per_mille_of``: an object that is read first; the value is then per mille of what it says.
+    ``per_mille_of``: an object that is read first; the value is then written in per mille of its value.
     """
 
     key: Key
@@ -30,22 +30,22 @@ class Substitute:
     factor: float = 1.0
     per_mille_of: Key | None = None
     reference: int = 0
-    """What ``per_mille_of`` says on the simulated drive."""
+    """Value of the object ``per_mille_of`` on the simulated drive."""
 
     def value(self, standard: int, reference: int) -> int:
-        """Return what is written for a value of the standard object."""
+        """Return the value to write for a value of the standard object."""
         scale = self.factor if self.per_mille_of is None else self.factor * reference / 1000.0
         return round(standard * scale)
 
     def standard(self, value: int, reference: int) -> int:
-        """Return the standard object's value for one of the maker's."""
+        """Return the standard object's value for a value of the maker's object."""
         scale = self.factor if self.per_mille_of is None else self.factor * reference / 1000.0
         return round(value / scale)
 
 
 @dataclass(frozen=True, slots=True)
 class FurtherObject:
-    """A further object that is written and read back at every connect; without ``value`` the rig file states it."""
+    """A further object, written and read back at every connect; without ``value`` the rig file states its value."""
 
     key: Key
     type: DataType
@@ -55,7 +55,7 @@ class FurtherObject:
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """Counts of other objects for each count of 0x60FF; torque and its rating on their own."""
+    """Counts of other objects for each count of 0x60FF; units of torque and rated torque besides."""
 
     acceleration: float = 1.0
     """0x6083, 0x6084, 0x6085, 0x609A."""
@@ -68,45 +68,45 @@ class Units:
     torque: float = 1.0
     """Counts of 0x6072 and 0x6077 per mille of the rated torque."""
     rated_torque_nm: float = 0.001
-    """N m of a count of 0x6076."""
+    """N m per count of 0x6076."""
 
 
 @dataclass(frozen=True, slots=True)
 class PdoLimits:
-    """What can be changed of a drive's process data."""
+    """Limits on changes of a drive's process data."""
 
     cob_ids: Literal["set", "fixed"] = "set"
     mapping: Literal["free", "fixed"] = "free"
     entries: int = 8
     """Most objects in one PDO."""
     synchronous: bool = True
-    """Transmission type 1 is accepted."""
+    """Whether transmission type 1 is accepted."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriveProfile:
-    """Everything that is not the same for all CiA 402 drives. Immutable: a deep copy is the profile itself."""
+    """The differences between one make and other CiA 402 drives. Immutable: a deep copy is the profile itself."""
 
     name: str
     title: str
     checked: str
-    """What of it was compared with which manual or data sheet, and what was not."""
+    """Parts of the profile that were compared with a manual or data sheet, and parts that were not."""
     vendor_id: int = 0
-    """0x1018:01 of the maker, 0 = not known; the rig file's is compared at connect."""
+    """Vendor id of the maker in 0x1018:01, 0 = not known; the rig file's is compared at connect."""
     missing: frozenset[Key] = frozenset()
     """Objects that the drive does not have."""
     optional: frozenset[Key] = frozenset()
-    """Objects that some drives of the maker have: they are asked for."""
+    """Objects that only some drives of the maker have: the drive is asked for them."""
     substitutes: Mapping[Key, Substitute] = field(default_factory=dict[Key, Substitute])
     options: Mapping[Key, int] = field(default_factory=dict[Key, int])
-    """Values of option objects in the place of the usual ones."""
+    """Values of option objects that replace the usual values."""
     parameters: Mapping[str, FurtherObject] = field(default_factory=dict[str, FurtherObject])
     units: Units = field(default_factory=Units)
     pdo: PdoLimits = field(default_factory=PdoLimits)
     remote: bool = True
-    """Statusword bit 9 says whether the drive listens to the bus; it has to be set."""
+    """Whether statusword bit 9 shows that the drive obeys the bus; the bit then has to be set."""
     standstill: bool = True
-    """Statusword bit 12 says in profile velocity that the axis stands."""
+    """Whether statusword bit 12 shows standstill in profile velocity mode."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> DriveProfile:
         return self
@@ -115,11 +115,11 @@ class DriveProfile:
         return self
 
     def lacks(self, key: Key) -> bool:
-        """Return whether the drive has no such object; one that is missing lacks all its sub-indices."""
+        """Return whether the drive lacks an object; an object missing at sub-index 0 lacks all its sub-indices."""
         return key in self.missing or (key[0], 0) in self.missing
 
     def dictionary(self) -> dict[Key, Entry]:
-        """Return the objects that the drive has, as far as they are used here, by address."""
+        """Return the drive's objects that are used here, by address."""
         found = {key: self._entry(entry) for key, entry in DICTIONARY.items() if not self.lacks(key)}
         for key, one in self.substitutes.items():
             found[one.key] = Entry(*one.key, one.type, "rw", 0, f"in place of {address(key)}")
@@ -131,7 +131,7 @@ class DriveProfile:
         return dict(sorted(found.items()))
 
     def _entry(self, entry: Entry) -> Entry:
-        """Return an entry as the drive has it: COB-IDs and mappings may be read only."""
+        """Return an entry with this drive's access: COB-IDs and mappings may be read only."""
         pdo = 0x1400 <= entry.index < 0x1C00
         mapped = pdo and entry.index & 0x0200
         fixed = pdo and not mapped and entry.sub == 1 and self.pdo.cob_ids == "fixed"

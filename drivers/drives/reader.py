@@ -1,7 +1,7 @@
 """Reads drive profiles: one TOML file for each make of drive.
 
-``drive_profile("maxon_epos4")`` reads a file of drivers/profiles/drives, ``drive_profile("my_drive.toml")`` one of your
-own. A new drive is a new file, not a new class. Of a name that is neither, ``look_up_with`` says who is asked.
+``drive_profile("maxon_epos4")`` reads a file of drivers/profiles/drives, ``drive_profile("my_drive.toml")`` a file of
+your own. A new drive is a new file, not a new class. ``look_up_with`` sets the look-up of names that are neither.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from drivers.profiles.model import ProfileError
 from drivers.profiles.table import ProfileTable, read_table
 
 GENERIC = "cia402"
-"""The profile of an axis that names none."""
+"""Profile of an axis that names none."""
 _FOLDER = Path(__file__).parent.parent / "profiles" / "drives"
 _PACKAGED = {path.stem: path for path in sorted(_FOLDER.glob("*.toml"))}
 LookUp = Callable[[str], str]
-"""Returns the TOML text of a profile by its name; raises ValueError with what is wrong."""
+"""Returns the TOML text of a profile by its name; raises ValueError with the reason."""
 _ADDRESS = re.compile(r"([0-9A-Fa-f]{4})(?::([0-9A-Fa-f]{2}))?")
 _TYPES = {kind.name.lower(): kind for kind in DataType if kind is not DataType.TEXT}
 _CHOICES = {"cob_ids": ("set", "fixed"), "mapping": ("free", "fixed")}
 _LEAST, _MOST = -(2**31), 2**32 - 1
-"""Of what an object of 32 bits can hold, with or without a sign."""
+"""Least and greatest value of a 32-bit object, with or without a sign."""
 Section = TypeVar("Section", Units, PdoLimits)
 _OPTIONS: dict[Key, tuple[int, ...]] = {
     (0x6007, 0): (1, 3),        # a lost connection: fault (then 0x605E counts), quick stop
     (0x605A, 0): (2,),          # quick stop: on its own ramp, then power off
     (0x605B, 0): (0, 1),        # shutdown: never sent from operation
-    (0x605C, 0): (1,),          # disable operation: on the usual ramp; 0 would let the axis coast
+    (0x605C, 0): (1,),          # disable operation: on the usual ramp; with 0 the axis would coast
     (0x605D, 0): (1, 2),        # halt: on the usual ramp or that of a quick stop
     (0x605E, 0): (1, 2),        # fault: on the usual ramp or that of a quick stop
 }
-"""Option objects that a profile may set, and values with which the drive stops the axis: no others can be chosen."""
+"""Option objects that a profile may set, and the allowed values: with each of them the drive stops the axis."""
 
 
 def _nobody(name: str) -> str:
@@ -54,7 +54,7 @@ def drive_profile_names() -> list[str]:
 
 
 def look_up_with(found: LookUp) -> None:
-    """Have ``found`` asked for every name that is not a packaged profile's, nor a path's."""
+    """Call ``found`` for every name that is neither a packaged profile nor a path."""
     global _look_up
     _look_up = found
 
@@ -62,7 +62,7 @@ def look_up_with(found: LookUp) -> None:
 def drive_profile(name: str = GENERIC) -> DriveProfile:
     """Return the profile of this name, or from this path when it ends in ``.toml``; raises ProfileError.
 
-    A packaged name cannot be taken by another profile.
+    No other profile can take the name of a packaged one.
     """
     if name.endswith(".toml") or _PACKAGED.get(name) is not None:
         return _from_file(name)
@@ -90,7 +90,7 @@ def _from_text(name: str, text: str) -> DriveProfile:
 
 
 def read_drive_profile(name: str, text: str) -> DriveProfile:
-    """Return the profile that a text in TOML describes; raises ProfileError, which names file and key."""
+    """Return the profile that a text in TOML describes; raises ProfileError, whose text names file and key."""
     table = read_table(f"{name}.toml", text)
     objects = table.table("objects")
     status = table.table("statusword")
@@ -155,7 +155,7 @@ def _type(table: ProfileTable) -> DataType:
 
 
 def _key(table: ProfileTable, text: str) -> Key:
-    """Return the address that a text says: ``6072`` or ``1400:05``."""
+    """Return the address in a text: ``6072`` or ``1400:05``."""
     match = _ADDRESS.fullmatch(text)
     if match is None:
         raise table.error(text, 'is no object: expected an address such as "6072" or "1400:05"')
@@ -163,12 +163,12 @@ def _key(table: ProfileTable, text: str) -> Key:
 
 
 def _keys(table: ProfileTable, key: str) -> frozenset[Key]:
-    """Take a list of addresses."""
+    """Return a list of addresses from the table."""
     return frozenset(_key(table, str(one)) for one in table.items(key))
 
 
 def _section(table: ProfileTable, key: str, kind: type[Section]) -> Section:
-    """Take a table as a dataclass whose fields all have defaults, of which numbers must be above 0."""
+    """Return a table as a dataclass whose fields all have defaults; its numbers must be above 0."""
     inner = table.table(key)
     found: dict[str, Any] = {}
     for one in fields(kind):

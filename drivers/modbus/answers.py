@@ -1,8 +1,8 @@
-"""What came over a Modbus line in answer to a request: over TCP, on a serial line, on one that hears itself.
+"""Bytes received in answer to a Modbus request: over TCP, on a serial line, or on a line with echo.
 
-Over TCP any doubt about framing ends the connection: what comes of the old one is never read. On a serial line a reply
-is looked for in what came, and everything else there is counted. A reply to a write begins like the write, or is equal
-to it: nothing is written before it is known whether the adapter hears itself.
+Over TCP any doubt about framing ends the connection: bytes of the old one are never read. On a serial line the reply
+is searched for in the bytes received, and everything else is counted. A reply to a write begins like the write, or is
+equal to it. So nothing is written before it is known whether the adapter echoes.
 """
 
 from __future__ import annotations
@@ -17,28 +17,28 @@ from drivers.modbus.request import Request
 
 
 class AnswerKind(IntEnum):
-    """What has come so far."""
+    """State of the answer so far."""
 
     WAITED_FOR = 0
-    """Nothing whole yet."""
+    """Nothing complete yet."""
     GOOD = 1
     EXCEPTION = 2
     BROKEN = 3
     """No reply, and none will follow: the attempt has failed."""
     DOUBTED = 4
-    """The begin of the next frame is unknown (TCP)."""
+    """The start of the next frame is unknown (TCP)."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReplySoFar:
-    """``data``: registers of a good reply, empty for a write; of one that is waited for, what to keep until then."""
+    """``data``: registers of a good reply, empty for a write; while it is awaited, the bytes to keep until then."""
 
     kind: AnswerKind
     data: bytes = b""
     code: int = 0
-    """Of an exception."""
+    """Code of an exception."""
     why: str = ""
-    """Of a doubt."""
+    """Reason of a doubt."""
 
 
 BROKEN: Final = ReplySoFar(AnswerKind.BROKEN)
@@ -50,7 +50,7 @@ def numbered(request: Request, transaction: int) -> bytes:
 
 
 def tcp_answer(request: Request, sent: bytes, data: bytes) -> ReplySoFar:
-    """Take what came over TCP for the reply to ``sent`` where it is that and nothing else; what is not is counted."""
+    """Return the reply to ``sent`` if ``data`` is that reply and nothing else; anything else is counted."""
     counters = request.station.counters
     transaction = int.from_bytes(sent[:2], "big")
     try:
@@ -77,12 +77,12 @@ def _reply(request: Request, answer: codec.DecodedAnswer, pdu: bytes) -> ReplySo
 
 
 def serial_answer(request: Request, data: bytes) -> ReplySoFar:
-    """Find the reply in what came on a serial line, and count what else is there."""
+    """Find the reply in the bytes of a serial line, and count everything else there."""
     counters = request.station.counters
     at = data.find(request.head) if request.head else -1
     whole = data[at : at + request.reply_length] if at >= 0 else b""
     if len(whole) == request.reply_length and crc16(whole) == 0:
-        counters.garbage += at > 0  # noise before it, as when a driver of the line is switched on
+        counters.garbage += at > 0  # noise before it, as when a line driver switches on
         return ReplySoFar(AnswerKind.GOOD, whole[3:-2])
     while data:
         used, unit_id, _, pdu = codec.next_frame("rtu", data)
@@ -105,14 +105,14 @@ def serial_answer(request: Request, data: bytes) -> ReplySoFar:
 
 
 class SerialEar:
-    """Takes off what was sent, where the adapter gives it back, and finds out whether it does.
+    """Removes the echo of sent bytes, and finds out whether the adapter echoes.
 
-    The request of a read is never a reply to it: who gets it back hears itself. Whose reply to a read comes without it
-    does not. ``hears_itself`` is None until one of the two has come.
+    The request of a read is never a reply to it: an adapter that returns it echoes. A reply to a read without it shows
+    that the adapter does not. ``hears_itself`` is None until either has come.
     """
 
     def __init__(self, hears_itself: bool | None = None) -> None:
-        """Begin with what is known."""
+        """Begin with what is known of the echo; None: nothing."""
         self.hears_itself: bool | None = hears_itself
         self._stripped = False
 
@@ -121,10 +121,10 @@ class SerialEar:
         self._stripped = False
 
     def answer(self, request: Request, sent: bytes, data: bytes) -> ReplySoFar:
-        """Return what came in answer to ``sent``."""
+        """Return the answer to ``sent``, without the echo."""
         if self.hears_itself is False and (request.writes or not data.startswith(sent)):
             return serial_answer(request, data)
-        # The adapter may be changed between two replies: from then on it counts as one that hears itself.
+        # The adapter may be exchanged between two replies: from then on it counts as an adapter with echo.
         if not self._stripped:
             if len(data) < len(sent) and sent.startswith(data):
                 return ReplySoFar(AnswerKind.WAITED_FOR, data)

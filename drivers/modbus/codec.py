@@ -1,7 +1,7 @@
 """Frames of Modbus requests and replies. The only module that knows pymodbus.
 
 pymodbus's framers and PDU classes are used without its clients: they neither keep time nor own a connection here.
-Minor releases change these classes, so the version is pinned and everything used of them is tested.
+Minor releases change these classes, so the version is pinned and every class used is tested.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ READ_HOLDING = 3
 READ_INPUT = 4
 WRITE_ONE = 6
 WRITE_MANY = 16
-"""The function codes in use (Modbus application protocol V1.1b3)."""
+"""Function codes in use (Modbus application protocol V1.1b3)."""
 
 MOST_WRITTEN = 123
 """Registers in one write (6.12)."""
@@ -52,12 +52,12 @@ EXCEPTION_TEXTS = {
 }
 """Exception codes (Modbus application protocol V1.1b3, 7)."""
 
-# Without a handler of its own the library's remarks on bad frames would go to stderr; the link counts them instead.
+# Without this handler the library would report bad frames on stderr; the link counts them instead.
 logging.getLogger("pymodbus").addHandler(logging.NullHandler())
 
 
 class _Replies(DecodePDU):
-    """Only the replies we can get: garbage is then seldom taken for the head of a frame."""
+    """Decoder of the possible replies only: so garbage is seldom decoded as the head of a frame."""
 
     pdu_table = {  # noqa: RUF012 - the library's own class attribute, narrowed
         READ_HOLDING: (ReadHoldingRegistersRequest, ReadHoldingRegistersResponse),
@@ -74,7 +74,7 @@ _FRAMERS: dict[str, FramerRTU | FramerSocket] = {
 
 
 class DecodedAnswer(Enum):
-    """What a well-formed frame is to the request that waits for it."""
+    """Relation of a well-formed frame to the request that waits for it."""
 
     GOOD = 1
     EXCEPTION = 2
@@ -114,34 +114,34 @@ def _build(framing: Framing, message: ModbusPDU) -> bytes:
 
 
 def write_reply(request: bytes) -> bytes:
-    """Return the good reply over RTU to a write request: function 6 echoes it, function 16 its address and count."""
+    """Return the good RTU reply to a write request: function 6 repeats it, function 16 its address and count."""
     return request if request[1] == WRITE_ONE else with_crc(request[:6])
 
 
 def reply_length(framing: Framing, function: int, count: int) -> int:
-    """Return the bytes of a good reply to a request of ``count`` registers."""
+    """Return the length in bytes of a good reply to a request of ``count`` registers."""
     data = 1 + 2 * count if function in (READ_HOLDING, READ_INPUT) else 4
     return data + (4 if framing == "rtu" else 8)
 
 
 def next_frame(framing: Framing, buffer: bytes) -> tuple[int, int, int, bytes]:
-    """Return (bytes used up, unit id, transaction number, PDU) of the first frame in ``buffer``.
+    """Return (bytes consumed, unit id, transaction number, PDU) of the first frame in ``buffer``.
 
-    0 bytes used: no frame yet. No PDU but bytes used: a frame that fails its CRC.
+    0 bytes consumed: no frame yet. Bytes consumed without a PDU: a frame that fails its CRC.
     """
     used, unit_id, transaction, pdu = _FRAMERS[framing].decode(buffer)
     if pdu and framing == "rtu":
-        # The library drops what follows the frame; it may be the answer we wait for.
+        # The library drops the bytes after the frame; they may be the answer we wait for.
         used = buffer.index(pdu) + len(pdu) + 2
     return used, unit_id, transaction, pdu
 
 
 class FramingError(ValueError):
-    """What came over TCP cannot be the reply: the begin of the next frame is unknown."""
+    """Bytes over TCP that cannot be the reply: the start of the next frame is unknown."""
 
 
 def tcp_reply(data: bytes, transaction: int, unit_id: int, function: int, length: int) -> bytes:
-    """Return the PDU of a reply over TCP that ``data`` is, whole and alone; b"" while it may still become one.
+    """Return the PDU of ``data``, which must be exactly one reply over TCP; b"" while it is incomplete.
 
     ``length``: bytes of the good reply. Raises FramingError for another transaction, protocol, length, unit or
     function, and for bytes beyond the frame (Modbus messaging on TCP/IP implementation guide V1.0b, 3.1.3).
@@ -169,7 +169,7 @@ def tcp_reply(data: bytes, transaction: int, unit_id: int, function: int, length
 
 
 def classify(pdu: bytes, function: int, address: int, values: Sequence[int], count: int) -> DecodedAnswer:
-    """Tell what ``pdu`` is to a request of ``function`` from ``address``: to read ``count``, or to write ``values``."""
+    """Return how ``pdu`` answers a request of ``function`` from ``address``, to read ``count`` or write ``values``."""
     if pdu[0] == function | 0x80 and len(pdu) == 2:
         return DecodedAnswer.EXCEPTION
     if pdu[0] != function:

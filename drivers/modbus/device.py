@@ -1,4 +1,4 @@
-"""What every Modbus device has in common: it is identified and set up, then read again and again."""
+"""Base of all Modbus devices: a device is identified and set up, then read again and again."""
 
 from __future__ import annotations
 
@@ -20,14 +20,15 @@ class SetupStep:
     what: str
     request: Request
     expected: bytes | None = None
-    """What the registers read must hold, as on the wire; None = any answer will do."""
+    """Expected content of the registers read, as on the wire; None = any answer will do."""
 
 
 class Device(ABC):
-    """A slave with a profile. It is set up when it first answers, and again whenever it was lost in between.
+    """A slave with a profile. It is set up when it first answers, and again after every loss.
 
-    ``ready``: set up, being read. ``refused``: why it cannot be used, None if it can. ``valid``: the last reading can
-    be believed; ``stamp_s``: when it arrived (-inf = never). ``complaint``: what it says that it lacks, "" = nothing.
+    ``ready``: the device is set up and being read. ``refused``: the reason why it cannot be used, None if it can.
+    ``valid``: the last reading can be believed; ``stamp_s``: its arrival (-inf = never). ``complaint``: what the device
+    reports as missing, "" = nothing.
     """
 
     def __init__(self, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
@@ -51,16 +52,16 @@ class Device(ABC):
 
     @property
     def refused(self) -> str | None:
-        """Why the device cannot be used as configured (identity, exception, read-back), or None."""
+        """Reason why the device cannot be used as configured (identity, exception, read-back), or None."""
         return self.station.refused
 
     @property
     def is_lost(self) -> bool:
-        """Return whether it stopped answering."""
+        """Return whether the device stopped answering."""
         return self.station.is_lost
 
     def begin(self) -> None:
-        """Start: identity first, then the steps the subclass added; without any, the first read stands for them."""
+        """Start: identity first, then the steps that the subclass added, or the first read if there are none."""
         identity = self.profile.identity
         if identity is not None:
             request = self.link.read(self.station, identity.function, identity.address, 1)
@@ -70,7 +71,7 @@ class Device(ABC):
         self.link.enable(self._steps[0].request)
 
     def add_write(self, what: str, address: int, words: tuple[int, ...], read_back: bool) -> None:
-        """Add a write to the set-up, and a comparison of what the registers then hold."""
+        """Add a write to the set-up, and a comparison of the registers afterwards."""
         function = self.profile.write_function if len(words) == 1 else WRITE_MANY
         self._steps.append(SetupStep(what, self.link.write(self.station, function, address, words)))
         if read_back:
@@ -78,7 +79,7 @@ class Device(ABC):
             self._steps.append(SetupStep(what, read, b"".join(word.to_bytes(2, "big") for word in words)))
 
     def received(self, request: Request, data: bytes, t: float) -> None:
-        """Take a good reply that arrived at ``t`` s: continue the set-up, or update the readings."""
+        """Process a good reply that arrived at ``t`` s: continue the set-up, or update the readings."""
         if not self.ready and request is self._steps[self._step].request:
             self._proceed(self._steps[self._step], data)
         if request.block >= 0:
@@ -101,7 +102,7 @@ class Device(ABC):
         if step.expected is not None:
             found, expected = data[: len(step.expected)], step.expected
             if found != expected:
-                one = len(expected) == 2  # a number for people; of several registers the bytes
+                one = len(expected) == 2  # for people: a number, or the bytes of several registers
                 shown = [str(int.from_bytes(held, "big")) if one else held.hex(" ") for held in (found, expected)]
                 self.station.refused = f"{step.what}: register holds {shown[0]}, expected {shown[1]}"
                 return
@@ -124,7 +125,7 @@ class Device(ABC):
 
     @abstractmethod
     def suspend(self) -> None:
-        """Act on the loss of the device: its readings are not valid any more."""
+        """Act on the loss of the device: mark its readings as invalid."""
 
     @abstractmethod
     def resume(self) -> None:

@@ -1,4 +1,4 @@
-"""What a Modbus line is: its framing and speed, and from these the bytes and times of every request."""
+"""Properties of a Modbus line: its framing and speed, and from these the bytes and times of every request."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SOCKET_MARGIN_S = 0.05
 
 
 class LineType:
-    """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP; ``socket``: it is a TCP connection."""
+    """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP; ``socket``: a TCP connection."""
 
     def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
         """Take the framing; ``baud`` in bit/s and ``parity`` matter on RTU only."""
@@ -51,7 +51,7 @@ class LineType:
         return self._timed(request)
 
     def load(self, request: Request, values: tuple[int, ...]) -> None:
-        """Let a write carry ``values``."""
+        """Set the ``values`` of a write."""
         unit_id = request.station.unit_id
         request.frame = codec.write_request(self.framing, unit_id, request.function, request.address, values)
         request.values = values
@@ -60,7 +60,7 @@ class LineType:
             request.confirmation = codec.write_reply(request.frame)
 
     def _timed(self, request: Request) -> Request:
-        """Work out the times of a request."""
+        """Calculate the times of a request."""
         request.reply_length = codec.reply_length(self.framing, request.function, request.count)
         request.reply_wire_s = request.reply_length * self._character_s
         request.wire_s = len(request.frame) * self._character_s + self.gap_s + request.reply_wire_s
@@ -69,7 +69,7 @@ class LineType:
         return request
 
     def _judge(self, request: Request) -> None:
-        """Work out how long its reply is waited for."""
+        """Calculate the time-out of a request's reply."""
         station = request.station
         reply = station.reply
         usual_s = max(station.timing.turnaround_s, reply.least_s) if reply.measured else station.timing.turnaround_s
@@ -78,13 +78,13 @@ class LineType:
         request.timeout_s = request.wire_s + limit_s + (SOCKET_MARGIN_S if self.socket else RTU_MARGIN_S)
 
     def measured(self, station: Station) -> None:
-        """Take account of what is known by now of a station's replies."""
+        """Use the reply times of a station that were measured by now."""
         for request in self._requests:
             if request.station is station:
                 self._judge(request)
 
     def exchange_s(self, station: Station) -> float:
-        """Return how long the longest read of a station takes from request to reply, by what was measured, s."""
+        """Return the usual time of a station's longest read from request to reply, as measured, s."""
         wire_s = max((one.wire_s for one in self._requests if one.station is station and not one.writes), default=0.0)
         return wire_s + station.reply.greatest_s
 

@@ -1,8 +1,8 @@
-"""The Modbus link: one line, one transaction at a time, all time handed in by the caller.
+"""The Modbus link: one line, one transaction at a time; the caller passes all times in.
 
-Give it what arrived (``feed``), then let it send what is due (``service``): in this order in every tick, so that a
-reply that came in time is never taken for a time-out because the tick was late.
-Doubts about framing, and adapters that give back what is sent: ``drivers.modbus.answers``.
+In every tick pass the bytes received to ``feed``, then call ``service`` to send what is due. In this order a
+reply that came in time never counts as a time-out because the tick was late.
+Doubts about framing, and adapters that echo: ``drivers.modbus.answers``.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from drivers.profiles.model import Timing
 MISSES_TO_LOSE: Final = 3
 """Failed attempts in a row after which a station counts as lost (safety page: 3 misses)."""
 BUSY_S: Final = 0.02
-"""Pause before a request is repeated that a device was too busy or failed to answer (exceptions 04 to 08)."""
+"""Pause before a request is repeated after a device was busy or failed to answer (exceptions 04 to 08), s."""
 POLL_S: Final = 0.002
-"""While others wait and a reply is overdue, the link asks to be served on a grid of this."""
+"""While other requests wait and a reply is overdue, the link asks to be served on a grid of this, s."""
 
 _TINY_S: Final = 1e-9
 _CONFIGURATION: Final = frozenset({1, 2, 3})
@@ -33,7 +33,7 @@ _GOOD: Final = AnswerKind.GOOD
 
 
 class ModbusLink(LineType):
-    """Master of one Modbus line. ``deadline`` (s) is when it wants ``service`` at the latest.
+    """Master of one Modbus line. ``deadline`` (s) is the latest time for the next ``service``.
 
     Before ``wants_s`` a ``service`` does nothing: the caller may skip it.
     """
@@ -54,9 +54,9 @@ class ModbusLink(LineType):
         self.garbage = 0
         """Pieces that arrived although no station had been asked."""
         self.doubts = ""
-        """Why the connection was dropped and opened anew, the last time (TCP)."""
+        """Reason of the last reconnection (TCP)."""
         self.scan_s = inf
-        """Time between scans, s. Where the exchange of a read of every scan takes longer, the next begins at once."""
+        """Time between scans, s. If the exchange of an every-scan read takes longer, the next one begins at once."""
         self._doubt = ""
         self._sent = b""
         self.ear = SerialEar(False if self.socket else None)
@@ -79,15 +79,15 @@ class ModbusLink(LineType):
         self._backlog_s = self.wants_s = -inf
 
     def disable(self, request: Request) -> None:
-        """Send a request no more."""
+        """Stop sending a request."""
         self._schedule.disable(request)
         self.wants_s = -inf
 
     def rewrite(self, request: Request, values: tuple[int, ...], urgent: bool = False) -> None:
-        """Let a write carry ``values`` from now on: the newest wins, what was waiting is dropped.
+        """Set the ``values`` of a write from now on: the newest values replace those still waiting.
 
-        If enabled it goes out as soon as its turn comes, if ``urgent`` before everything else. The same values
-        again change nothing.
+        If enabled, the write goes out as soon as its turn comes; an ``urgent`` write goes before everything else.
+        Unchanged values change nothing.
         """
         if values == request.values:
             return
@@ -103,7 +103,7 @@ class ModbusLink(LineType):
     # what the tick does ----------------------------------------------------------------------------------------
 
     def feed(self, chunks: list[tuple[float, bytes]], now: float) -> None:
-        """Take in what arrived up to ``now``: (arrival of the last byte in s, bytes), oldest first."""
+        """Process what arrived up to ``now``: (arrival of the last byte in s, bytes), oldest first."""
         for t, chunk in chunks:
             request = self._active
             if request is None:
@@ -114,7 +114,7 @@ class ModbusLink(LineType):
                 self._act(request, tcp_answer(request, self._sent, data), t)
                 continue
             hears_itself = self.ear.hears_itself
-            # The usual cases by themselves, several times faster than the library, which takes everything else.
+            # The usual cases here, several times faster than in the library, which decodes everything else.
             if hears_itself is not False:
                 self._act(request, self.ear.answer(request, self._sent, data), t)
                 if hears_itself is None and self.ear.hears_itself is False:
@@ -130,7 +130,7 @@ class ModbusLink(LineType):
     def service(self, port: LinePort, now: float, *, scan: bool = True) -> None:
         """Send what is due at ``now``, judge time-outs and set ``deadline``; raises BusLost.
 
-        ``scan``: this is a regular scan; reads of period 0 go out with those only.
+        ``scan``: this is a regular scan; reads of period 0 are sent only then.
         """
         active = self._active
         if active is not None:
@@ -182,7 +182,7 @@ class ModbusLink(LineType):
             self.wants_s = give_up_s - _TINY_S
 
     def _contact(self, now: float) -> Request | None:
-        """Return a read of a station to which only writes are due, while it is not known whether we hear ourselves."""
+        """Return a read of a station that has only writes due, while it is not known whether the adapter echoes."""
         request = self._schedule.write_due(now)
         if request is None:
             return None
@@ -193,14 +193,14 @@ class ModbusLink(LineType):
         return station.contact if station.contact.sent_s <= now - PROBE_S else None
 
     def _begin_anew(self, port: LinePort, now: float) -> None:
-        """Drop a connection whose framing is in doubt; raises BusLost for a line that cannot be begun anew."""
+        """Drop a connection whose framing is in doubt; raises BusLost for a line that cannot be opened anew."""
         self.doubts, self._doubt = self._doubt, ""
         if not isinstance(port, RenewablePort):
             raise BusLost(f"{self.doubts}, and the line cannot be begun anew")
         port.renew(now)
 
     def measure(self) -> None:
-        """Measure anew how long the stations' replies take, from the next ones on."""
+        """Measure the stations' reply times anew, from their next replies on."""
         for station in self.stations:
             station.reply.forget()
             self.measured(station)
@@ -211,7 +211,7 @@ class ModbusLink(LineType):
         return self._active is not None and self.deadline == self._give_up_s
 
     def _wait(self, now: float) -> None:
-        """Set the deadline while a reply is awaited: others waiting, it is fetched when it should be there."""
+        """Set the deadline while a reply is awaited: if others wait, it is fetched when it should have arrived."""
         deadline = self._give_up_s
         active = self._active
         if active is not None and self._backlog_s < deadline:
@@ -252,20 +252,20 @@ class ModbusLink(LineType):
         self.wants_s = schedule.wants_s
         latest_s = schedule.latest_s
         self.deadline = latest_s if latest_s > quiet_s else quiet_s
-        # A tick that came late cannot make a reading look newer than the time-out allows.
+        # A late tick must not make a reading look newer than the time-out allows.
         station.owner.received(request, data, t if t < self._give_up_s else self._give_up_s)
 
     def _retimed(self, station: Station) -> None:
-        """Let what is known of a station's replies count."""
+        """Apply what is known of a station's reply times."""
         self.measured(station)
         self._schedule.look_again()
 
     def _time_out(self, request: Request, now: float) -> None:
         """Give a request up, and keep the line silent: its reply may still come.
 
-        It would be taken for the reply to the next request of the same shape (pymodbus-dev/pymodbus#2636). A slave
-        slower than the longest time measured, and than its profile states, can still do that: nothing in an RTU frame
-        tells. Over TCP the connection is dropped.
+        That reply would count for the next request of the same shape (pymodbus-dev/pymodbus#2636). A slave slower than
+        the longest measured time and than its profile's limit can still cause that, because an RTU frame does not name
+        its request. Over TCP the connection is dropped.
         """
         station = request.station
         station.counters.timeouts += 1
@@ -293,7 +293,7 @@ class ModbusLink(LineType):
         station.owner.lost(t)
 
     def _act(self, request: Request, answer: ReplySoFar, t: float) -> None:
-        """Do what follows from what came."""
+        """Act on the answer so far."""
         kind = answer.kind
         if kind is _GOOD:
             self._succeed(request, answer.data, t)
@@ -308,7 +308,7 @@ class ModbusLink(LineType):
             self._fail(request, t, t)
 
     def _except(self, request: Request, code: int, t: float) -> None:
-        """Act on an exception: a wrong configuration latches, a busy device is asked again, a gone one is lost."""
+        """Act on an exception: a wrong configuration latches, a busy device is asked again, an absent one is lost."""
         station = request.station
         exceptions = station.counters.exceptions
         exceptions[code] = exceptions.get(code, 0) + 1
@@ -329,7 +329,7 @@ class ModbusLink(LineType):
             self._fail(request, t + BUSY_S, t + self.gap_s)
 
     def _unasked(self, t: float) -> None:
-        """Count unexpected bytes, after a time-out as a late reply; wait once more until the line is silent."""
+        """Count unexpected bytes, after a time-out as a late reply; wait again until the line is silent."""
         if self.socket:
             if not self._doubt:
                 self._doubt = "bytes that nobody asked for"
@@ -345,6 +345,6 @@ class ModbusLink(LineType):
         station.counters.late += 1
         self._quiet_s = max(self._quiet_s, t + suspect.quiet_s)
         if t - suspect.sent_s <= station.longest_s:
-            # The line is slower than it was measured, and not too slow yet: the next reply is waited for.
+            # The line is slower than measured, but within the limit: wait longer for the next reply.
             station.reply.note(t - suspect.sent_s - suspect.wire_s)
             self._retimed(station)

@@ -1,7 +1,7 @@
-"""Ask devices of a Modbus line for registers, one question at a time: what a look at a line is made of.
+"""Ask devices of a Modbus line for registers, one question at a time: the base of a survey of a line.
 
-Nothing is written. Beside the answer it tells how long the device took, and what came instead of an answer; a driver's
-link would have given a late one up.
+Nothing is written. Each answer also contains the device's reply time, and any bytes that were no answer; a driver's
+link would have given a late answer up.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from drivers.modbus.line import Parity, silent_gap_s
 from drivers.ports import LinePort
 
 SETTLE_S: Final = 0.005
-"""Silence kept after an answer that was none, s: the rest of it may still come [A]."""
+"""Silence kept after bytes that were no answer, s: the rest of them may still come [A]."""
 
 
 @dataclass(frozen=True, slots=True)
 class RegisterQuestion:
-    """Registers to be read."""
+    """Registers to read."""
 
     unit_id: int
     function: int
@@ -30,15 +30,15 @@ class RegisterQuestion:
 
 @dataclass(frozen=True, slots=True)
 class LineAnswer:
-    """What became of a question: registers (``data``), an exception code, noise, or nothing."""
+    """Outcome of a question: registers (``data``), an exception code, noise, or nothing."""
 
     question: RegisterQuestion
     data: bytes = b""
     exception: int = 0
     noise: bytes = b""
-    """What came and was no answer to it."""
+    """Bytes received that were no answer to it."""
     at_s: float = inf
-    """When its last byte had arrived, s."""
+    """Arrival of its last byte, s."""
     delay_s: float = inf
     """Time from the end of the request to the answer, less what the answer takes on the wire, s."""
 
@@ -53,7 +53,7 @@ class LineAnswer:
         return bool(self.data) or self.exception != 0
 
     def describe(self) -> str:
-        """Say what came."""
+        """Return the outcome for people."""
         if self.data:
             return "an answer"
         if self.exception:
@@ -65,7 +65,7 @@ class LineAnswer:
 
 
 class LineScan:
-    """Asks one question after the other: ``ask``, then ``feed`` and ``service`` until ``answer`` is there."""
+    """Asks one question after the other: ``ask``, then ``feed`` and ``service`` until ``answer`` is set."""
 
     def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
         """Take the line; ``baud`` in bit/s and ``parity`` matter on RTU only."""
@@ -93,7 +93,7 @@ class LineScan:
         question = self._question
         for t, chunk in chunks:
             if question is None or self._sent_s is None or self.answer is not None:
-                self._quiet_s = max(self._quiet_s, t + SETTLE_S)  # of an earlier question, which has been given up
+                self._quiet_s = max(self._quiet_s, t + SETTLE_S)  # late bytes of a question that was given up
                 continue
             self._buffer += chunk
             self._examine(question, t)
@@ -123,7 +123,7 @@ class LineScan:
         return codec.reply_length(self.framing, question.function, question.count) * self._character_s
 
     def _examine(self, question: RegisterQuestion, t: float) -> None:
-        """Find the answer in what has arrived; the rest stays, and is reported as noise when the time is over."""
+        """Find the answer in the bytes received; the rest is kept, and reported as noise when the time is over."""
         at, data = 0, self._buffer
         while at < len(data):
             used, unit_id, transaction, pdu = codec.next_frame(self.framing, data[at:])

@@ -1,7 +1,7 @@
-"""What travels on a Modbus line: stations (slaves as seen from here), how fast they reply, and the requests to them.
+"""Stations (slaves as seen from here) of a Modbus line, their reply times, and the requests to them.
 
-The time of a reply is that of the whole way: the device's own turnaround, the adapter (a USB adapter's latency timer
-holds characters back, usually for 16 ms), the operating system, and how often the line is looked at.
+A reply time covers the whole way: the device's own turnaround, the adapter (a USB adapter's latency timer
+holds characters back, usually for 16 ms), the operating system, and the interval between two looks at the line.
 """
 
 from __future__ import annotations
@@ -13,23 +13,23 @@ from typing import Final, Protocol
 from drivers.profiles.model import Timing
 
 REPLIES: Final = 5
-"""Replies that are measured when a station is connected [A]."""
+"""Number of replies measured when a station is connected [A]."""
 UNMEASURED_S: Final = 0.1
-"""A reply is waited for this long beyond the wire until it is known how long replies take [A]: six latency timers of
+"""Time-out of a reply beyond its wire time, s, until reply times are known [A]: six latency timers of
 16 ms. A slower line is as good as silent."""
 REPLY_FACTOR: Final = 1.5
-"""A reply may take this times the longest measured [A]. A USB adapter's timer adds 0 to 16 ms by chance, so that the
-longest of five is above 10 ms in 99 of 100 cases. No less than the profile's own limit, no more than UNMEASURED_S."""
+"""Time-out of a reply as a multiple of the longest measured [A]. A USB adapter's timer adds 0 to 16 ms by chance, so
+the longest of five is above 10 ms in 99 of 100 cases. Bounds: the profile's own limit and UNMEASURED_S."""
 
 
 class ReplyTimes:
-    """Times from the end of a request to the start of its reply, s, as they are seen here.
+    """Measured times from the end of a request to the start of its reply, s.
 
-    ``count`` replies were measured, ``least_s`` and ``greatest_s`` of them; ``measured`` once there are enough.
+    ``count`` replies were measured, ``least_s`` to ``greatest_s``; ``measured``: there are enough.
     """
 
     def __init__(self) -> None:
-        """Nothing is known."""
+        """Begin without measurements."""
         self.forget()
 
     def forget(self) -> None:
@@ -41,7 +41,7 @@ class ReplyTimes:
         self.measured = False
 
     def note(self, seconds: float) -> None:
-        """Take a reply's time, s."""
+        """Record a reply's time, s."""
         self.count += 1
         self.total_s += seconds
         self.least_s = min(self.least_s, seconds)
@@ -50,21 +50,21 @@ class ReplyTimes:
 
     @property
     def mean_s(self) -> float:
-        """Mean of what was measured, s; 0 before the first reply."""
+        """Mean of the measured times, s; 0 before the first reply."""
         return self.total_s / self.count if self.count else 0.0
 
     def limit_s(self, timing: Timing) -> float:
-        """Return how long a reply is waited for beyond the wire, s."""
+        """Return the time-out of a reply beyond its wire time, s."""
         if not self.measured:
             return max(timing.reply_max_s, UNMEASURED_S)
         return max(timing.reply_max_s, min(REPLY_FACTOR * self.greatest_s, UNMEASURED_S))
 
 
 class Owner(Protocol):
-    """The driver behind a station; it is called with the outcome of its requests."""
+    """The driver behind a station; it receives the outcome of its requests."""
 
     def received(self, request: Request, data: bytes, t: float) -> None:
-        """Take the registers of a good reply (empty for a write) that arrived at ``t`` s."""
+        """Process the registers of a good reply (empty for a write) that arrived at ``t`` s."""
         ...
 
     def lost(self, t: float) -> None:
@@ -74,42 +74,42 @@ class Owner(Protocol):
 
 @dataclass(slots=True)
 class Counters:
-    """What happened on the line with one slave since the start."""
+    """Events on the line with one slave since the start."""
 
     requests: int = 0
     replies: int = 0
     timeouts: int = 0
     crc_errors: int = 0
     garbage: int = 0
-    """Pieces that were no reply: wrong address, broken off, noise."""
+    """Pieces that were no reply: wrong address, incomplete, noise."""
     late: int = 0
-    """Replies to a request that had been given up, or to another than the last."""
+    """Replies to a request that had been given up, or to an older request than the last."""
     exceptions: dict[int, int] = field(default_factory=dict[int, int])
-    """How often each exception code came."""
+    """Number of each exception code."""
 
 
 @dataclass(slots=True, eq=False)
 class Station:
-    """One slave: its address, its timing and how it has been doing."""
+    """One slave: its address, its timing and its record so far."""
 
     unit_id: int
     timing: Timing
     owner: Owner
     counters: Counters = field(default_factory=Counters)
     misses: int = 0
-    """Attempts that failed in a row."""
+    """Failed attempts in a row."""
     is_lost: bool = False
-    """Three attempts in a row failed, or a gateway reported the device as gone; a good reply ends it."""
+    """Whether three attempts in a row failed, or a gateway reported the device absent; a good reply ends it."""
     refused: str | None = None
-    """Why the device cannot be used as configured; stays until the program is started again."""
+    """Reason why the device cannot be used as configured; it stays until the program restarts."""
     reply: ReplyTimes = field(default_factory=ReplyTimes)
-    """How long its replies take."""
+    """Its reply times."""
     known_register: tuple[int, int] = (3, 0)
-    """Function and address with which it can be read."""
+    """Function and address of a read that it answers."""
     contact: Request | None = None
     """A read that shows whether the adapter hears itself, before anything is written."""
     longest_s: float = 0.0
-    """Replies that were given up and came within this (request, wire and all, s) lengthen the time-out; 0 = none."""
+    """Late replies within this time (request, wire and all, s) lengthen the time-out; 0 = none do."""
 
 
 @dataclass(slots=True, eq=False)
@@ -121,45 +121,45 @@ class Request:
     address: int
     count: int
     period_s: float
-    """Time between two; 0 = with every scan, infinity = once each time it is asked for."""
+    """Time between two; 0 = with every scan, infinity = once for each demand."""
     slack_s: float
-    """How long it may wait for a regular scan before the link asks to be served."""
+    """Longest wait for a regular scan before the link asks to be served."""
     frame: bytes = b""
     head: bytes = b""
     """First three bytes of a good reply to a read over RTU (address, function, byte count)."""
     echo: bytes = b""
     """Good reply over RTU to the write that was sent last."""
     confirmation: bytes = b""
-    """Good reply over RTU to the write as it would be sent now."""
+    """Good reply over RTU to the write with its present values."""
     block: int = -1
-    """Number of the profile's block that it reads again and again; -1 = none of them."""
+    """Number of the profile's block that it polls; -1 = none."""
     reply_length: int = 0
     expected_s: float = 0.0
     """Usual time from sending to the complete reply."""
     timeout_s: float = 0.0
-    """Time from sending after which it is given up."""
+    """Time from sending after which the request is given up."""
     reply_wire_s: float = 0.0
     """Time a reply occupies the wire."""
     wire_s: float = 0.0
-    """Time that request, silence and reply take on the wire."""
+    """Time on the wire of request, silence and reply."""
     quiet_s: float = 0.0
-    """After a time-out the line must have been quiet for this."""
+    """Time of silence required after a time-out."""
     values: tuple[int, ...] = ()
-    """What is written, one number a register."""
+    """Values to write, one number for each register."""
     sent_values: tuple[int, ...] = ()
-    """What was written last: new values may come while its reply is under way."""
+    """Values written last: new values may come while its reply is under way."""
     due_s: float = inf
     wish_s: float = inf
-    """When it will have waited as long as it may."""
+    """Time at which it has waited as long as it may."""
     sent_s: float = -inf
     attempts: int = 0
     enabled: bool = False
     fresh: bool = False
-    """New values came after the last was sent."""
+    """Whether new values came after the last was sent."""
     writes: bool = False
-    """A write, not a read."""
+    """Whether this is a write."""
 
     def describe(self) -> str:
-        """Say what it does, for messages to people."""
+        """Return a description of the request for people."""
         what = "writing" if self.writes else "reading"
         return f"{what} {self.count} register{'s' if self.count > 1 else ''} from address {self.address}"

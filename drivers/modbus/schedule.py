@@ -1,4 +1,4 @@
-"""Which request goes next on a Modbus line, and when the line wants to be served."""
+"""Choice of the next request on a Modbus line, and of the time when the line wants to be served."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from typing import Final
 from drivers.modbus.request import Request, Station
 
 PROBE_S: Final = 1.0
-"""Pause between attempts to reach a lost station: it must not take the line from the others."""
+"""Pause between attempts to reach a lost station, s: other stations need the line."""
 RETRY_S: Final = 0.5
-"""Pause before a write or a single read is tried again whose attempts all failed."""
+"""Pause before a write or a single read is tried again after all its attempts failed, s."""
 SLACK_S: Final = 0.06
 """A periodic read waits this long for a regular scan: scans at 20 Hz serve the slow line without ticks of its own."""
 
 _TINY_S: Final = 1e-9
 _EARLY_S: Final = 1e-3
-"""What falls due within this is sent now: the next scan would be later."""
+"""A request due within this time is sent now: the next scan would be later."""
 
 
 class Schedule:
-    """The requests of one line. Of those due, the one goes first that has waited longest.
+    """The requests of one line. Of the due requests, the one that has waited longest is sent first.
 
-    ``wants_s``: before it there is nothing to choose (s); ``latest_s``: when the first request will have waited as long
-    as it may, of those not under way.
+    ``wants_s``: there is nothing to choose before it (s). ``latest_s``: the time at which the first request not under
+    way has waited as long as it may.
     """
 
     def __init__(self) -> None:
-        """Nothing is due."""
-        self._requests: list[Request] = []  # those enabled, in the order they were
+        """Begin with no request."""
+        self._requests: list[Request] = []  # enabled requests, in the order of enabling
         self._soonest_s = self.latest_s = self.wants_s = -inf
         self._with_scans = False
         self.slowest_s = 0.0
         """The longest usual exchange among the reads that go out with every scan, s."""
 
     def enable(self, request: Request, due_s: float = -inf) -> None:
-        """Let a request be sent at ``due_s``, then in its period."""
+        """Schedule a request at ``due_s``, then in its period."""
         if not request.enabled:
             self._requests.append(request)
         request.enabled = True
@@ -43,18 +43,18 @@ class Schedule:
         self._plan(request, due_s)
 
     def disable(self, request: Request) -> None:
-        """Send a request no more."""
+        """Stop sending a request."""
         if request.enabled:
             self._requests.remove(request)
         request.enabled = False
         self._plan(request, inf)
 
     def renew(self, request: Request, urgent: bool) -> None:
-        """Let a write with new values go out as soon as its turn comes; ``urgent``: before everything else."""
+        """Schedule a write with new values as soon as its turn comes; ``urgent``: before everything else."""
         request.fresh = True
         request.attempts = 0
         if request.enabled:
-            # Counted from the last one: a value that changes in every scan cannot starve the reads.
+            # Counted from the last write: a value that changes in every scan must not starve the reads.
             self._plan(request, -inf if urgent else min(request.due_s, request.sent_s))
 
     def retime(self, request: Request, period_s: float) -> None:
@@ -66,7 +66,7 @@ class Schedule:
         self.look_again()
 
     def look_again(self) -> None:
-        """Forget when the next request falls due: something has changed."""
+        """Forget the time of the next request after a change."""
         self._soonest_s = self.wants_s = -inf
 
     def choose(self, now: float, scan: bool, reads_only: bool = False) -> Request | None:
@@ -89,7 +89,7 @@ class Schedule:
                 if request.period_s == 0.0 and not scan and not request.attempts:
                     continue
                 if due < rank:
-                    # The one chosen so far is one of the others now.
+                    # The request chosen so far joins the others.
                     before, chosen, rank = chosen, request, due
                     if before is None:
                         continue
@@ -109,11 +109,11 @@ class Schedule:
         return next((one for one in self._requests if one.writes and one.due_s <= now + _EARLY_S), None)
 
     def latest(self) -> float:
-        """Return when the first of the requests will have waited as long as it may."""
+        """Return the time at which the first request has waited as long as it may."""
         return min((request.wish_s for request in self._requests), default=inf)
 
     def succeeded(self, request: Request, t: float) -> None:
-        """Set when a request that was answered at ``t`` is due again: on its grid, unless it has fallen behind."""
+        """Set the next due time of a request that was answered at ``t``: on its grid, unless it has fallen behind."""
         if request.attempts or request.fresh or not request.enabled:
             request.attempts = 0
             self.look_again()
@@ -121,7 +121,7 @@ class Schedule:
                 return
         period = request.period_s
         due = request.due_s + period
-        if request.writes or not due > t or period == 0.0:  # also of a read that was due at once, since -infinity
+        if request.writes or not due > t or period == 0.0:  # not due > t: also a read that was due at once (-infinity)
             due = request.sent_s + period
         request.due_s = due
         request.wish_s = wish = due + request.slack_s
@@ -133,7 +133,7 @@ class Schedule:
                 self.wants_s = due - _EARLY_S - _TINY_S
 
     def failed(self, request: Request, t: float) -> None:
-        """Set when a request without a good reply is tried again."""
+        """Set the time of the next attempt of a request without a good reply."""
         station = request.station
         request.attempts += 1
         if not request.enabled:
@@ -144,13 +144,13 @@ class Schedule:
             self._postpone(request, t)
 
     def lost(self, station: Station, t: float) -> None:
-        """Try the enabled requests of a lost station now and then only."""
+        """Send the enabled requests of a lost station only now and then."""
         for request in self._requests:
             if request.station is station:
                 self._postpone(request, t)
 
     def _postpone(self, request: Request, t: float) -> None:
-        """Leave a request alone after its last attempt."""
+        """Delay a request after its last failed attempt."""
         request.attempts = 0
         if request.station.is_lost:
             self._plan(request, t + PROBE_S)
@@ -160,7 +160,7 @@ class Schedule:
             self._plan(request, t + request.period_s)
 
     def _plan(self, request: Request, due_s: float) -> None:
-        """Let a request fall due at ``due_s``; a repeated one does not wait for a regular scan."""
+        """Set a request due at ``due_s``; a repeated attempt does not wait for a regular scan."""
         request.due_s = due_s
         if request.attempts:
             request.wish_s = due_s

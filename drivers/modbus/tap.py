@@ -1,7 +1,7 @@
-"""Frames of a Modbus RTU line on which others talk: where each ends, and who sent it.
+"""Frames of a Modbus RTU line that other devices use: the end of each frame, and its sender.
 
-For a second adapter that only listens. It tells nothing of silences, which USB adapters do not keep: a frame ends where
-its CRC is right and its length is one that its function code has (Modbus application protocol V1.1b3, 6).
+For a second adapter that only listens. It does not use silences, because USB adapters do not preserve them: a frame
+ends where its CRC is right and its length is possible for its function code (Modbus application protocol V1.1b3, 6).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class LineTap:
         self._asked = b""
 
     def feed(self, data: bytes) -> list[tuple[bytes, bool]]:
-        """Take what arrived; return the frames that are complete."""
+        """Process the bytes received; return the frames that are complete."""
         self._buffer += data
         found: list[tuple[bytes, bool]] = []
         while len(self._buffer) >= _SHORTEST:
@@ -47,7 +47,7 @@ class LineTap:
         return None
 
     def _from_master(self, frame: bytes) -> bool:
-        """Return whether a frame asks: it does unless it can be the answer to the one before."""
+        """Return whether a frame is a request: it is, unless it can be the answer to the frame before."""
         asked, self._asked = self._asked, b""
         if asked and frame[0] == asked[0] and _answers(asked, frame):
             return False
@@ -56,7 +56,7 @@ class LineTap:
 
 
 def _lengths(buffer: bytes) -> tuple[int, ...]:
-    """Return the lengths that a frame of the first bytes' function code can have, requests first."""
+    """Return the possible lengths of a frame with the first bytes' function code, requests first."""
     function = buffer[1]
     if function & 0x80:
         return (5,)

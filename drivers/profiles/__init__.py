@@ -1,7 +1,7 @@
 """Device profiles: one TOML file for each type of Modbus device, and their strict reader.
 
-``load_profile("calex_pyrominibus")`` reads a file of this folder, ``load_profile("devices/my_cell.toml")`` one of your
-own, and ``read_profile`` a text that comes from elsewhere. A new device is a new file, not a new class.
+``load_profile("calex_pyrominibus")`` reads a file of this folder, ``load_profile("devices/my_cell.toml")`` a file of
+your own, and ``read_profile`` a text from elsewhere. A new device is a new file, not a new class.
 """
 
 from __future__ import annotations
@@ -40,16 +40,16 @@ __all__ = [
 
 _FOLDER = Path(__file__).parent
 _WRITE_MANY = 16
-"""Function that writes several registers in one request."""
+"""Function code that writes several registers in one request."""
 _MOST_REGISTERS = 125
 """Registers in one read (Modbus application protocol V1.1b3, 6.3)."""
 SATURATED_SHARE = 0.98
-"""Share of a load cell's range from which a channel counts as saturated, unless its profile says otherwise [A]."""
+"""Share of a load cell's range from which a channel counts as saturated, unless its profile states another [A]."""
 _FORCES = ("fx", "fy", "fz", "mz", "force")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame; ``force`` (N) is
-that of a transmitter with one channel: which of them it measures the rig file says."""
+the channel of a transmitter with only one: the rig file states which of the forces it measures."""
 _FIRST_READ: dict[Kind, tuple[str, ...]] = {"load_cell": _FORCES, "ir_thermometer": ("surface",)}
-"""Of these channels the first read of a kind must hold one at least, and the status."""
+"""The first read of each kind must hold at least one of these channels, and the status."""
 
 
 def profile_names() -> list[str]:
@@ -61,7 +61,7 @@ def load_profile(name: str) -> DeviceProfile:
     """Return the profile of this name, or from this path when it ends in ``.toml``.
 
     Raises ProfileError, which names the file and the key, for a profile that does not exist, has an unknown, missing
-    or wrong key, or leaves a register unknown.
+    or wrong key, or marks a register as unknown.
     """
     path = Path(name) if name.endswith(".toml") else _FOLDER / f"{name}.toml"
     try:
@@ -73,7 +73,7 @@ def load_profile(name: str) -> DeviceProfile:
 
 
 def read_profile(name: str, text: str) -> DeviceProfile:
-    """Return the profile that a text in TOML describes, under this name; raises ProfileError as ``load_profile``."""
+    """Return the profile that a text in TOML describes, under this name; raises ProfileError like ``load_profile``."""
     return _profile(name, read_table(f"{name}.toml", text))
 
 
@@ -121,7 +121,7 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
 
 
 def _look_at_first_read(top: ProfileTable, kind: Kind, first: RegisterBlock) -> None:
-    """Refuse a sensor whose first read does not hold what it is read for."""
+    """Refuse a sensor whose first read lacks its channels or its status."""
     names = {signal.name for signal in first.signals}
     if kind == "sensor" and names == {"status"}:
         raise top.error("reads", "the first read must hold a channel")
@@ -137,7 +137,7 @@ def _whole(table: ProfileTable, key: str, item: object, greatest: int) -> int:
 
 
 def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> dict[str, Signal]:
-    """Return signals by name; ``functions``: of a device whose registers to write they are."""
+    """Return signals by name; ``functions``: function codes of the device if the registers are to be written."""
     found: dict[str, Signal] = {}
     for key in table.keys():  # noqa: SIM118 - not a dictionary
         row = table.table(key)
@@ -162,7 +162,7 @@ def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> d
 
 
 def _writable(row: ProfileTable, signal: Signal, functions: Collection[int]) -> None:
-    """Refuse a count that is coarser than the range, and several registers where one request cannot write them."""
+    """Refuse a count that is coarser than the range, and several registers if one request cannot write them."""
     if signal.type != "f32" and signal.scale > signal.greatest - signal.least:
         raise row.error("scale", f"{signal.scale:g} is coarser than the range, {signal.least:g} to {signal.greatest:g}")
     if signal.size > 1 and _WRITE_MANY not in functions:

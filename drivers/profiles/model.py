@@ -1,4 +1,4 @@
-"""What a device profile says: registers, scalings, status bits and timing of one type of Modbus device."""
+"""Contents of a device profile: registers, scalings, status bits and timing of one type of Modbus device."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from struct import Struct
 from typing import Literal
 
 Kind = Literal["load_cell", "ir_thermometer", "jacket", "chamber", "sensor"]
-"""What a device is to a rig; ``sensor`` is one that measures anything else."""
+"""Role of a device in a rig; ``sensor`` is one that measures anything else."""
 Number = Literal["u16", "i16", "u32", "i32", "f32"]
 WordOrder = Literal["high_first", "low_first"]
 
 CODES: dict[Number, str] = {"u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
 """struct codes of the register types."""
 SIZES: dict[Number, int] = {"u16": 1, "i16": 1, "u32": 2, "i32": 2, "f32": 2}
-"""Registers that each type takes."""
+"""Number of registers of each type."""
 LIMITS: dict[Number, tuple[int, int]] = {
     "u16": (0, 0xFFFF),
     "i16": (-0x8000, 0x7FFF),
@@ -24,7 +24,7 @@ LIMITS: dict[Number, tuple[int, int]] = {
     "i32": (-0x8000_0000, 0x7FFF_FFFF),
     "f32": (-(1 << 24), 1 << 24),
 }
-"""Least and greatest count of each type; of f32, those it holds exactly."""
+"""Least and greatest count of each type; for f32, the range of exact whole numbers."""
 
 
 MOST_F32 = 3.4028234e38
@@ -32,7 +32,7 @@ MOST_F32 = 3.4028234e38
 
 
 class ProfileError(ValueError):
-    """A profile that is missing, not complete, or not what the driver needs."""
+    """A profile that is missing, incomplete, or unsuitable for the driver."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,22 +47,22 @@ class Signal:
     """Value of one count, in ``unit``."""
     unit: str
     least: float = float("-inf")
-    """A value below it is not plausible; of a parameter, the device does not take it."""
+    """A value below it is not plausible; the device does not accept it for a parameter."""
     greatest: float = float("inf")
     sign_bit: int | None = None
-    """Status bit that makes it negative, where the register holds the magnitude."""
+    """Status bit that makes the value negative, if the register holds the magnitude."""
     default: float | None = None
-    """Of a parameter: what is written where the rig file does not state it; None = it must."""
+    """For a parameter: value written if the rig file states none; None = the rig file must state one."""
 
     @property
     def size(self) -> int:
-        """Registers it takes."""
+        """Number of registers."""
         return SIZES[self.type]
 
     def words(self, value: float, word_order: WordOrder) -> tuple[int, ...]:
-        """Return the registers that hold ``value``, in the order they are sent: the nearest number of the type.
+        """Return the registers that hold ``value``, in the order of sending: the nearest number of the type.
 
-        Raises ValueError unless it is finite, and for more than an f32 holds.
+        Raises ValueError unless it is finite, and for more than an f32 can hold.
         """
         if not isfinite(value):
             raise ValueError(f"{self.name} must be a finite number, not {value}")
@@ -78,7 +78,7 @@ class Signal:
         return words if word_order == "high_first" else words[::-1]
 
     def value(self, data: bytes, word_order: WordOrder) -> float:
-        """Return the number that registers hold; ``data``: their bytes as they are sent."""
+        """Return the number in the registers ``data``, their bytes in the order of sending."""
         if word_order == "low_first" and self.size == 2:
             data = data[2:] + data[:2]
         counts: float = Struct(">" + CODES[self.type]).unpack(data)[0]
@@ -87,22 +87,22 @@ class Signal:
 
 @dataclass(frozen=True, slots=True)
 class RegisterBlock:
-    """Registers read in one request, and how they become numbers."""
+    """Registers read in one request, and their conversion to numbers."""
 
     function: int
     address: int
     count: int
     period_s: float
     signals: tuple[Signal, ...]
-    """In order of address; ``unpack`` and ``pack`` give and take their counts in this order."""
+    """In order of address; ``unpack`` returns and ``pack`` takes their counts in this order."""
     word_order: WordOrder = "high_first"
     unpack: Callable[[bytes], tuple[int, ...]] = field(init=False, compare=False)
-    """Counts of the signals from the block's bytes."""
+    """Returns the counts of the signals from the block's bytes."""
     pack: Callable[..., bytes] = field(init=False, compare=False)
-    """The block's bytes from the counts of the signals."""
+    """Returns the block's bytes from the counts of the signals."""
 
     def __post_init__(self) -> None:
-        """Compile the two ways between bytes and counts."""
+        """Compile the conversions between bytes and counts."""
         codes, at = ">", self.address
         for signal in self.signals:
             codes += f"{2 * (signal.address - at)}x" if signal.address > at else ""
@@ -117,7 +117,7 @@ class RegisterBlock:
         object.__setattr__(self, "pack", pack)
 
     def __deepcopy__(self, memo: dict[int, object]) -> RegisterBlock:
-        """Return itself: nothing in it changes."""
+        """Return itself: it never changes."""
         return self
 
     def index(self, name: str) -> int:
@@ -152,7 +152,7 @@ class _WordSwapper:
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """A register whose value tells the type of device."""
+    """A register whose value identifies the type of device."""
 
     address: int
     function: int
@@ -161,7 +161,7 @@ class Identity:
 
 @dataclass(frozen=True, slots=True)
 class SetupWrite:
-    """A value to be written when a device is connected."""
+    """A value to write when a device is connected."""
 
     name: str
     address: int
@@ -180,7 +180,7 @@ class Switch:
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """How a device answers."""
+    """Reply times of a device."""
 
     turnaround_s: float
     """Usual time from the end of a request to the start of the reply."""
@@ -192,7 +192,7 @@ class Timing:
 
 @dataclass(frozen=True, slots=True)
 class LineData:
-    """The line as the device has it by default or as we advise it."""
+    """Settings of the line: the device's defaults, or our advice."""
 
     baud: int
     parity: Literal["N", "E", "O"]
@@ -200,19 +200,19 @@ class LineData:
 
 @dataclass(frozen=True, slots=True)
 class DeviceProfile:
-    """Everything a driver and its simulated device need to know of a type of device."""
+    """Everything that a driver and its simulated device need to know about a type of device."""
 
     name: str
     kind: Kind
     title: str
     functions: frozenset[int]
-    """Function codes the device knows."""
+    """Function codes that the device knows."""
     write_function: int
     word_order: WordOrder
     line: LineData
     timing: Timing
     blocks: tuple[RegisterBlock, ...]
-    """What is read again and again; the first is the one that matters."""
+    """Blocks that are polled; the first is the most important one."""
     invalid_bits: int
     """Mask of the status bits that make a reading invalid."""
     status_bits: dict[str, int]
@@ -224,17 +224,17 @@ class DeviceProfile:
     switches: dict[str, Switch] = field(default_factory=dict[str, Switch])
     """Registers with an on and an off value: ``run``."""
     tare: bool = False
-    """The computer may take a zero off a sensor's channels."""
+    """Whether the computer may tare a sensor's channels."""
     saturated: float | None = None
     """Share of its range, to either side, from which a channel counts as saturated and the reading as invalid; None =
-    a value is plausible from ``least`` to ``greatest``."""
+    the bounds of a value are ``least`` and ``greatest`` instead."""
 
     falls_back_s: float | None = None
-    """Of a controller: without a setpoint for so long, s, it continues with its own, which its set-up makes one
-    of no heat; None = it does not."""
+    """For a controller: time without a setpoint, s, after which it continues with its own setpoint. Its set-up makes
+    that a setpoint without heat. None = it never does so."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> DeviceProfile:
-        """Return itself: nothing in it changes."""
+        """Return itself: it never changes."""
         return self
 
     def expect(self, kind: Kind) -> None:
@@ -249,11 +249,11 @@ class DeviceProfile:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """What a sensor measures: the names in its first read but for the status, in order of address."""
+        """Channels of a sensor: the names in its first read except the status, in order of address."""
         return tuple(signal.name for signal in self.blocks[0].signals if signal.name != "status")
 
     def signal(self, name: str) -> Signal:
-        """Return a signal that is read. Raises ProfileError where the device has none of this name."""
+        """Return a signal that is read. Raises ProfileError if the device has none of this name."""
         for block in self.blocks:
             for signal in block.signals:
                 if signal.name == name:
@@ -265,5 +265,5 @@ class DeviceProfile:
         return any(signal.name == name for block in self.blocks for signal in block.signals)
 
     def bit(self, meaning: str) -> int:
-        """Return the mask of the status bit with this meaning, 0 where the device has none."""
+        """Return the mask of the status bit with this meaning, 0 if the device has none."""
         return 1 << self.status_bits[meaning] if meaning in self.status_bits else 0

@@ -1,4 +1,4 @@
-"""A table of a profile's file, read strictly: of Modbus devices and of drives alike."""
+"""Strict reader for a table of a profile's file, of Modbus devices and of drives alike."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any, cast
 from drivers.profiles.model import ProfileError
 
 UNKNOWN = "unknown"
-"""Stands in a profile where we do not know the manufacturer's value; such a profile cannot be used as it is."""
+"""Placeholder in a profile for an unknown value of the manufacturer; the profile cannot be used with it."""
 
 
 def read_table(where: str, text: str) -> ProfileTable:
-    """Return what a text in TOML says; ``where`` names it in errors. Raises ProfileError."""
+    """Return a text in TOML as a table; ``where`` names it in errors. Raises ProfileError."""
     try:
         return ProfileTable(where, tomllib.loads(text))
     except tomllib.TOMLDecodeError as error:
@@ -23,7 +23,7 @@ class ProfileTable:
     """A table of the file: every key is taken once, with its type, and none may be left."""
 
     def __init__(self, where: str, data: dict[str, Any]) -> None:
-        """``where``: the file, and the keys that lead here."""
+        """Wrap ``data``; ``where``: the file, and the keys that lead to this table."""
         self.where = where
         self._data = dict(data)
 
@@ -31,7 +31,7 @@ class ProfileTable:
         return key in self._data
 
     def error(self, key: str, text: str) -> ProfileError:
-        """Return an error that names the place."""
+        """Return an error that names the key and its place."""
         return ProfileError(f"{self.where}: {key}: {text}")
 
     def _take(self, key: str, default: object) -> object:
@@ -110,7 +110,7 @@ class ProfileTable:
         return found
 
     def keys(self) -> list[str]:
-        """Return what has not been taken."""
+        """Return the keys that were not taken."""
         return list(self._data)
 
     def end(self) -> None:

@@ -1,9 +1,9 @@
 """The edge to real CAN adapters: a python-can bus as a CanPort.
 
-It owns its receive loop (python-can's own Notifier loses errors, hardbyte/python-can#1865), stamps what
-comes in, never blocks the caller, and turns whatever ends reception into BusLost, for good: a bus that
-comes back after bus-off may still hold old set-points in its queues, so it is opened anew, deliberately,
-never restarted.
+It owns its receive loop (python-can's own Notifier loses errors, hardbyte/python-can#1865), stamps the frames that
+come in, never blocks the caller, and turns any end of reception into BusLost, for good. After bus-off
+old set-points may still be in the queues of a bus: so it is opened anew, deliberately,
+and never restarted.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     import can
 
 POLL_S = 0.1
-"""How long the receive thread waits for a frame before it looks whether the port was closed."""
+"""Time that the receive thread waits for a frame before it checks whether the port was closed, s."""
 MAX_WAITING = 20_000
-"""Frames kept until the caller takes them: over 2 s of a full bus at 1 Mbit/s. More means that no caller reads."""
+"""Frames kept until the caller reads them: over 2 s of a full bus at 1 Mbit/s. More means that no caller reads."""
 BUS_OFF: Final = 0x40
 """Class bit of a SocketCAN error frame (linux/can/error.h, CAN_ERR_BUSOFF)."""
 _CLASSES: Final = {
@@ -35,7 +35,7 @@ _CLASSES: Final = {
 }  # fmt: skip
 """Class bits of a SocketCAN error frame (linux/can/error.h)."""
 _BY_CLASS: Final = ("socketcan", socketcand.INTERFACE)
-"""Interfaces whose error frames have these; those of others say what their makers chose."""
+"""Interfaces whose error frames have these bits; in those of others the bits depend on the maker."""
 _FUNCTION = 0x780
 _BOOT_UP = bytes((o.NmtState.BOOT_UP,))
 _STATE_LOW, _STATE_HIGH = 0x7F, 0x22
@@ -45,13 +45,13 @@ _STATE_LOW, _STATE_HIGH = 0x7F, 0x22
 class PythonCanPort(FrameByFrame):
     """A CanPort over an open python-can bus.
 
-    ``clock`` gives the arrival times, in seconds of the caller's clock; it is called in the receive thread.
-    Without one a frame's arrival is the ``now`` of the ``receive`` that returns it. ``on_urgent`` is called in
-    that thread, too, when something arrived that a scan should not wait for: an emergency, a boot-up, changed
+    ``clock`` returns the arrival times, in seconds of the caller's clock; the receive thread calls it.
+    Without a clock a frame's arrival is the ``now`` of the ``receive`` that returns it. The receive thread also calls
+    ``on_urgent`` when a scan should not wait for an arrived frame: an emergency, a boot-up, changed
     inputs (TPDO2), or a TPDO1 whose first word, the statusword, shows another state than before. ``ignored``
-    counts frames that are none of ours: remote, 29-bit and FD frames; ``errors`` error frames, by their kind. Frames
-    of other programs of this computer count as those from the wire (``local`` counts what the interface marks as
-    sent here); our own, where the interface gives them back, are not (``own``: how that is found out).
+    counts frames of foreign kinds: remote, 29-bit and FD frames; ``errors`` counts error frames by kind. Frames
+    of other programs on this computer count as frames from the wire (``local`` counts those that the interface marks as
+    sent here). Our own frames, which some interfaces return, do not count (``own`` finds out whether this one does).
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class PythonCanPort(FrameByFrame):
         self._thread.start()
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
-        """Hand one data frame to the adapter; raises BusLost, also when its transmit queue is full."""
+        """Hand one data frame to the adapter; raises BusLost, also if its transmit queue is full."""
         self._check()
         if self.own.probe is not None:
             self._hand_over(*self.own.probe, now)
@@ -120,11 +120,11 @@ class PythonCanPort(FrameByFrame):
 
     @property
     def state(self) -> str:
-        """The adapter's: active, passive or error; "" where its interface tells none."""
+        """State of the adapter: active, passive or error; "" if its interface does not report it."""
         return adapter_state(self._bus)
 
     def close(self) -> None:
-        """Stop receiving and give the adapter back; the port is lost afterwards."""
+        """Stop receiving and close the adapter; the port is lost afterwards."""
         self._closing = True
         self._thread.join(timeout=10 * POLL_S)
         self._bus.shutdown()
@@ -139,8 +139,8 @@ class PythonCanPort(FrameByFrame):
             self._lost = reason
 
     def _run(self) -> None:
-        """Receive until closed; however the loop ends, the bus is then lost."""
-        reason = "the receive thread failed"     # stands for whatever an adapter's driver raises unannounced
+        """Receive until closed; however the loop ends, the bus is lost afterwards."""
+        reason = "the receive thread failed"     # default, for undocumented exceptions of an adapter's driver
         try:
             while not self._closing:
                 message = self._bus.recv(POLL_S)
@@ -160,7 +160,7 @@ class PythonCanPort(FrameByFrame):
                 self._on_urgent()
 
     def _accept(self, message: can.Message) -> bool:
-        """Queue a data frame; False where the bus is of no use any more."""
+        """Queue a data frame; return False if the bus can no longer be used."""
         if message.is_error_frame:
             for kind in error_kinds(self._interface, message.arbitration_id):
                 self.errors[kind] = self.errors.get(kind, 0) + 1
@@ -215,16 +215,16 @@ def open_can(interface: str, channel: str, bitrate: int, clock: Callable[[], flo
 
 
 def error_kinds(interface: str, can_id: int) -> tuple[str, ...]:
-    """Return what an error frame with this identifier says."""
+    """Return the kinds of error that an error frame with this identifier reports."""
     found = tuple(text for bit, text in _CLASSES.items() if can_id & bit) if interface in _BY_CLASS else ()
     return found or ("error",)
 
 
 def adapter_state(bus: can.BusABC) -> str:
-    """Return an adapter's state, in small letters: active, passive or error; "" where its interface tells none."""
+    """Return an adapter's state in lower case: active, passive or error; "" if its interface does not report it."""
     import can
 
-    if type(bus).state is can.BusABC.state:  # it says ACTIVE whatever the bus does
+    if type(bus).state is can.BusABC.state:  # the base class always reports ACTIVE
         return ""
     try:
         return bus.state.name.lower()

@@ -1,9 +1,9 @@
-"""Frames of our own that an interface gives back, separated from those of others.
+"""Separates our own frames that an interface returns from the frames of others.
 
-Most interfaces give none back. Some do (``receive_own_messages``, adapters that report what they have sent as received,
-bridges that loop), and nothing in a frame says so: python-can's ``is_rx`` is False for our own frames on some of them,
-and for those of other programs of the same computer on SocketCAN (hardbyte/python-can#1274). So it is tried: the first
-frame sent is a probe that no other program sends: an interface that gives it back gives everything back.
+Most interfaces return none. Some do (``receive_own_messages``, adapters that report sent frames as received,
+bridges that loop), and no mark in a frame shows it: python-can's ``is_rx`` is False for our own frames on some of them,
+and for those of other programs of the same computer on SocketCAN (hardbyte/python-can#1274). So a test decides: the
+first frame sent is a probe that no other program sends. An interface that returns it returns all our frames.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ from typing import Final
 from drivers.ports import CanFrame
 
 PROBE_ID: Final = 0x6E0
-"""No CANopen device uses it (CiA 301, table of restricted CAN identifiers: 0x6E0 to 0x6FF)."""
+"""Identifier of the probe: no CANopen device uses it (CiA 301, restricted CAN identifiers: 0x6E0 to 0x6FF)."""
 SETTLE_S: Final = 0.1
-"""An interface that gives our frames back has done so with the probe by then, s [A]: its driver's queue, or a bridge's
-network."""
+"""Time within which an interface that returns our frames has returned the probe, s [A]: its driver's queue, or a
+bridge's network, delays it."""
 RETURN_S: Final = 1.0
-"""A frame that has not come back by then was never on the bus, s [A]."""
+"""Time after which a frame that has not come back counts as never sent on the bus, s [A]."""
 
 
 class OwnFrames:
-    """``echoes``: whether the interface gives our frames back, None until that is known.
+    """``echoes``: whether the interface returns our frames, None until this is known.
 
-    ``returned`` counts our frames that came back, ``unreturned`` those that should have and did not. ``trouble`` says
-    why the interface cannot be used, "" where it can.
+    ``returned`` counts our frames that came back, ``unreturned`` those that should have and did not. ``trouble`` is the
+    reason why the interface cannot be used, "" if it can.
     """
 
     def __init__(self, token: bytes) -> None:
-        """``token``: eight bytes that no other program uses."""
+        """Prepare the probe; ``token``: eight bytes that no other program uses."""
         self._probe = token
         self._until_s: float | None = None
         self._awaited: deque[tuple[float, int, bytes]] = deque()
@@ -42,11 +42,11 @@ class OwnFrames:
 
     @property
     def probe(self) -> tuple[int, bytes] | None:
-        """The probe, while it is to be sent before anything else."""
+        """The probe, while it has to be sent before anything else."""
         return (PROBE_ID, self._probe) if self._until_s is None else None
 
     def sent(self, can_id: int, data: bytes, now: float) -> None:
-        """Take note of a frame that was handed to the interface at ``now`` s."""
+        """Record a frame that was handed to the interface at ``now`` s."""
         if self.echoes is False:
             return
         if self._until_s is None:
@@ -55,9 +55,9 @@ class OwnFrames:
             self._awaited.append((now, can_id, bytes(data)))
 
     def others(self, frames: list[CanFrame], now: float) -> list[CanFrame]:
-        """Return the frames of others, of those received up to ``now`` s.
+        """Return the frames of others from the frames received up to ``now`` s.
 
-        Until it is known whether ours come back, what looks like one of ours waits: for ``SETTLE_S`` at most.
+        Until ``echoes`` is known, frames that look like ours are held back: for ``SETTLE_S`` at most.
         """
         if self._until_s is None:
             return frames

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class SerialLine(WatchedLine):
     """A port (``drivers.ports.LinePort``) over pyserial. Nothing blocks: the operating system keeps what arrives.
 
-    Bytes are stamped with the time they are fetched at, which is no earlier than they arrived. ``low_latency``: the
-    driver's flag was set when it was opened (None: there is none to ask for). ``latency_timer_s``: what the driver says
-    that a USB adapter holds characters back for, s (None: it says nothing).
+    Bytes are stamped with the time of fetching, which is no earlier than their arrival. ``low_latency``: the
+    driver's flag was set at opening (None: the driver has no flag). ``latency_timer_s``: the time for which a USB
+    adapter holds characters back, as its driver reports it, s (None: no report).
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class SerialLine(WatchedLine):
         self._unsent = b""
 
     def write(self, data: bytes, now: float) -> None:
-        """Send bytes; what the operating system does not take now goes with the next call. Raises BusLost."""
+        """Send bytes; those that the operating system refuses now are sent with the next call. Raises BusLost."""
         self._unsent += data
         self._send()
         if self.watchers:
@@ -89,7 +89,7 @@ def open_serial_line(port: str, baud: int, parity: Literal["N", "E", "O"] = "N")
 
 
 def latency_timer_s(port: str, root: Path = Path("/sys/class/tty")) -> float | None:
-    """Return the latency timer of a USB adapter on Linux, s; None where the driver has none, or elsewhere."""
+    """Return the latency timer of a USB adapter on Linux, s; None if the driver has none, or elsewhere."""
     try:
         return 1e-3 * int((root / Path(port).resolve().name / "device" / "latency_timer").read_text(encoding="ascii"))
     except (OSError, ValueError):
@@ -97,7 +97,7 @@ def latency_timer_s(port: str, root: Path = Path("/sys/class/tty")) -> float | N
 
 
 def remedy_of(port: str) -> str:
-    """Return what makes a USB adapter deliver at once, on this system."""
+    """Return the advice that makes a USB adapter deliver at once, on this system."""
     if sys.platform == "win32":
         return (
             f"set the latency timer of {port} to 1 ms: Device Manager, Ports, {port}, Port Settings, Advanced; in the"
@@ -111,7 +111,7 @@ def remedy_of(port: str) -> str:
 
 
 def _settings_errors() -> tuple[type[Exception], ...]:
-    """Return what a terminal raises that refuses its settings: a pty refuses parity, for one."""
+    """Return the exceptions of a terminal that refuses its settings: a pty refuses parity, for example."""
     try:
         import termios
     except ImportError:  # Windows
@@ -120,10 +120,10 @@ def _settings_errors() -> tuple[type[Exception], ...]:
 
 
 def _ask_for_low_latency(serial: Serial) -> bool:
-    """Set the driver's low-latency flag (1 ms with FTDI chips); tell whether the port has one."""
+    """Set the driver's low-latency flag (1 ms with FTDI chips); return whether the port has one."""
     try:
         serial.set_low_latency_mode(True)
     except (OSError, ValueError):
-        # A pty or an adapter without the flag: it works, with the latency it has.
+        # A pty or an adapter without the flag: it works, with its usual latency.
         return False
     return True

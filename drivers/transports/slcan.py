@@ -1,9 +1,9 @@
-"""What python-can's slcan client leaves to its user: to read more than one character at a time.
+"""Addition to python-can's slcan client: it reads more than one character at a time.
 
-Measured with python-can 4.6.1: it fetches every character with a ``select`` and a ``read`` of its own and wakes up each
-millisecond while there is nothing, so a scan's answers from five drives cost its thread 270 system calls, and as often
-the interpreter's lock, which the controlling thread holds meanwhile. The client's serial port is replaced by one that
-fetches all there is and gives it out by the character.
+Measured with python-can 4.6.1: the client fetches every character with its own ``select`` and ``read``, and wakes up
+each millisecond without data. So a scan's answers from five drives cost its thread 270 system calls, and each time
+the interpreter's lock, which the controlling thread then holds. Here the client's serial port is replaced by one that
+fetches all available characters at once and returns them one by one.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ if TYPE_CHECKING:
 
 INTERFACE = "slcan"
 WAIT_S = 0.05
-"""How long the client sleeps for a character before it looks at its own time-out, s."""
+"""Time that the client sleeps for a character before it checks its own time-out, s."""
 _PORT = "serialPortOrig"
 
 
 def settings() -> dict[str, float]:
-    """Return what the client is opened with besides channel and bit rate."""
+    """Return the arguments for opening the client, besides channel and bit rate."""
     return {"timeout": WAIT_S}
 
 
 def tune(bus: can.BusABC) -> None:
-    """Let a client read in one piece; other buses, and a client that keeps its port elsewhere, stay as they are."""
+    """Make a client read in one piece; other buses, and a client that keeps its port elsewhere, stay as they are."""
     port = getattr(bus, _PORT, None)
     if port is not None:
         setattr(bus, _PORT, _InPieces(port))
 
 
 class _InPieces:
-    """A serial port whose characters are fetched together; everything else is the port's own."""
+    """A serial port whose characters are fetched together; everything else is delegated to the port."""
 
     def __init__(self, port: Serial) -> None:
         self._port = port
@@ -42,7 +42,7 @@ class _InPieces:
 
     @property
     def in_waiting(self) -> int:
-        """Characters that ``read`` gives without waiting: those fetched already, else those at the port."""
+        """Number of characters that ``read`` returns without waiting: those already fetched, else those at the port."""
         return len(self._fetched) - self._at or self._port.in_waiting
 
     def read(self, size: int = 1) -> bytes:
@@ -56,20 +56,20 @@ class _InPieces:
         return piece
 
     def reset_input_buffer(self) -> None:
-        """Drop what was fetched and what waits."""
+        """Drop the fetched and the waiting characters."""
         self._fetched, self._at = b"", 0
         self._port.reset_input_buffer()
 
     def write(self, data: bytes) -> int | None:
-        """Send."""
+        """Send bytes."""
         return self._port.write(data)
 
     def flush(self) -> None:
-        """Return at once: a port hands over by itself, and to wait until the last bit is out is to hold up a scan."""
+        """Return at once: the port sends by itself, and waiting for the last bit would delay a scan."""
 
     @property
     def write_timeout(self) -> float | None:
-        """The port's, s."""
+        """Write time-out of the port, s."""
         return self._port.write_timeout
 
     @write_timeout.setter
@@ -77,5 +77,5 @@ class _InPieces:
         self._port.write_timeout = seconds
 
     def __getattr__(self, name: str) -> Any:
-        """Give the port's own."""
+        """Return the port's own attribute."""
         return getattr(self._port, name)

@@ -1,10 +1,10 @@
-"""What python-can's socketcand client leaves to its user: the address, sending at once, and the end of the stream.
+"""Additions to python-can's socketcand client: the address, sending at once, and the end of the stream.
 
-Measured with python-can 4.6.1: without a listener it tries for ten seconds without a pause, and without a greeting
-it waits for ever; its small frames wait for each other (Nagle's algorithm) unless ``tcp_tune`` is set, which Windows
-does not have; and where the server closed the connection, ``recv`` returns None for ever, without waiting. The latter
-two are set right at the client's socket, which it does not give out: a client that keeps it elsewhere one day is used
-as it is, and what ends such a connection is then the loss of the drives' heartbeats.
+Measured with python-can 4.6.1: without a listener the client tries for ten seconds without a pause, and without a
+greeting it waits for ever. Its small frames wait for each other (Nagle's algorithm) unless ``tcp_tune`` is set, which
+Windows does not have. After the server closed the connection, ``recv`` returns None for ever, without waiting. The
+last two are corrected at the client's socket, which is not a public attribute. A client that keeps it elsewhere one day
+is used as it is; the loss of the drives' heartbeats then ends such a connection.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 
 INTERFACE = "socketcand"
 CONNECT_S = 3.0
-"""A server that has not answered by then is not there, s."""
+"""Longest wait for a server's answer, s."""
 _GREETING = b"< hi >"
 _SOCKET = "_SocketCanDaemonBus__socket"
 
-# Without a handler of its own the library's remarks would go to stderr; what they are about ends in BusLost.
+# Without this handler the library's messages would go to stderr; their causes end in BusLost.
 logging.getLogger("can.interfaces.socketcand").addHandler(logging.NullHandler())
 
 
 def settings_of(channel: str) -> dict[str, str | int]:
-    """Return what the client wants to know, from ``bus@host:port``.
+    """Return the client's arguments from ``bus@host:port``.
 
     Raises ValueError for another text, and OSError without a greeting in time: the client itself would wait for ever.
     """
@@ -49,7 +49,7 @@ def _be_greeted(host: str, port: int) -> None:
 
 
 def tune(bus: can.BusABC) -> None:
-    """Let every frame of a socketcand client leave at once; other buses stay as they are."""
+    """Make a socketcand client send every frame at once; other buses stay as they are."""
     connection = _socket_of(bus)
     if connection is not None:
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -58,7 +58,7 @@ def tune(bus: can.BusABC) -> None:
 def ended(bus: can.BusABC) -> bool:
     """Return whether a socketcand client's server has closed the connection.
 
-    For the thread that receives, when nothing was received: it looks at the next byte and takes none.
+    For the receive thread, after a call without a frame: it looks at the next byte and does not consume it.
     """
     connection = _socket_of(bus)
     if connection is None:

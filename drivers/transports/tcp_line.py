@@ -11,16 +11,16 @@ from drivers.ports import BusLost, WatchedLine
 _CHUNK = 4096
 """Bytes fetched at once: a Modbus TCP frame has at most 260."""
 REOPEN_S = 0.5
-"""A connection that was dropped is there again by then, or lost, s: the shortest time after which a further sensor's
-reading is stale (drivers.sensor); what may be missing less long trips by its own row."""
+"""Time within which a dropped connection is open again, or lost, s: the shortest time after which a further sensor's
+reading is stale (drivers.sensor). A sensor that may be missing for less trips by its own row of the interlocks."""
 _AGAIN_S = 0.02
-"""Between two attempts to connect again, s [A]."""
+"""Pause between two attempts to connect again, s [A]."""
 
 
 class TcpLine(WatchedLine):
     """A port (``drivers.ports.LinePort``) over a connected socket. Nothing blocks: the kernel keeps what arrives.
 
-    Bytes are stamped with the time they are fetched at, which is no earlier than they arrived. ``renewed`` counts how
+    Bytes are stamped with the time of fetching, which is no earlier than their arrival. ``renewed`` counts how
     often the connection was dropped and opened anew (``renew``).
     """
 
@@ -40,7 +40,7 @@ class TcpLine(WatchedLine):
         self._unsent = b""
 
     def write(self, data: bytes, now: float) -> None:
-        """Send bytes; what the kernel does not take now goes with the next call. Raises BusLost."""
+        """Send bytes; those that the kernel does not accept now are sent with the next call. Raises BusLost."""
         self._unsent += data
         self._send()
         if self.watchers:
@@ -49,7 +49,7 @@ class TcpLine(WatchedLine):
     def renew(self, now: float) -> None:
         """Drop the connection with all that is under way on it, and open another one.
 
-        It is there at the latest ``REOPEN_S`` after ``now`` (s), or a read raises BusLost. What is written meanwhile is
+        It is open at the latest ``REOPEN_S`` after ``now`` (s), or a read raises BusLost. Bytes written meanwhile are
         sent then.
         """
         self._unsent = b""
@@ -68,7 +68,7 @@ class TcpLine(WatchedLine):
         self._socket.connect_ex(self._address)
 
     def _connected(self, now: float) -> bool:
-        """Return whether the connection is up; raises BusLost once it should be."""
+        """Return whether the connection is up; raises BusLost if it should be and is not."""
         if not self._connecting:
             return True
         _, writable, failed = select.select((), (self._socket,), (self._socket,), 0.0)
@@ -95,7 +95,7 @@ class TcpLine(WatchedLine):
         self._unsent = self._unsent[sent:]
 
     def read(self, now: float) -> list[tuple[float, bytes]]:
-        """Return what has arrived, stamped ``now`` (s). Raises BusLost, also when the peer closed the connection."""
+        """Return the bytes received, stamped ``now`` (s). Raises BusLost, also when the peer closed the connection."""
         if not self._connected(now):
             return []
         if self._unsent:
