@@ -129,7 +129,7 @@ def _is_stopped(statusword: int) -> bool:
 
 
 def _await(condition: Callable[[int], bool], timeout_s: float) -> Read:
-    """Return the statusword that fulfils the condition; raises RefusedError after ``timeout_s``."""
+    """Return the statusword that fulfils the condition; raises SetupRefusedError after ``timeout_s``."""
     for _ in range(round(timeout_s / POLL_S)):
         statusword = yield from read_number(o.STATUSWORD)
         if condition(statusword):

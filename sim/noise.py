@@ -1,8 +1,8 @@
-"""Everything random in the simulated rig, from one seed.
+"""All random numbers of the simulated rig, from one seed.
 
-A stream of numbers belongs to a key (seed, stream name, and where it is used: specimen, wheel, condition,
-repeat, attempt) and never to the order of drawing. So a run that is resumed, split over processes or has
-one repeat redone draws the same numbers for every other repeat. Keys go through numpy's SeedSequence into
+A stream of numbers belongs to a key (seed, stream name, and its place: specimen, wheel, condition,
+repeat, attempt) and never depends on the order of drawing. So if a run is resumed, split over processes or has
+one repeat redone, every other repeat still draws the same numbers. Keys pass through numpy's SeedSequence into
 Philox, whose bits are the same on every platform; names enter by their CRC-32.
 """
 
@@ -18,7 +18,7 @@ import numpy as np
 
 _SEED_MASK: Final = 0xFFFF_FFFF_FFFF_FFFF
 BLOCKS: Final = (128, 1024)
-"""Numbers drawn at a time, the first time and from then on (multiples of four): the hot path steps through a list."""
+"""Numbers in a block, the first and every later one (multiples of four): the hot path steps through a list."""
 
 
 def _generator(seed: int, stream: str, place: tuple[int, ...]) -> np.random.Generator:
@@ -41,12 +41,12 @@ class NormalStream:
     """Standard normal numbers of one key, without end.
 
     Each block has a key of its own, so the state is a block's number and a position: cheap to copy. ``numbers`` and
-    ``fours`` are what is left of the present block: one step of a loop over them is the shortest way to the next, and
-    when they are at their end ``next`` or ``next4`` gives it.
+    ``fours`` iterate over the rest of the present block. One step of a loop over them is the fastest way to the next
+    number; at their end ``next`` or ``next4`` returns it.
     """
 
     def __init__(self, seed: int, stream: str, *place: int) -> None:
-        """Start at the key's first number; nothing is drawn before the first is asked for."""
+        """Start at the key's first number; nothing is drawn before it is asked for."""
         self._seed = seed
         self._stream = stream
         self._place = place
@@ -61,7 +61,7 @@ class NormalStream:
         return next(self.numbers)
 
     def next4(self) -> tuple[float, float, float, float]:
-        """Return the next four numbers (of a stream that is only read by fours)."""
+        """Return the next four numbers (of a stream that is only read in fours)."""
         for four in self.fours:
             return four
         self._draw()
@@ -78,7 +78,7 @@ class NormalStream:
         self._block += 1
 
     def __deepcopy__(self, memo: dict[int, object]) -> NormalStream:
-        """Return an independent stream at the same position; a block is never changed, so it is shared."""
+        """Return an independent stream at the same position; it shares the block, which never changes."""
         twin = NormalStream(self._seed, self._stream, *self._place)
         twin._block = self._block
         twin._hold(copy(self.numbers))
@@ -88,11 +88,11 @@ class NormalStream:
 class Autoregressive:
     """First-order autoregressive fluctuation with a standard deviation and a correlation time, exact for any step.
 
-    A step makes of ``value``: ``keep`` times itself and ``kick`` times a standard normal number.
+    A step sets ``value`` to ``keep`` times itself plus ``kick`` times a standard normal number.
     """
 
     def __init__(self, sigma: float, time_s: float) -> None:
-        """Start at zero with no step set; ``retime`` must come before ``step``."""
+        """Start at zero without a step length; ``retime`` must come before ``step``."""
         self._sigma = sigma
         self._time_s = time_s
         self.keep = 1.0
@@ -105,11 +105,11 @@ class Autoregressive:
         self.kick = self._sigma * math.sqrt(1.0 - self.keep * self.keep)
 
     def restart(self, number: float) -> None:
-        """Start anew from a standard normal number, as stationary as it goes on."""
+        """Start anew from a standard normal number, in the stationary distribution."""
         self.value = self._sigma * number
 
     def step(self, number: float) -> float:
-        """Move on by one step with a standard normal number and return the value."""
+        """Advance by one step with a standard normal number and return the value."""
         self.value = value = self.keep * self.value + self.kick * number
         return value
 
@@ -119,14 +119,14 @@ SLIP_SHARE: Final = 0.15
 PERIOD_SIGMA: Final = 0.03
 """Relative standard deviation of a period [A]."""
 _LEAST_PERIOD: Final = 0.5
-"""A drawn period is at least this share of the mean one."""
+"""Least length of a drawn period, as a share of the mean period."""
 
 
 class StickSlip:
     """The factor of stick-slip on friction: it rises while the contact sticks and falls back as it slips.
 
-    Its course is a saw-tooth about the mean: a slow rise, a fall within ``SLIP_SHARE`` of the period. The periods
-    differ: they come from a stream of noise.
+    It is a saw-tooth about the mean: a slow rise, then a fall within ``SLIP_SHARE`` of the period. The periods
+    differ: a stream of noise determines them.
     """
 
     def __init__(self, share: float, frequency_hz: float, noise: NormalStream) -> None:
@@ -137,7 +137,7 @@ class StickSlip:
         self._noise = noise
 
     def restart(self, noise: NormalStream) -> None:
-        """Draw the periods to come from another stream."""
+        """Draw the future periods from another stream."""
         self._noise = noise
 
     def factor(self, dt: float) -> float:

@@ -1,4 +1,4 @@
-"""The twin of a plain machine on the wires of any rig: turning drives, sensors that show quantities of its plant."""
+"""The twin of a plain machine on the wires of any rig: turning drives, and sensors for quantities of its plant."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from sim.wires.can_wire import CanWire
 
 
 class PlainPlant(Protocol):
-    """The physics between the drives' shafts and the sensors: a kind's own."""
+    """The physics between the drives' shafts and the sensors: each kind has its own."""
 
     @property
     def ambient_c(self) -> float:
-        """Temperature of the air around it, degC."""
+        """Temperature of the air around the plant, degC."""
         ...
 
     def advance(self, dt: float, speeds: Mapping[str, float]) -> None:
-        """Advance by ``dt`` s; ``speeds``: of each drive at the end, in the unit of its axis."""
+        """Advance by ``dt`` s; ``speeds``: each drive's speed at the end, in the unit of its axis."""
         ...
 
     def install(self, specimen: int, compound: str) -> None:
@@ -33,7 +33,7 @@ class PlainPlant(Protocol):
 
 
 class PlainTwin(SimRig):
-    """A plain machine on simulated wires, and its own attendant."""
+    """A plain machine on simulated wires, with the actions of its attendant."""
 
     def __init__(
         self,
@@ -45,7 +45,7 @@ class PlainTwin(SimRig):
         """Switch everything on at time 0.
 
         ``shows``: quantities of the plant by channel, for each of the machine's own sensors by its name in the wiring.
-        Raises UnknownQuantityError for one that the plant does not have.
+        Raises UnknownQuantityError for a quantity that the plant does not have.
         """
         self.plant = plant
         self._plant_s = 0.0
@@ -61,7 +61,7 @@ class PlainTwin(SimRig):
         return self.plant.ambient_c
 
     def follow(self, t1: float, still: bool) -> None:
-        """Let the plant follow its drives to ``t1`` s."""
+        """Advance the plant with its drives to ``t1`` s."""
         elapsed, self._plant_s = t1 - self._plant_s, t1
         self.plant.advance(elapsed, {name: drive.axis.value for name, drive in self.axes.items()})
 

@@ -1,8 +1,8 @@
-"""A simulated machine: wires, drives and Modbus devices, advanced together with what they are mounted on.
+"""A simulated machine: wires, drives and Modbus devices, advanced together with its mechanics.
 
-Order within one advance: drives move (and send what falls due), devices with a loop of their own run it, the machine
-follows, and what it answers with (torque, forces, temperatures) is there when the next request arrives on a wire. What
-kind of machine it is this module does not know: see ``sim.machines``.
+Order within one advance: drives move (and send frames that are due), devices with a control loop run it, the machine
+follows. Its reactions (torque, forces, temperatures) are ready when the next request arrives on a wire. This module
+does not know the kind of machine: see ``sim.machines``.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ if TYPE_CHECKING:
 
 SHORTEST_STEP_S: Final = 1e-3
 LONGEST_STEP_S: Final = 0.1
-"""The machine is advanced in steps between these."""
+"""Least and greatest step of the machine, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineSpec:
-    """One Modbus line: what its wire times depend on."""
+    """One Modbus line: the data that its wire times depend on."""
 
     baud: int
     parity: Literal["N", "E", "O"] = "N"
     held_s: float = 0.0
-    """The computer's adapter holds back for this long what it receives, s."""
+    """Time for which the computer's adapter holds received bytes back, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,22 +48,22 @@ class DeviceSpec:
     line: str
     unit_id: int
     shows: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
-    """Of a further sensor, by channel: a quantity of the plant, or a number in the channel's unit."""
+    """For a further sensor, by channel: a quantity of the plant, or a number in the channel's unit."""
     part_of: str = ""
-    """Of a load cell of several transmitters: the machine's device that it is a part of."""
+    """For a transmitter of a load cell with several: the machine's device that it is a part of."""
     channels: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Of such a part: the machine's names of the profile's channels, where they differ."""
+    """For such a transmitter: the machine's names of the profile's channels, if they differ."""
 
 
 @dataclass(frozen=True, slots=True)
 class RigSpec:
-    """What is connected to what: the wiring of a rig, without any software's settings."""
+    """The connections of a rig: its wiring, without any software's settings."""
 
     bitrate: int
     axes: Mapping[str, AxisConfig]
     lines: Mapping[str, LineSpec]
     devices: Mapping[str, DeviceSpec]
-    """By the names of the rig file's section ``devices``."""
+    """Devices by the names in the rig file's section ``devices``."""
     nodes: tuple[NodeConfig, ...] = ()
     """Further nodes on the CAN bus, which measure."""
 
@@ -71,8 +71,9 @@ class RigSpec:
 class SimRig:
     """A simulated machine on its wires: drives, Modbus devices and nodes, advanced together. Each kind derives its own.
 
-    ``can`` and ``lines`` are the ports that a program opens; ``axes`` and ``devices`` are by the names that people use,
-    ``sensors`` (beyond the machine's own) by those of the wiring. ``now_s``: until when everything has lived, s.
+    ``can`` and ``lines`` are the ports that a program opens. ``axes`` and ``devices`` have names for people as keys,
+    ``sensors`` (beyond the machine's own) those of the wiring. ``now_s``: time to which everything has been advanced,
+    s.
     """
 
     def __init__(
@@ -86,8 +87,8 @@ class SimRig:
     ) -> None:
         """Switch everything on at time 0.
 
-        ``wired``: the machine's own devices by their keys in the wiring. ``plant`` has the quantities that further
-        sensors show; raises UnknownQuantityError for one that it does not have.
+        ``wired``: the machine's own devices by their keys in the wiring. ``plant`` has the quantities of further
+        sensors; raises UnknownQuantityError for a quantity that it does not have.
         """
         self.can = can
         self.axes = axes
@@ -110,19 +111,19 @@ class SimRig:
 
     @property
     def of_materials(self) -> bool:
-        """Whether friction is made of a rubber and a surface (``sim.physics.materials``), which ``take`` finds."""
+        """Whether friction is made of a rubber and a surface (``sim.physics.materials``); ``take`` sets the source."""
         return False
 
     def take(self, setting: LawSetting) -> None:
-        """Take where materials are found, before a specimen is put on."""
+        """Set the source of the materials, before a specimen is mounted."""
 
     @property
     def urgent_s(self) -> float:
-        """When the next frame arrives that a scan should not wait for, s."""
+        """Arrival of the next frame that a scan should not wait for, s."""
         return self.can.urgent_s
 
     def advance(self, now: float) -> None:
-        """Let everything live until ``now`` (s); a step shorter than a millisecond waits for the next one."""
+        """Advance everything to ``now`` (s); a step shorter than a millisecond waits for the next one."""
         elapsed = now - self.now_s
         if elapsed < SHORTEST_STEP_S - 1e-9:
             return
@@ -132,12 +133,12 @@ class SimRig:
             self._step(self.now_s, now if i == steps else start + elapsed * i / steps)
 
     def follow(self, t1: float, still: bool) -> None:
-        """Move the plant on to ``t1`` s with the drives where they are then, and load their shafts; ``still``: no drive
+        """Advance the plant to ``t1`` s with the drives as they are then, and load their shafts; ``still``: no drive
         moves."""
         raise NotImplementedError
 
     def restart_dither(self) -> None:
-        """Begin every sensor's dither anew: a repeat does not depend on what was read before it."""
+        """Begin every sensor's dither anew: a repeat must not depend on readings before it."""
         for sensor in self._dithered:
             sensor.dither = 0
 

@@ -1,6 +1,6 @@
-"""What any machine's thermometers and encoders make of the truth.
+"""Thermometers and encoders of any machine: readings of true values.
 
-Sizes are given as they are to apply; at 0 a sensor gives the true value (a thermometer its lagged one).
+Sizes of imperfections are passed in full; at 0 a sensor gives the true value (a thermometer its lagged value).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ class TemperatureSensor:
     """A thermometer with a first-order lag, a constant bias and white noise; ``gain`` is its share of a step."""
 
     def __init__(self, time_s: float, rms_k: float, bias_k: float, noise: NormalStream) -> None:
-        """Take the sizes as they are to apply (already scaled); reads 0 degC until ``reset``."""
+        """Take the sizes in full (already scaled); it reads 0 degC until ``reset``."""
         self._time_s = time_s
         self._rms_k = rms_k
         self._bias_k = bias_k
@@ -31,7 +31,7 @@ class TemperatureSensor:
         self.gain = -math.expm1(-dt_s / self._time_s)
 
     def follow(self, true_c: float) -> None:
-        """Move on by one step at a true temperature."""
+        """Advance by one step at a true temperature."""
         self.lagged_c += (true_c - self.lagged_c) * self.gain
 
     def measure(self) -> float:
@@ -42,16 +42,16 @@ class TemperatureSensor:
 
 
 class SpeedSensor:
-    """An encoder taken for a line speed: an error of scale and white noise."""
+    """An encoder for a line speed: an error of scale and white noise."""
 
     def __init__(self, factor: float, rms_m_s: float, noise: NormalStream) -> None:
-        """Take ``factor`` = indicated over true speed and the noise as they are to apply (already scaled)."""
+        """Take ``factor`` = indicated over true speed, and the noise in full (already scaled)."""
         self.factor = factor
         self._rms_m_s = rms_m_s
         self.noise = noise
 
     def error(self) -> float:
-        """Return a number of white noise in m/s."""
+        """Return one number of the white noise, m/s."""
         rms_m_s = self._rms_m_s
         if rms_m_s > 0.0:
             for number in self.noise.numbers:

@@ -1,7 +1,7 @@
-"""Faults of a simulated rig: what any machine's wires, drives and devices can have, a language to write scripts in, and
-what applies them. Which faults there are to a kind of machine is its catalogue's: see ``sim.machines``.
+"""Faults of a simulated rig: those of any machine's wires, drives and devices, the language of fault scripts, and the
+code that applies them. Each kind of machine lists its faults in its own catalogue: see ``sim.machines``.
 
-A rig without a script carries nothing of this: an effect replaces an attribute or wraps a source when it begins, and
+A rig without a script has no cost from this: an effect replaces an attribute or wraps a source when it begins, and
 only effects that have to be renewed cost something while they last.
 """
 

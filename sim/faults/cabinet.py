@@ -9,7 +9,7 @@ from sim.nodes.safety_io import SafetyIo
 
 
 def io_of(scene: Scene) -> SafetyIo:
-    """Return the inputs and outputs at the drive that has them. Raises LookupError where there are none."""
+    """Return the inputs and outputs at the drive that has them. Raises LookupError if no drive has them."""
     for drive in scene.rig.axes.values():
         if drive.io is not None:
             return drive.io
@@ -61,25 +61,25 @@ def _set_chain(scene: Scene, healthy: bool) -> None:
 
 
 def _reschedule(scene: Scene) -> None:
-    """Have the drives look at the contactor's new time."""
+    """Make the drives read the contactor's new time."""
     for drive in scene.rig.axes.values():
         if drive.io is not None:
             drive.reschedule()
 
 
 class OfComputer(Effect):
-    """What happens, once, to the controlling process, or what its operator asks for."""
+    """An event, once, in the controlling process, or a request of its operator."""
 
     def __init__(self, act: Callable[[ControlComputer], None]) -> None:
         self._act = act
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Let it happen."""
+        """Cause the event."""
         self._act(scene.computer)
 
 
 def stalled(seconds: float) -> OfComputer:
-    """The controlling process gets no processor for so long, s."""
+    """The controlling process gets no processor for this time, s."""
     return OfComputer(lambda computer: computer.stall(seconds))
 
 
@@ -89,7 +89,7 @@ def killed() -> OfComputer:
 
 
 def clock_jump(seconds: float) -> OfComputer:
-    """The computer's clock jumps ahead by so much, s, as after a suspend."""
+    """The computer's clock jumps ahead by this time, s, as after a suspend."""
     return OfComputer(lambda computer: computer.jump(seconds))
 
 

@@ -1,4 +1,4 @@
-"""Faults of the CAN bus: frames that are lost, late or repeated, nodes that are cut off, strangers that talk."""
+"""Faults of the CAN bus: lost, late or repeated frames, nodes that are cut off, frames of strangers."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _FUNCTION: Final = 0x780
 
 
 def unseen(t: float, can_id: int, data: bytes, sent: bool) -> None:
-    """Watch, and take no note of a frame."""
+    """Ignore a frame: a watcher that only forces the bus to pass on every frame."""
 
 
 class FaultyCanWire(CanWire):
-    """A bus on which frames can be spoiled. Without a fault it behaves, frame by frame, as the plain one.
+    """A bus with faults of frames. Without a fault it behaves, frame by frame, as the plain bus.
 
     ``lost`` are identifiers that reach no node; ``late_s`` delays the frames of a function code (identifier without
     the node) by s; ``loss`` is the share of all frames lost, evenly spread; ``frozen`` repeats the last data of an
-    identifier; ``repeated`` doubles every frame; ``silent`` loses everything without an error.
+    identifier; ``repeated`` doubles every frame; ``silent`` loses every frame without an error.
     """
 
     __slots__ = ("_counted", "_cut", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
@@ -43,11 +43,11 @@ class FaultyCanWire(CanWire):
         self._counted = 0.0
 
     def note_faults(self) -> None:
-        """Take note that an attribute was changed: a bus without faults passes frames on unseen."""
+        """Update the bus after an attribute was changed: a bus without faults does not look at frames."""
         self.spoiled = bool(
             self.lost or self.frozen or self.late_s or self.loss or self.repeated or self.silent or self._cut
         )
-        # A bus that is watched takes no short cuts: each frame of it comes through ``send`` or ``transmit``.
+        # A watched bus takes no short cuts: each of its frames passes through ``send`` or ``transmit``.
         if self.spoiled and unseen not in self.watchers:
             self.watchers.append(unseen)
         elif not self.spoiled and unseen in self.watchers:
@@ -63,7 +63,7 @@ class FaultyCanWire(CanWire):
         self._adopt_followers(self._ranked_followers)
 
     def occupy(self, now: float, seconds: float) -> None:
-        """Let a stranger's frames of high priority have the wire for this long."""
+        """Occupy the wire for this long with a stranger's frames of high priority."""
         self._busy_s = max(self._busy_s, now) + seconds
         self.occupied_s += seconds
 
@@ -74,7 +74,7 @@ class FaultyCanWire(CanWire):
         super()._adopt_followers([entry for entry in ranked if entry[0] not in self._cut])
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
-        """Send a frame of the computer, unless a fault has it; raises BusLost when the adapter is gone."""
+        """Send a frame of the computer, unless a fault drops it; raises BusLost when the adapter is gone."""
         if self.spoiled and self.connected:
             if self._loses(can_id):
                 self._busy_s = max(self._busy_s, now) + self._frame_s[len(data)]
@@ -84,7 +84,7 @@ class FaultyCanWire(CanWire):
         super().send(can_id, data, now)
 
     def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
-        """Send the frames of a bus cycle; on a spoiled bus each is looked at."""
+        """Send the frames of a bus cycle; with a fault each frame is checked."""
         if self.spoiled:
             for can_id, data in zip(can_ids, payloads, strict=True):
                 self.send(can_id, data, now)
@@ -92,7 +92,7 @@ class FaultyCanWire(CanWire):
             super().send_cycle(can_ids, payloads, now)
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
-        """Send a node's frame, unless a fault has it."""
+        """Send a node's frame, unless a fault drops it."""
         if self.spoiled:
             if can_id & _NODE in self._cut or self._loses(can_id):
                 return
@@ -106,7 +106,7 @@ class FaultyCanWire(CanWire):
         super().transmit(can_id, data, t, urgent)
 
     def _late(self, can_id: int, data: bytes, t: float, urgent: bool) -> None:
-        """Queue a frame for later; what goes through ``transmit`` again must not be delayed twice."""
+        """Queue a frame for later; a frame that passes ``transmit`` again must not be delayed twice."""
         arrival = t + self._frame_s[len(data)]
         if self.connected:
             insort(self._inbox, (arrival, can_id, data))
@@ -125,7 +125,7 @@ class FaultyCanWire(CanWire):
 
 
 def wire_of(scene: Scene) -> FaultyCanWire:
-    """Return the rig's bus. Raises TypeError for a rig that was built without faults in mind."""
+    """Return the rig's bus. Raises TypeError for a rig that was built without a faulty bus."""
     wire = scene.rig.can
     if not isinstance(wire, FaultyCanWire):
         raise TypeError("bus faults need a rig that was built with FaultyCanWire")
@@ -159,7 +159,7 @@ def frame_loss(scene: Scene, on: bool, now: float, percent: float) -> None:
 
 @switched
 def frames_late(scene: Scene, on: bool, now: float, seconds: float) -> None:
-    """The drives' process data reach the computer so much later, s."""
+    """The drives' process data reach the computer later by this time, s."""
     wire = wire_of(scene)
     wire.late_s = seconds if on else 0.0
     wire.note_faults()

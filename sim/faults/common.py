@@ -1,8 +1,8 @@
-"""Rows of the fault catalogue for every machine on these wires: of each drive, the bus, the devices, the computer.
+"""Rows of the fault catalogue for every machine on these wires: faults of drives, bus, devices and computer.
 
-Each machine passes the members of its own enumeration of the times from which a fault shows: ``always``,
+Each machine passes the members of its own enumeration of the times at which a fault can be noticed: ``always``,
 ``connecting``, ``drives`` (once every drive is configured), ``enabled`` (while the drives are on). Budgets are those of
-docs/safety.md, with one scan at the slow rate on top.
+docs/safety.md, with one scan at the slow rate added.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _TRIP: Final = Expected.TRIP
 
 
 def drive_rows(axis: str, drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield the faults of any drive."""
+    """Yield the faults that any drive can have."""
     for what, make, budget_s in (
         ("fault", partial(drives.drive_fault, axis, OVERCURRENT), 0.02),
         ("heartbeat lost", partial(drives.heartbeat_lost, axis), 0.2),
@@ -57,7 +57,7 @@ _SPOILED: Final[tuple[tuple[str, Kind], ...]] = (
 
 
 def device_rows(device: str, needed: Enum, budget_s: float) -> Iterator[FaultKind]:
-    """Yield the ways in which a Modbus device stops answering; ``needed``: the time from which its readings are."""
+    """Yield the ways in which a Modbus device stops answering; ``needed``: when its readings begin to be needed."""
     for what, kind in _SPOILED:
         yield FaultKind(f"{device} {what}", partial(modbus.Impaired, device, kind), needed, _TRIP, budget_s)
     yield FaultKind(f"{device} without supply", partial(modbus.device_off, device), needed, _TRIP, budget_s)
@@ -88,7 +88,7 @@ PLAIN_STEPS: Final = ("connect", "mount", "settle", "slide")
 
 
 class PlainExposure(Enum):
-    """The earliest time at which a fault shows."""
+    """The earliest time at which a fault can be noticed."""
 
     ALWAYS = "at once, once the run has begun"
     DRIVES = "at once, once every drive is configured"
@@ -101,7 +101,7 @@ _ENABLED, _MOVING = PlainExposure.ENABLED, PlainExposure.MOVING
 
 
 def plain_language(axes: Iterable[str], sensors: Iterable[str], *own: FaultKind) -> FaultLanguage:
-    """Return the language of a plain machine's fault scripts; ``sensors``: by their names for people."""
+    """Return the language of a plain machine's fault scripts; ``sensors``: their names for people."""
     rows = [*own, *bus_rows(_DRIVES, _ENABLED), *computer_rows(_ALWAYS, _DRIVES, _ENABLED)]
     for axis in axes:
         rows += [*drive_rows(axis, _DRIVES, _ENABLED), *left_operation_rows(axis, _ENABLED)]

@@ -1,4 +1,4 @@
-"""Faults of the drives, of the mechanics they move, and of their service data (SDO)."""
+"""Faults of the drives, of the mechanics that they move, and of their service data (SDO)."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from sim.nodes.sdo_server import SdoServer
 
 MOTOR_BLOCKED = 0x7121
 BLOCKED_S = 0.5
-"""A drive calls its motor blocked after this long at its torque limit, s [A]."""
+"""Time at its torque limit after which a drive reports its motor blocked, s [A]."""
 SdoFault = Literal["abort", "toggle", "other object"]
 _INITIATES = (1, 2)
-"""Commands that begin a download and an upload: they carry an address (CiA 301, 7.2.4.3)."""
+"""Commands that begin a download and an upload: they contain an address (CiA 301, 7.2.4.3)."""
 _OTHER = 0x2000
-"""The object a confused server answers about: the first of the manufacturer's."""
+"""Object in the answers of a confused server: the first object of the manufacturer's range."""
 
 
 @switched
@@ -46,7 +46,7 @@ def reported(scene: Scene, on: bool, now: float, axis: str, code: int) -> None:
 
 @switched
 def short_emergency(scene: Scene, on: bool, now: float, axis: str, code: int, length: int) -> None:
-    """The drive reports an error, once, in a frame of its first ``length`` bytes; it keeps no record of it."""
+    """The drive reports an error, once, in a frame of its first ``length`` bytes; it does not store the error."""
     drive = scene.rig.axes[axis]
     if on:
         drive.wire.transmit(o.EMERGENCY_BASE + drive.node_id, encode_emergency(code, 1)[:length], now, True)
@@ -89,7 +89,7 @@ def local(scene: Scene, on: bool, now: float, axis: str) -> None:
 
 @switched
 def wrong_identity(scene: Scene, on: bool, now: float, axis: str) -> None:
-    """Another product answers at the drive's address: seen at the next connection."""
+    """Another product answers at the drive's address: noticed at the next connection."""
     drive = scene.rig.axes[axis]
     drive.store.values[(o.IDENTITY, 2)] = drive.config.product_code + on
 
@@ -106,7 +106,7 @@ class _OnAxis(Effect):
 
 
 class Jammed(_OnAxis):
-    """The shaft stands; the drive pushes, and calls its motor blocked after a while where it was moving."""
+    """The shaft is blocked; a drive that was moving pushes, and after a while reports its motor blocked."""
 
     every_step = True
 
@@ -135,19 +135,19 @@ class Runaway(_OnAxis):
     every_step = True
 
     def __init__(self, axis: str, speed: float) -> None:
-        """At this speed (unit of the axis per s)."""
+        """Take the speed of the fault (unit of the axis per s)."""
         super().__init__(axis)
         self.speed = speed
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Override what was commanded; without power the axis does what it does without power."""
+        """Override the command; without power the axis moves as it does without power."""
         drive = self.drive(scene)
         if drive.state in ENERGISED and isinstance(drive.axis, VelocityAxis):
             drive.axis.aim(self.speed)
 
 
 class SpoiledSdoServer(SdoServer):
-    """A server that refuses everything, forgets to toggle, or answers about another object."""
+    """A server that refuses everything, does not toggle, or answers about another object."""
 
     def __init__(self, objects: ObjectStore, kind: SdoFault) -> None:
         """Serve ``objects`` badly."""
@@ -165,7 +165,7 @@ class SpoiledSdoServer(SdoServer):
         return reply[:1] + _OTHER.to_bytes(2, "little") + reply[3:]
 
     def _start_upload(self, data: bytes) -> bytes:
-        """Begin an upload; one that will forget to toggle goes in segments, as every device may choose to."""
+        """Begin an upload; one with a missing toggle goes in segments, as every device may choose to."""
         if self._kind != "toggle":
             return super()._start_upload(data)
         self.reset()
@@ -173,20 +173,20 @@ class SpoiledSdoServer(SdoServer):
         return self._begin_segments(self._objects.upload(self._index, self._sub))
 
     def _upload_segment(self, data: bytes) -> bytes:
-        """Return a segment, with the wrong toggle bit if so."""
+        """Return a segment; its toggle bit is wrong in an upload with a missing toggle."""
         reply = super()._upload_segment(data)
         return bytes((reply[0] ^ 0x10,)) + reply[1:] if self._kind == "toggle" else reply
 
 
 @switched
 def sdo_spoiled(scene: Scene, on: bool, now: float, axis: str, kind: SdoFault) -> None:
-    """The drive's SDO server is out of order in this way."""
+    """The drive's SDO server has this fault."""
     drive = scene.rig.axes[axis]
     drive.serve_with(SpoiledSdoServer(drive.store, kind) if on else SdoServer(drive.store))
 
 
 class ModeRefused(_OnAxis):
-    """A drive refuses every mode of operation: a wrong firmware, or a drive that believes it moves."""
+    """A drive refuses every mode of operation: a wrong firmware, or a drive that takes itself for moving."""
 
     def refuse(self, sub: int, value: int) -> None:
         """Refuse a write to 0x6060."""
@@ -199,5 +199,5 @@ class ModeRefused(_OnAxis):
         guards[o.MODE] = self.refuse
 
     def end(self, scene: Scene, now: float) -> None:
-        """Accept what the drive can do."""
+        """Accept the modes that the drive has."""
         self.drive(scene).store.guards[o.MODE] = self._guard

@@ -1,4 +1,4 @@
-"""What a row of the fault catalogue is made of."""
+"""The parts of a row of the fault catalogue."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sim.faults.scene import Effect
 
 
 class Expected(Enum):
-    """What has to come of it."""
+    """Required reaction to a fault."""
 
     TRIP = "trips: the run ends latched"
     STOP = "the run ends in a controlled stop"
@@ -23,16 +23,16 @@ class Expected(Enum):
 
 @dataclass(frozen=True, slots=True)
 class FaultKind:
-    """One fault: its name, how it is applied, what has to come of it and by when.
+    """One fault: its name, the way to apply it, the required reaction, and its time limit.
 
-    ``make`` gets the value, where the fault has one (``unit`` not None), and ``value`` where none is given.
-    ``budget_s`` counts from the onset, or from when the fault can be noticed (``exposure``, each
-    machine's own words), to the safe commands.
-    ``force_stays`` and ``heat_stays``: the force, or the heat, cannot go by any command (the reason is in ``note``).
-    ``lasts_s``: it is over by itself after this time.
-    ``slow``: a matter of temperature, watched for two minutes and more.
-    ``axis``: of which drive it is, where its exposure asks for that.
-    A row that MAY trip has no budget, and a ``note`` that says why nothing is asked of it.
+    ``make`` gets the value, if the fault has one (``unit`` not None), or ``value`` if none is given.
+    ``budget_s`` counts up to the safe commands, from the onset, or from the time when the fault can be noticed
+    (``exposure``, in each machine's own words).
+    ``force_stays`` and ``heat_stays``: no command can remove the force, or the heat (the reason is in ``note``).
+    ``lasts_s``: time after which the fault ends by itself.
+    ``slow``: a fault of temperature, watched for two minutes and more.
+    ``axis``: its drive, if its exposure depends on one.
+    A row that MAY trip has no budget, and a ``note`` with the reason why no trip is required.
     """
 
     phrase: str
@@ -57,7 +57,7 @@ class FaultKind:
 
     @property
     def group(self) -> str:
-        """What it concerns: the first word, but for the devices' and operators' names of two words."""
+        """Subject of the fault: the first word of its phrase, even where a name has two words."""
         return self.phrase.split()[0]
 
 
@@ -77,7 +77,7 @@ class Parametric:
 
     @property
     def ends(self) -> tuple[float, ...]:
-        """Return ``least`` and ``most``, except one that equals ``normal``."""
+        """Return ``least`` and ``most``, except an end that equals ``normal``."""
         return tuple(end for end in (self.least, self.most) if end != self.normal)
 
     def between(self, end: float, share: float) -> float:
@@ -85,6 +85,6 @@ class Parametric:
         return self.normal + share * (end - self.normal)
 
     def text(self, value: float) -> str:
-        """Return the fault as a script has it, without its time."""
+        """Return the fault as in a script, without its time."""
         unit = self.kind.unit or ""
         return f"{self.kind.phrase} {value:.6g} {'s' if unit == 'ms' else unit}".rstrip()

@@ -6,10 +6,10 @@
     step heat + 20 s: thermometer offset -15 K for 1 min
     condition 3/2 + 5 s: friction 115 %
 
-The last one begins 5 s after the second repeat of condition 3 has begun.
+The last fault begins 5 s after the start of the second repeat of condition 3.
 
-When, a colon, the fault's phrase, its value where it has one, and how long it lasts (else to the end of the run). Which
-phrases and which steps there are, a kind of machine says.
+A line consists of a time, a colon, the fault's phrase, its value if it has one, and its duration (else it lasts to the
+end of the run). Each kind of machine defines the phrases and the steps.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "N/s": {"N/s": 1.0},
     "": {"": 1.0},
 }
-"""Units that a value is accepted in, by the unit of the fault's row; times become seconds."""
+"""Accepted units of a value, by the unit of the fault's row; times become seconds."""
 
 _NUMBER = r"[+-]?(?:0x[0-9a-fA-F]+|\d+(?:\.\d*)?|\.\d+)"
 _DURATION = re.compile(rf"^(?P<rest>.*\S)\s+for\s+(?P<number>{_NUMBER})\s*(?P<unit>[a-z]*)$")
@@ -50,13 +50,13 @@ _AT_STEP = re.compile(rf"^step (?P<name>[a-z-]+)(?:\s*\+\s*(?P<number>{_NUMBER})
 
 
 class FaultTextError(ValueError):
-    """A line of a fault script that cannot be read; the message says where, what, and what was expected."""
+    """A line of a fault script that cannot be read; the message names place, error and expected text."""
 
 
 @dataclass(frozen=True, slots=True)
 class FaultTime:
-    """When a fault begins: at a time (s), a scan (from 1), or some time (s) after a step, a condition or a repeat has
-    begun (``step`` is its name then: ``condition 3``, ``condition 3/2``)."""
+    """Start of a fault: at a time (s), at a scan (from 1), or a time (s) after the start of a step, a condition or a
+    repeat (``step`` is its name then: ``condition 3``, ``condition 3/2``)."""
 
     at_s: float = inf
     scan: int = 0
@@ -75,14 +75,14 @@ class Injection:
     text: str = ""
 
     def shifted(self, by_s: float) -> Injection:
-        """Return the same fault this much later, s; its kind's own end counts where none was written."""
+        """Return the same fault later by this time, s; without a written end its kind's own end counts."""
         lasts_s = min(self.lasts_s, self.kind.lasts_s)
         return replace(self, when=replace(self.when, at_s=self.when.at_s + by_s), lasts_s=lasts_s)
 
 
 @dataclass(frozen=True, slots=True)
 class FaultLanguage:
-    """What the scripts of one kind of machine can say: its faults by their phrases, and the steps they can wait for."""
+    """Language for the scripts of one kind of machine: its faults by phrase, and the steps that they can wait for."""
 
     catalogue: Mapping[str, FaultKind]
     steps: Sequence[str]

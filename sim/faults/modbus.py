@@ -7,7 +7,7 @@ from sim.nodes.modbus_slave import ENDURANCE, ModbusSlave
 from sim.wires.modbus_wire import Impairment, Kind, ModbusWire
 
 REBOOT_S = 2.0
-"""A transmitter or controller is silent this long after a dip in its supply, s [A]."""
+"""Silence of a transmitter or controller after a dip in its supply, s [A]."""
 
 
 def slave_of(scene: Scene, device: str) -> ModbusSlave:
@@ -34,7 +34,7 @@ class Impaired(Effect):
         self._impairment: Impairment | None = None
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Begin."""
+        """Put the impairment on the line."""
         line = line_of(scene, self.device)
         unit_id = slave_of(scene, self.device).unit_id
         self._impairment = Impairment(
@@ -43,13 +43,13 @@ class Impaired(Effect):
         line.impair = self._impairment
 
     def end(self, scene: Scene, now: float) -> None:
-        """Leave it in its place and let it strike no more."""
+        """Leave it on the line, without effect."""
         if self._impairment is not None:
             self._impairment.count = 0
 
 
 def late_reply(device: str, seconds: float) -> Impaired:
-    """Every reply of a device comes so much later, s."""
+    """Every reply of a device comes later by this time, s."""
     return Impaired(device, "late", delay_s=seconds)
 
 
@@ -76,26 +76,26 @@ def device_off(scene: Scene, on: bool, now: float, device: str) -> None:
 
 @switched
 def memory_worn(scene: Scene, on: bool, now: float, device: str) -> None:
-    """A device's non-volatile memory is worn out: values kept there cannot be changed."""
+    """A device's non-volatile memory is worn out: the values in it cannot be changed."""
     slave_of(scene, device).endurance = 0 if on else ENDURANCE
 
 
 class DeviceReset(Effect):
-    """A device restarts: silent for a while, then with the state of its power-on (a controller in standby)."""
+    """A device restarts: it is silent for a while, then in its power-on state (a controller in standby)."""
 
     every_step = True
 
     def __init__(self, device: str) -> None:
-        """This device."""
+        """Take the name of the device."""
         self.device = device
         self._until_s = 0.0
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Switch it off for its restart."""
+        """Switch the device off for its restart."""
         self._until_s = now + REBOOT_S
         slave_of(scene, self.device).power(False)
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Have it start when it is time."""
+        """Switch the device on when it is time."""
         if now >= self._until_s and not slave_of(scene, self.device).powered:
             slave_of(scene, self.device).power(True)

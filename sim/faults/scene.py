@@ -1,4 +1,4 @@
-"""What a fault acts on (the simulated rig, its computer, the person in front of it), and what a fault is."""
+"""The target of a fault (the simulated rig, its computer, the person in front of it), and the fault itself."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Arguments = ParamSpec("Arguments")
 
 
 class ControlComputer(Protocol):
-    """The controlling process as a fault script sees it: what can happen to it, and what an operator can command."""
+    """The controlling process for a fault script: events that can happen to it, and commands of its operator."""
 
     def stall(self, seconds: float) -> None:
         """Do no scan for this long."""
@@ -24,11 +24,11 @@ class ControlComputer(Protocol):
         ...
 
     def jump(self, seconds: float) -> None:
-        """Let the computer's clock be ahead by this much more."""
+        """Put the computer's clock ahead by this time."""
         ...
 
     def operate(self, action: str) -> None:
-        """Let the operator ask for "hold", "release", "abort", "stop" or "fast stop"."""
+        """Request "hold", "release", "abort", "stop" or "fast stop" as the operator."""
         ...
 
 
@@ -40,26 +40,26 @@ class Scene:
     computer: ControlComputer
 
     def machine(self, kind: type[Machine]) -> Machine:
-        """Return the rig as that of a kind of machine. Raises TypeError where it is another one."""
+        """Return the rig as a machine of this kind. Raises TypeError for a rig of another kind."""
         if not isinstance(self.rig, kind):
             raise TypeError(f"a fault of a {kind.__name__} cannot act on a {type(self.rig).__name__}")
         return self.rig
 
 
 class Effect:
-    """One thing that is wrong, from ``begin`` to ``end``. Plain data: copied with the rig in the middle of it."""
+    """One fault in action, from ``begin`` to ``end``. Plain data: it can be copied with the rig while it lasts."""
 
     every_step = False
-    """The effect has to be renewed before each step of the rig (``renew``)."""
+    """Whether the effect has to be renewed before each step of the rig (``renew``)."""
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Let it happen at ``now`` s."""
+        """Begin at ``now`` s."""
 
     def end(self, scene: Scene, now: float) -> None:
-        """Let it be over; what it has done to the rig stays done."""
+        """End; damage already done to the rig stays."""
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Do what has to be done before the rig is advanced from ``now`` s."""
+        """Renew the effect before the rig is advanced from ``now`` s."""
 
 
 class Switched(Effect):

@@ -1,4 +1,4 @@
-"""A fault script at work on a simulated rig: what is to come, what is wrong just now."""
+"""A fault script for a simulated rig in progress: planned faults, and faults in action."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sim.faults.scene import Effect, Scene
 
 @dataclass(slots=True)
 class Planned:
-    """Something that happens at a known time: the begin or the end of an effect."""
+    """An event at a known time: the begin or the end of an effect."""
 
     at_s: float
     effect: Effect
@@ -23,22 +23,22 @@ class Planned:
 
 @dataclass(slots=True)
 class FaultScript:
-    """The faults of one run, applied as it goes. Plain data; ``due_s`` is the time of the next one.
+    """The faults of one run, applied during the run. Plain data; ``due_s`` is the time of the next event.
 
-    ``happened`` collects (time in s, text) of what began and ended, until it is fetched.
+    ``happened`` collects (time in s, text) of the effects that began and ended, until it is fetched.
     """
 
     waiting: list[Injection] = field(default_factory=list[Injection])
-    """Those that wait for a scan or a step."""
+    """Faults that wait for a scan or a step."""
     planned: list[Planned] = field(default_factory=list[Planned])
     renewed: list[Effect] = field(default_factory=list[Effect])
     active: list[Planned] = field(default_factory=list[Planned])
-    """What has begun and is not over."""
+    """Effects that have begun and not ended."""
     happened: list[tuple[float, str]] = field(default_factory=list[tuple[float, str]])
     due_s: float = inf
 
     def add(self, injections: Iterable[Injection]) -> FaultScript:
-        """Take on more faults."""
+        """Add more faults."""
         for injection in injections:
             if injection.when.at_s < inf:
                 self._plan(injection, injection.when.at_s)
@@ -47,7 +47,7 @@ class FaultScript:
         return self
 
     def notice(self, now: float, scans: int, steps: Iterable[str]) -> None:
-        """Look whether a scan's number or the begin of a step (its names) is what a fault waits for."""
+        """Start the faults that waited for this scan number or for the begin of one of these steps."""
         names = tuple(steps)
         for injection in tuple(self.waiting):
             when = injection.when
@@ -56,22 +56,22 @@ class FaultScript:
                 self._plan(injection, now + when.after_s)
 
     def act(self, scene: Scene, now: float) -> None:
-        """Let everything begin and end that is due by ``now`` s."""
+        """Begin and end every effect that is due by ``now`` s."""
         while self.due_s <= now:
             planned = min(self.planned, key=_at)
             self.planned.remove(planned)
             try:
                 self._do(planned, scene, now)
-            finally:  # a rig need not have the device that a fault is of
+            finally:  # the rig may lack the device of the fault
                 self.due_s = min((one.at_s for one in self.planned), default=inf)
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Renew what has to be renewed before each step of the rig."""
+        """Renew the effects that need it before each step of the rig."""
         for effect in self.renewed:
             effect.renew(scene, now)
 
     def clear(self, scene: Scene, now: float) -> None:
-        """End everything that has begun, the last first, and forget what was to come."""
+        """End every effect in action, the last first, and forget the planned faults."""
         self.waiting.clear()
         self.planned.clear()
         self.due_s = inf

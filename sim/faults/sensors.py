@@ -1,6 +1,6 @@
-"""Faults of sensors and temperature controllers: what they show, or do, instead of what they should.
+"""Faults of sensors and temperature controllers: wrong readings, or wrong behaviour.
 
-A spoiled source stands in for the sound one; nothing is looked up per reading while a sensor is well.
+A spoiled source replaces the sound one; while a sensor is well, a reading needs no extra look-up.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from sim.noise import NormalStream
 
 SLOW: Final = ("lag", "delay")
 CROSSED: Final = ("exchanged x z", "reversed x", "reversed y", "reversed z")
-"""Kinds of a load cell alone: its channels as they should not be."""
+"""Kinds for a load cell alone: faults of wiring and sign between its channels."""
 SEED: Final = 402
 """Key of the random numbers of noisy sensors: the same in every run."""
 _OFF_SCALE_N: Final = 1e5
-"""More than any load cell here can show, N: the transmitter shows the end of its range."""
+"""A force beyond the range of every load cell here, N: the transmitter shows the end of its range."""
 
 
 class Slow:
-    """Readings that come through a filter of first order ("lag"), or as they were some time ago ("delay")."""
+    """Readings through a first-order filter ("lag"), or from some time ago ("delay")."""
 
     def __init__(self, kind: str, seconds: float) -> None:
-        """With this time constant, or this late, s (at least 0)."""
+        """Take the time constant, or the delay, s (at least 0)."""
         self._delays = kind == "delay"
         self._seconds = max(seconds, 1e-9)
         self._held: tuple[float, ...] = ()
@@ -35,7 +35,7 @@ class Slow:
         self._past: deque[tuple[float, tuple[float, ...]]] = deque()
 
     def shown(self, readings: tuple[float, ...], t: float) -> tuple[float, ...]:
-        """Return what is shown at ``t`` s where the sensor has these readings now."""
+        """Return the readings shown at ``t`` s; ``readings`` are the sensor's true ones at that time."""
         if self._delays:
             past = self._past
             past.append((t, readings))
@@ -52,7 +52,7 @@ class Slow:
 
 
 def spoiled(kind: str, value: float, size: float, age_s: float, noise: NormalStream, floor: float) -> float:
-    """Return what a sensor shows of ``value``: off by ``size``, drifting by ``size`` a second, noisy (rms ``size``),
+    """Return the spoiled reading of ``value``: off by ``size``, drifting by ``size`` a second, noisy (rms ``size``),
     low (the share of ``size`` percent above ``floor`` is missing), with a gain of ``size`` percent above ``floor``, off
     scale, or nothing (not a number)."""
     if kind == "offset":
@@ -69,36 +69,36 @@ def spoiled(kind: str, value: float, size: float, age_s: float, noise: NormalStr
 
 
 class _Spoiled:
-    """A sensor's source with something wrong, until it is no longer ``active``."""
+    """A sensor's source with a fault, until it is no longer ``active``."""
 
     def __init__(self, kind: str, size: float, since_s: float, middle: float, name: str) -> None:
-        """Of this kind and size; shares count from ``middle`` (0 N, or degC); ``name`` keys the noise."""
+        """Take kind and size; shares count from ``middle`` (0 N, or degC); ``name`` keys the noise."""
         self.kind, self.active = kind, True
         self._size, self._since_s, self._middle = size, since_s, middle
         self._noise = NormalStream(SEED, f"faulty {name}")
         self._slow = Slow(kind, size) if kind in SLOW else None
 
     def spoil(self, true: float, t: float) -> float:
-        """Return what it makes of a true value at ``t`` s."""
+        """Return the spoiled reading of a true value at ``t`` s."""
         return spoiled(self.kind, true, self._size, t - self._since_s, self._noise, self._middle)
 
     @property
     def _steady(self) -> bool:
-        """Whether it shows a value at rest as it is, but for noise."""
+        """Whether a value at rest is shown unchanged, except for noise."""
         return not self.active or self.kind == "noise" or self._slow is not None or self.kind in CROSSED
 
 
 class SpoiledForces(_Spoiled):
-    """A load cell with something wrong with one force, or with all channels."""
+    """A load cell with a fault of one force, or of all channels."""
 
     def __init__(self, source: ForceSource, kind: str, size: float = 0.0, since_s: float = 0.0, force: str = "fz",
                  name: str = "load cell") -> None:  # fmt: skip
-        """Stand in for ``source``; ``force``: which one is wrong."""
+        """Replace ``source``; ``force``: the faulty force."""
         super().__init__(kind, size, since_s, 0.0, name)
         self.source, self._place = source, FORCES.index(force)
 
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
-        """Return Fx, Fy, Fz in N and the moment in N m as they appear at ``t`` s."""
+        """Return Fx, Fy, Fz in N and the moment in N m as shown at ``t`` s."""
         forces = x, y, z, m = self.source.forces_measured(t)
         if not self.active:
             return forces
@@ -113,30 +113,30 @@ class SpoiledForces(_Spoiled):
         return x, y, z, m
 
     def shown_n(self, true_n: float, t: float) -> float:
-        """Return what it makes of a force of ``true_n`` at ``t`` s, noise left out, N; NaN: nothing."""
+        """Return the shown value of a force of ``true_n`` at ``t`` s, without noise, N; NaN: nothing."""
         return true_n if self._steady else self.spoil(true_n, t)
 
 
 class SpoiledTemperature(_Spoiled):
-    """A temperature sensor with something wrong; it stands in for the plant where a device asks for it."""
+    """A temperature sensor with a fault; it replaces the plant as the source of a device."""
 
     def __init__(self, source: SurfaceSource | TemperatureSource, kind: str, size: float, since_s: float,
                  ambient_c: float, name: str) -> None:  # fmt: skip
-        """Stand in for ``source``; shares count from ``ambient_c``."""
+        """Replace ``source``; shares count from ``ambient_c``."""
         super().__init__(kind, size, since_s, ambient_c, name)
         self.source = source
         self._held_c: float = nan
 
     def surface_measured_c(self, t: float) -> float:
-        """Return the surface temperature in degC as it appears."""
+        """Return the surface temperature in degC as shown."""
         return self._appears(cast("SurfaceSource", self.source).surface_measured_c(t), t)
 
     def controller_measured_c(self, t: float) -> float:
-        """Return the controlled temperature in degC as it appears."""
+        """Return the controlled temperature in degC as shown."""
         return self._appears(cast("TemperatureSource", self.source).controller_measured_c(t), t)
 
     def off_k(self, true_c: float, t: float) -> float:
-        """Return how far from ``true_c`` degC the sensor shows at ``t`` s, its noise left out, K; NaN: nothing."""
+        """Return the error of the reading for ``true_c`` degC at ``t`` s, without noise, K; NaN: no reading."""
         return 0.0 if self._steady else self._appears(true_c, t) - true_c
 
     def _appears(self, true_c: float, t: float) -> float:
@@ -160,9 +160,9 @@ def _crossed(kind: str, x: float, y: float, z: float, m: float) -> tuple[float, 
 
 
 class SensorFault(Effect):
-    """Something is wrong with a device's sensor, or one force of a load cell, until the fault ends.
+    """A fault of a device's sensor, or of one force of a load cell, until the fault ends.
 
-    Without the device the fault has nothing to act on.
+    On a rig without the device it has no effect.
     """
 
     def __init__(self, device: str, kind: str, size: float = 0.0, force: str = "fz") -> None:
@@ -171,7 +171,7 @@ class SensorFault(Effect):
         self._wrapped: SpoiledForces | SpoiledTemperature | None = None
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Let the sensor show something else from now on."""
+        """Replace the sensor's source from now on."""
         slave = scene.rig.devices.get(self.device)
         if isinstance(slave, SensorSlave) and self.kind == "frozen":
             slave.frozen = True
@@ -187,7 +187,7 @@ class SensorFault(Effect):
             slave.source = wrapped
 
     def end(self, scene: Scene, now: float) -> None:
-        """Show what is."""
+        """Show the true values again."""
         slave = scene.rig.devices.get(self.device)
         if self._wrapped is not None:
             self._wrapped.active = False
@@ -199,7 +199,7 @@ class SensorFault(Effect):
 def controller_output(scene: Scene, on: bool, now: float, device: str, percent: float) -> None:
     """A temperature controller's output is stuck at ``percent`` (below 0 cooling), whatever its loop computes.
 
-    Its registers show it. Without the device the fault has nothing to act on.
+    Its registers show this output. On a rig without the device the fault has no effect.
     """
     slave = scene.rig.devices.get(device)
     if isinstance(slave, ControllerSlave):

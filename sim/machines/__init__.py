@@ -1,7 +1,7 @@
-"""Kinds of simulated machines, found by name: a folder here each, or ``package.module:OBJECT`` of who brings one along.
+"""Kinds of simulated machines, found by name: a folder here each, or ``package.module:OBJECT`` of another package.
 
-A kind's package has a ``MACHINE`` (``SimulatedMachine``). ``tester.run`` alone looks one up, by the name that a kind of
-rig says: no name comes from a rig file or a client.
+A kind's package has a ``MACHINE`` (``SimulatedMachine``). Only ``tester.run`` looks a machine up, by the name in a kind
+of rig: no name comes from a rig file or a client.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from sim.rig import SimRig
 
 
 class UnknownMachineError(LookupError):
-    """A kind of machine without a simulation; the message names those that have one."""
+    """A kind of machine without a simulation; the message names the kinds that have one."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimulatedMachine:
-    """What a kind of machine gives to be simulated."""
+    """The parts of a kind of machine that its simulation needs."""
 
     world: Callable[..., SimRig]
-    """``world(spec, parameters, seed, can_wire)``: the rig on a wiring (``sim.rig.RigSpec``), with the kind's own
-    parameters (the rig file's section ``sim``), all that is random from ``seed`` (an integer), on a bus of this class.
+    """``world(spec, parameters, seed, can_wire)``: the rig with a wiring (``sim.rig.RigSpec``), with the kind's own
+    parameters (the rig file's section ``sim``), all random numbers from ``seed`` (an integer), on a bus of this class.
     """
     language: Callable[[], FaultLanguage]
-    """What can go wrong with it; asked for only where faults are scripted."""
+    """The language of its fault scripts; it is asked for only when faults are scripted."""
     log_columns: tuple[str, ...]
     log_row: Callable[..., tuple[float, ...]]
-    """``log_row(rig)``: true values for a log of its state, one a column, each with its number of decimals."""
+    """``log_row(rig)``: true values for a log of its state, one for each column, each with its number of decimals."""
     log_decimals: tuple[int, ...]
 
 
@@ -41,7 +41,7 @@ def names() -> tuple[str, ...]:
 
 
 def find(kind: str) -> SimulatedMachine:
-    """Return a kind's machine: of a name of ``names``, or dotted, ``package.module:OBJECT``. Raises
+    """Return a kind's machine, by one of ``names`` or by a dotted name, ``package.module:OBJECT``. Raises
     UnknownMachineError."""
     known = names()
     module, colon, attribute = kind.partition(":")

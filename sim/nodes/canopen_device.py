@@ -1,6 +1,7 @@
 """The communication half of a simulated CANopen device (CiA 301): boot-up, NMT, heartbeats, SDO, emergencies.
 
-A subclass (the drive) adds what the device is for: it is called on resets, lost connections and process data.
+A subclass (the drive) adds the device's own function: its methods are called on resets, lost connections and process
+data.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from sim.wires.can_wire import CanWire
 
 HEARTBEAT_LOST: Final = 0x8130
 COMMUNICATION_BOOT_S: Final = 0.02
-"""From a communication reset to the boot-up message, s [A]."""
+"""Time from a communication reset to the boot-up message, s [A]."""
 
 # NMT states as plain integers for the hot path.
 BOOTING: Final = int(NmtState.BOOT_UP)
@@ -33,7 +34,7 @@ PRE_OPERATIONAL: Final = int(NmtState.PRE_OPERATIONAL)
 class CanopenDevice:
     """A node on a simulated wire.
 
-    ``due_s`` is the time of its next timer; ``now_s`` the time it was advanced to. Frames reach it through the
+    ``due_s`` is the time of its next timer, ``now_s`` the time to which it was advanced. Frames reach it through the
     wire's listeners, SYNC and RPDOs only while OPERATIONAL.
     """
 
@@ -86,40 +87,40 @@ class CanopenDevice:
         wire.listen(o.NMT_ID, self._on_nmt, self.node_id)
         wire.listen(o.SDO_REQUEST_BASE + self.node_id, self._on_sdo, self.node_id)
 
-    # what a subclass does ------------------------------------------------------------------------------------
+    # hooks for a subclass ------------------------------------------------------------------------------------
 
     def process(self, t: float) -> None:
         """Act on received process data, now in the object store."""
 
     def prepare_source(self, pdo: TransmitPdo) -> None:
-        """Put a quicker source into a TPDO, where there is one."""
+        """Put a quicker source into a TPDO, if there is one."""
 
     def prepare_sink(self, pdo: ReceivePdo) -> None:
-        """Put a quicker sink into an RPDO, where there is one."""
+        """Put a quicker sink into an RPDO, if there is one."""
 
     def _application_reset(self) -> None:
-        """Set the application back to power-on (power cycle and NMT reset node)."""
+        """Reset the application to its power-on state (power cycle and NMT reset node)."""
 
     def _application_ready(self, t: float) -> None:
-        """Take note that the device has booted."""
+        """React to the end of the boot."""
 
     def _application_due(self) -> float:
         """Return the next timer of the application, s."""
         return inf
 
     def _application_fire(self, t: float) -> None:
-        """Do what has fallen due in the application by ``t`` s."""
+        """Run the application's timers that are due by ``t`` s."""
 
     def _connection_lost(self, t: float) -> None:
-        """React to a lost connection as object 0x6007 says."""
+        """React to a lost connection as set by object 0x6007."""
 
     def _left_operational(self, t: float) -> None:
-        """Take note that process data have ended."""
+        """React to the end of process data."""
 
     # power, boot, NMT ----------------------------------------------------------------------------------------
 
     def power(self, on: bool) -> None:
-        """Switch the control supply at the time last advanced to: off is silent at once, on boots."""
+        """Switch the control supply at the present time: off makes it silent at once, on boots it."""
         if on == self.powered:
             return
         self.powered = on
@@ -175,13 +176,13 @@ class CanopenDevice:
             self._restart(t, COMMUNICATION_BOOT_S, communication_only=True)
 
     def _enter(self, nmt: int, t: float) -> None:
-        """Change the NMT state: process data flow in OPERATIONAL only, emergencies there and in PRE-OPERATIONAL."""
+        """Change the NMT state: PDOs are exchanged in OPERATIONAL only, emergencies also sent in PRE-OPERATIONAL."""
         if nmt == self.nmt:
             return
         was_operational = self.nmt == OPERATIONAL
         self.nmt = nmt
         if self.wire.ready_s <= t:
-            self.wire.settle(t)  # what fell due before tells the state before
+            self.wire.settle(t)  # frames due earlier contain the earlier state
         self._heartbeat.data = bytes((nmt,))
         self.emergencies.allowed = nmt in (PRE_OPERATIONAL, OPERATIONAL)
         if nmt == OPERATIONAL:
@@ -193,7 +194,7 @@ class CanopenDevice:
     # timers --------------------------------------------------------------------------------------------------
 
     def advance(self, t0: float, t1: float) -> None:
-        """Move from ``t0`` to ``t1`` s; every timer fires at its own time."""
+        """Advance from ``t0`` to ``t1`` s; every timer fires at its own time."""
         while self.due_s <= t1:
             self.fire(max(t0, self.due_s))
         self.now_s = t1
@@ -205,7 +206,7 @@ class CanopenDevice:
         self.due_s = min(due_s, self._application_due())
 
     def fire(self, t: float) -> None:
-        """Do what has fallen due by ``t`` s."""
+        """Run the timers that are due by ``t`` s."""
         if self._boot_at <= t:
             self._boot(t)
         if self._consumer_at <= t:
@@ -234,7 +235,7 @@ class CanopenDevice:
             self.wire.beat(beat, self.now_s + beat.period_s)
 
     def _on_consumer_written(self, sub: int, value: int) -> None:
-        """Watch the node that 0x1016 names; the watch begins with its first heartbeat (CiA 301, 7.2.8.2.2.3)."""
+        """Watch the node in 0x1016; the watch begins with its first heartbeat (CiA 301, 7.2.8.2.2.3)."""
         self._forget_consumer()
         node, milliseconds = value >> 16, value & 0xFFFF
         if node and milliseconds:
@@ -281,12 +282,12 @@ class CanopenDevice:
         self.emergencies.remove(code, t)
 
     def deadline_missed(self, t: float) -> None:
-        """Report an RPDO that did not come in time, and react as to a lost connection."""
+        """Report an RPDO that did not come in time, and react like to a lost connection."""
         self.error(RPDO_TIMED_OUT, t)
         self._connection_lost(t)
 
     def serve_with(self, server: SdoServer) -> None:
-        """Let another SDO server answer from now on."""
+        """Replace the SDO server from now on."""
         self._sdo = server
 
     # SDO -----------------------------------------------------------------------------------------------------
@@ -296,7 +297,7 @@ class CanopenDevice:
             return
         self.now_s = max(self.now_s, t)
         reply = self._sdo.request(data)
-        # A value written by SDO must not outlive the next, equal RPDO.
+        # A value written by SDO lasts until the next RPDO, even if its bytes are those of the last one.
         self.pdos.refresh()
         if reply is not None:
             self.wire.transmit(o.SDO_REPLY_BASE + self.node_id, reply, t + self._turnaround_s)

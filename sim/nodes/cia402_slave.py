@@ -1,7 +1,7 @@
-"""A simulated CiA 402 servo drive: answers on the wire as a real one and moves a simulated axis.
+"""A simulated CiA 402 servo drive: it answers on the wire like a real one and moves a simulated axis.
 
 Built in layers: ``canopen_device`` (CiA 301), ``drive_power`` (power state machine), ``drive_modes`` (velocity,
-position, homing), ``drive_objects`` (what the objects of the profile show, accept and set off).
+position, homing), ``drive_objects`` (readers, guards and effects of the profile's objects).
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ _TPDO1: Final = struct.Struct("<Hih").pack
 _URGENT_BITS: Final = 0x006F | cia402.VOLTAGE | cia402.REMOTE | cia402.FOLLOWING_ERROR
 """Statusword bits whose change asks for an early tick: the state, voltage, remote, deviation."""
 _URGENT_IN_POSITION_MODES: Final = _URGENT_BITS | cia402.TARGET_REACHED | cia402.SET_POINT_ACKNOWLEDGED
-"""... and where a move is waited for, its acknowledgement and its end."""
+"""... and in a move, its acknowledgement and its end."""
 
 
 class Cia402Slave(DrivePower):
     """One servo drive with its axis.
 
-    For the plant: ``axis.value`` (velocity) and ``axis.position`` in units of the axis; ``torque_nm`` is the load
-    torque to be reported in 0x6077, set from outside, and ``encoder_error`` what TPDO1's reading is off by; ``io``
-    the safety inputs and the contactor of a drive with digital I/O. ``unpowered_velocity`` (unit/s) is what the axis
-    is driven to while the power stage is off (a spring; 0: it coasts to rest) with ``coast_deceleration`` (unit/s2;
+    For the plant: ``axis.value`` (velocity) and ``axis.position`` are in units of the axis. ``torque_nm`` is the load
+    torque for 0x6077, set from outside, and ``encoder_error`` the error of TPDO1's reading. ``io``
+    are the safety inputs and the contactor of a drive with digital I/O. While the power stage is off the axis
+    is driven to ``unpowered_velocity`` (unit/s; a spring; 0: it coasts to rest) with ``coast_deceleration`` (unit/s2;
     by default the configured deceleration [A]).
     """
 
@@ -87,8 +87,8 @@ class Cia402Slave(DrivePower):
     ) -> None:
         """Build a drive for ``config`` on ``wire``; it boots ``boot_s`` after ``now`` unless not ``powered``.
 
-        ``axis``: by default one at rest at 0 with the ramps of ``config`` and, under velocity control, the closed
-        loop's ``lag_s`` (s) [A]. ``home_position``: where the home switch of a positioning axis is (axis unit).
+        ``axis``: by default an axis at rest at 0 with the ramps of ``config`` and, under velocity control, the closed
+        loop's ``lag_s`` (s) [A]. ``home_position``: position of a positioning axis' home switch (axis unit).
         ``turnaround_s`` (s): from an SDO request to its answer [A].
         """
         entries = drive_objects.entries(config)
@@ -112,7 +112,7 @@ class Cia402Slave(DrivePower):
         self.power(powered)
 
     def _add_modes(self, axis: Axis, home_position: float) -> None:
-        """Offer the modes of operation that an axis of this sort has."""
+        """Add the modes of operation of this sort of axis."""
         if isinstance(axis, PositionAxis):
             self.homing = Homing(self, axis, home_position)
             self.modes = {
@@ -140,7 +140,7 @@ class Cia402Slave(DrivePower):
         self.now_s = t1
 
     def _move(self, t0: float, t1: float) -> None:
-        """Step the axis and see what its motion means for the drive's state."""
+        """Step the axis and update the drive's state for its motion."""
         axis = self.axis
         if not axis.still:
             axis.step(t1 - t0)
@@ -152,7 +152,7 @@ class Cia402Slave(DrivePower):
         self._watch(t1)
 
     def _watch(self, t: float) -> None:
-        """See what the axis' motion means for the statusword."""
+        """Update the statusword for the axis' motion."""
         mode = self.mode
         if mode is None:
             self.watching = self._leaving is not None
@@ -169,7 +169,7 @@ class Cia402Slave(DrivePower):
         if self.io is not None and self.io.fire(t):
             self.pdos.send_events(t)
 
-    # the world around the drive ------------------------------------------------------------------------------
+    # surroundings of the drive -------------------------------------------------------------------------------
 
     def load(self, torque_nm: float, encoder_error: float) -> None:
         """Put a torque on the shaft (N m) and an error on the encoder's reading (units of the axis)."""
@@ -179,11 +179,11 @@ class Cia402Slave(DrivePower):
 
     @property
     def torque_limit_nm(self) -> float:
-        """What 0x6072 leaves the drive, N m."""
+        """Torque limit of the drive by 0x6072, N m."""
         return self.store.values[_MAX_TORQUE] / self._per_mille
 
     def stall(self, position: float) -> None:
-        """Stand at ``position`` (axis unit) with the torque that 0x6072 leaves; bit 11 shows it until ``unstall``."""
+        """Stand at ``position`` (axis unit) with the torque limit of 0x6072; bit 11 shows it until ``unstall``."""
         if isinstance(self.axis, VelocityAxis):
             self.axis.stall(position)
         self._at_torque_limit(True)
@@ -211,7 +211,7 @@ class Cia402Slave(DrivePower):
             self.pdos.send_events(self.now_s)
 
     def block(self, blocked: bool) -> None:
-        """Hold the shaft by force, or free it: the drive sees at once that it stands."""
+        """Hold the shaft by force, or free it: the drive notices the standstill at once."""
         self.axis.block(blocked)
         self._watch(self.now_s)
         self.watching = True
@@ -219,7 +219,7 @@ class Cia402Slave(DrivePower):
     # commands ------------------------------------------------------------------------------------------------
 
     def process(self, t: float) -> None:
-        """Act on controlword, mode, targets and outputs as they stand in the object store."""
+        """Act on controlword, mode, targets and outputs in the object store."""
         values = self.store.values
         controlword = values[_CONTROLWORD]
         if self.io is not None:
@@ -240,7 +240,7 @@ class Cia402Slave(DrivePower):
         self.update(t)
 
     def _take_velocity(self, data: bytes, t: float) -> None:
-        """Take controlword and target velocity; in steady operation only the latter can be new."""
+        """Apply controlword and target velocity; in steady operation only the target can be new."""
         fields: tuple[int, int] = _RPDO1(data)
         controlword, target = fields
         values = self.store.values
@@ -253,7 +253,7 @@ class Cia402Slave(DrivePower):
             self.process(t)
 
     def _application_reset(self) -> None:
-        """Stand as after power-on: no torque, no mode, position counted from here unless the encoder is absolute."""
+        """Reset to power-on: no torque, no mode, position counted from here unless the encoder is absolute."""
         self.mode = None
         self.reload_ramps()
         self._controlword = 0
@@ -272,7 +272,7 @@ class Cia402Slave(DrivePower):
         for code in self._causes:
             self.fault(code)
 
-    # what it shows -------------------------------------------------------------------------------------------
+    # readings ------------------------------------------------------------------------------------------------
 
     def set_home(self) -> None:
         """Make the present position the home position: the zero position lies 0x607C beyond it (CiA 402-2, 8.3)."""
@@ -286,7 +286,7 @@ class Cia402Slave(DrivePower):
         return counts / self.config.position_increments + self.origin
 
     def update(self, t: float) -> None:
-        """Compose the statusword; a change goes into the TPDOs, one of state asks for an early tick."""
+        """Compose the statusword; a change goes into the TPDOs, a change of state asks for an early tick."""
         state = self.state
         word = cia402.STATUS_BITS[state]
         urgent = _URGENT_BITS
@@ -330,7 +330,7 @@ class Cia402Slave(DrivePower):
         self.pdos.stale = True
 
     def _sample(self) -> bytes:
-        """Return statusword, actual value and torque packed; the same bytes while none of them changed."""
+        """Return statusword, actual value and torque packed; the same bytes while none of them changes."""
         axis = self.axis
         value = (axis.position if self._by_position else axis.value) + self.encoder_error
         torque = self.torque_nm

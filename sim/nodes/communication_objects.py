@@ -1,4 +1,4 @@
-"""What a simulated device accepts in its communication objects (0x1000-0x1FFF), and saving of parameters (CiA 301)."""
+"""Checks of a simulated device's communication objects (0x1000-0x1FFF), and saving of parameters (CiA 301)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def _check_consumer(sub: int, value: int) -> None:
 
 
 def _check_sync(sub: int, value: int) -> None:
-    """Accept the usual identifier only, and not that the device produces the SYNC (bit 30)."""
+    """Accept only the usual identifier, without producing the SYNC (bit 30)."""
     if value != o.SYNC_ID:
         raise SdoAbortError(sdo.VALUE_RANGE)
 

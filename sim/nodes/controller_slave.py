@@ -15,35 +15,35 @@ JACKET_CYCLE_S: Final = 0.125
 CHAMBER_CYCLE_S: Final = 0.5
 """Time between two runs of the chamber's loop [A]."""
 POWER_W: Final = 200.0
-"""Heat of the jacket at 100 % [A]."""
+"""Heat of the jacket at 100 %, W [A]."""
 JACKET_HOTTEST_C: Final = 155.0
-"""The jacket's own limiter: from here on no heat until it has been in standby below LIMIT_RESET_C [A]."""
+"""The jacket's own limiter: from this temperature there is no heat until a standby below LIMIT_RESET_C [A]."""
 LIMIT_RESET_C: Final = 145.0
 CHAMBER_HOTTEST_C: Final = 105.0
 CHAMBER_COLDEST_C: Final = -55.0
-"""The chamber's own limiter: beyond these it stands by [A]."""
+"""The chamber's own limiter: outside these temperatures it stands by [A]."""
 _SHOWN: Final = ("pv", "output", "setpoint", "status")
 _PV_MOST: Final = LIMITS["i16"][1]
-"""What the temperature register shows when the sensor is broken."""
+"""Content of the temperature register when the sensor is broken."""
 
 
 @dataclass(frozen=True, slots=True)
 class ControlledPlant:
-    """A loop and its limiter, tuned for what the controller heats or cools."""
+    """A loop and its limiter, tuned for the plant under control."""
 
     cycle_s: float
     band_k: float
-    """Proportional band: 100 % over it, K."""
+    """Proportional band, K: its width is 100 % of output."""
     integral_s: float
     derivative_s: float
     least_percent: float
-    """Least output: below 0 it cools, %."""
+    """Least output, %; an output below 0 cools."""
     hottest_c: float
     coldest_c: float
     latches: bool
-    """The limiter holds until standby below LIMIT_RESET_C; otherwise it puts the controller in standby."""
+    """Whether the limiter holds until standby below LIMIT_RESET_C; otherwise it puts the controller in standby."""
     refuses: bool
-    """A setpoint beyond the profile's range is refused; otherwise the end of the range is taken."""
+    """Whether a setpoint beyond the profile's range is refused; otherwise the end of the range is used."""
 
 
 CONTROLLED: Final[Mapping[Kind, ControlledPlant]] = {
@@ -54,14 +54,14 @@ CONTROLLED: Final[Mapping[Kind, ControlledPlant]] = {
         CHAMBER_CYCLE_S, 3.0, 300.0, 0.0, -100.0, CHAMBER_HOTTEST_C, CHAMBER_COLDEST_C, latches=False, refuses=True
     ),
 }
-"""By the kind of profile. The jacket's is tuned for 200 W on a hub of 420 J/K with 20 W/K to the rubber and a sensor
-lag of 1 s; the chamber gives all it has at 3 K off its setpoint. [A]"""
+"""Plants by the kind of profile. The jacket's is tuned for 200 W on a hub of 420 J/K with 20 W/K to the rubber and a
+sensor lag of 1 s; the chamber has full output at 3 K off its setpoint. [A]"""
 FILTER_S: Final = 2.0
-"""Filter of the derivative, s [A]."""
+"""Time constant of the derivative's filter, s [A]."""
 
 
 class TemperatureSource(Protocol):
-    """What the controller's sensor measures."""
+    """Source of the temperature at the controller's sensor."""
 
     def controller_measured_c(self, t: float) -> float:
         """Return the controlled temperature in degC at ``t`` s; NaN when the sensor is broken."""
@@ -69,10 +69,10 @@ class TemperatureSource(Protocol):
 
 
 class Pid:
-    """Output in % from setpoint and measurement; derivative on the measurement, integral that does not wind up."""
+    """Output in % from setpoint and measurement; derivative of the measurement, integral without wind-up."""
 
     def __init__(self, plant: ControlledPlant) -> None:
-        """Take the tuning for a plant; output 0."""
+        """Take the tuning of a plant; output 0."""
         self.plant = plant
         self.reset()
 
@@ -82,7 +82,7 @@ class Pid:
         self._last_pv: float | None = None
 
     def step(self, setpoint: float, pv: float, dt: float) -> float:
-        """Move on by ``dt`` s and return the output in %."""
+        """Advance by ``dt`` s and return the output in %."""
         plant = self.plant
         if self._last_pv is not None:
             rate = (pv - self._last_pv) / dt
@@ -92,7 +92,7 @@ class Pid:
         error = setpoint - pv
         direct = gain * (error - plant.derivative_s * self._derivative)
         wanted, least = direct + self.integral, plant.least_percent
-        # The integral rests while the output is at its end and the error would drive it further there.
+        # The integral stops while the output is at a limit and the error would drive it further there.
         driven_up, driven_down = wanted >= 100.0 and error > 0.0, wanted <= least and error < 0.0
         if not driven_up and not driven_down:
             self.integral += gain * error * dt / plant.integral_s
@@ -103,14 +103,14 @@ class Pid:
 class ControllerSlave(ModbusSlave):
     """A controller with a loop of its own, driven by ``advance``; it samples its sensor once in each cycle.
 
-    ``output`` in %, below 0 cooling; ``heater_w`` is a jacket's heat before the contactor in its supply. ``running``,
-    ``setpoint_c``, ``lease_s`` (0 = off), ``lease_expired``, ``limited`` and ``sensor_broken`` are its state. Setting
-    ``sensor_broken``, ``hottest_c`` or ``stuck_output`` (in %) makes it faulty; ``stuck_element`` (in %) is the heat
-    that flows whatever the output: a shorted relay, or an open line.
+    ``output`` in %, below 0 for cooling; ``heater_w`` is a jacket's heat before the contactor in its supply.
+    ``running``, ``setpoint_c``, ``lease_s`` (0 = off), ``lease_expired``, ``limited`` and ``sensor_broken`` are its
+    state. Setting ``sensor_broken``, ``hottest_c`` or ``stuck_output`` (in %) makes it faulty. ``stuck_element`` (in %)
+    is heat that flows at any output: a shorted relay, or an open line.
     """
 
     def __init__(self, profile: DeviceProfile, unit_id: int, source: TemperatureSource) -> None:
-        """Put the registers where ``profile`` has them. Raises ProfileError unless it can be simulated."""
+        """Place the registers as in ``profile``. Raises ProfileError unless it can be simulated."""
         plant = _plant(profile)
         super().__init__(unit_id, profile.timing.turnaround_s, _registers(profile), profile.functions)
         self._read_only = frozenset(
@@ -121,7 +121,7 @@ class ControllerSlave(ModbusSlave):
         )
         self.blocks = {(block.address, block.count): number for number, block in enumerate(profile.blocks)}
         self._scales = tuple(profile.signal(name).scale for name in ("pv", "output", "setpoint"))
-        # A profile with an alarm of its own has over_range for its sensor.
+        # If the profile has an alarm of its own, over_range is for its sensor.
         self._hot_bits = profile.bit("alarm_1") or profile.bit("over_range")
         self._cold_bits = profile.bit("under_range")
         self._break_bits = profile.bit("sensor_break") | profile.bit("over_range") & ~self._hot_bits
@@ -154,7 +154,7 @@ class ControllerSlave(ModbusSlave):
     # the controller --------------------------------------------------------------------------------------------
 
     def advance(self, t0: float, t1: float) -> None:
-        """Live from ``t0`` to ``t1`` s: run every cycle that falls due."""
+        """Advance from ``t0`` to ``t1`` s: run every cycle that is due."""
         if t1 < self.due_s:
             return
         if self.due_s == -inf:
@@ -164,7 +164,7 @@ class ControllerSlave(ModbusSlave):
             self.due_s += self._cycle_s
 
     def power(self, on: bool) -> None:
-        """Switch the supply. Without it the controller is silent and gives no heat; it starts in standby."""
+        """Switch the supply. Without supply the controller is silent and gives no heat; it starts in standby."""
         self.powered = on
         self._stand_by()
         self.setpoint_c = 0.0
@@ -180,7 +180,7 @@ class ControllerSlave(ModbusSlave):
             self.lease_expired = True
             self._stand_by()
         if self._falls_back_s is not None and self.running and t > self._renewed_s + self._falls_back_s:
-            # Its own setpoint, which the set-up has made one of no heat, until the next comes.
+            # Until the next setpoint comes: its own, which the set-up has made a setpoint without heat.
             self.lease_expired = True
             self.setpoint_c = 0.0
         if not broken:
@@ -194,7 +194,7 @@ class ControllerSlave(ModbusSlave):
         self._heat(output if self.stuck_output is None else self.stuck_output)
 
     def _limit(self, pv_c: float) -> None:
-        """Let the controller's own limiter act."""
+        """Apply the controller's own limiter."""
         beyond = pv_c >= self.hottest_c or pv_c <= self._coldest_c
         if not self._latches:
             self.limited = beyond
@@ -218,7 +218,7 @@ class ControllerSlave(ModbusSlave):
     # its registers ---------------------------------------------------------------------------------------------
 
     def refresh(self, t: float) -> None:
-        """Show the state of the last cycle."""
+        """Write the state of the last cycle into the registers."""
         shown = self._show()
         for block, places in self._blocks:
             self.put(block.address, block.pack(*[shown[place] for place in places]))
@@ -248,7 +248,7 @@ class ControllerSlave(ModbusSlave):
         )
 
     def written(self, address: int, value: int, t: float) -> int:
-        """Take setpoint, run or standby, lease and the options of the set-up; nothing else can be written."""
+        """Accept setpoint, run or standby, lease and the options of the set-up; nothing else can be written."""
         if address in self._read_only:
             return ILLEGAL_ADDRESS
         setpoint, lease, switch = self._setpoint, self._lease, self._switch
@@ -275,7 +275,7 @@ class ControllerSlave(ModbusSlave):
 
 
 def _plant(profile: DeviceProfile) -> ControlledPlant:
-    """Return what a profile's controller acts on. Raises ProfileError where the simulated one cannot follow it."""
+    """Return the plant of a profile's controller. Raises ProfileError if it cannot be simulated."""
     plant = CONTROLLED.get(profile.kind)
     if plant is None:
         raise ProfileError(f"profile {profile.name} describes a {profile.kind}, not a temperature controller")

@@ -1,8 +1,8 @@
-"""The modes of operation of the simulated drive (CiA 402-2): what they share, and profile velocity.
+"""The modes of operation of the simulated drive (CiA 402-2): their common parts, and profile velocity.
 
 A mode turns targets and controlword bits into motion of the axis, and the axis' motion into the statusword bits 10,
-12 and 13, whose meaning is the mode's own. ``follow`` is called with every new controlword or target while operation
-is enabled, ``watch`` after every step of an axis that moves or whose bits wait for a time window.
+12 and 13, whose meaning depends on the mode. ``follow`` is called with every new controlword or target while operation
+is enabled, ``watch`` after every step of an axis that moves or has bits that wait for a time window.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ _TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 
 
 class Ramps:
-    """What the drive's ramp and window objects mean in engineering units; taken over by ``load``."""
+    """Values of the drive's ramp and window objects in engineering units; ``load`` reads them."""
 
     def load(self, store: ObjectStore, config: AxisConfig) -> None:
-        """Take over the objects, which are in the counts of the configuration."""
+        """Read the objects, which are in the counts of the configuration."""
         values = store.values
         per = self.velocity_increments = config.velocity_increments
         per_position = config.position_increments or inf
@@ -51,14 +51,14 @@ class Ramps:
 
 
 class Lasting:
-    """A condition that counts once it has held for some time."""
+    """A condition that is true once it has held for some time."""
 
     def __init__(self) -> None:
         self.since_s = inf
         self.true = False
 
     def check(self, condition: bool, hold_s: float, t: float) -> bool:
-        """Take the condition at ``t`` s; return whether it has yet to be looked at again."""
+        """Process the condition at ``t`` s; return whether it has to be checked again."""
         if not condition:
             self.since_s = inf
             self.true = False
@@ -75,7 +75,7 @@ class Lasting:
 
 
 class ModeOwner(Protocol):
-    """The drive a mode belongs to."""
+    """The drive of a mode."""
 
     store: ObjectStore
     ramps: Ramps
@@ -109,14 +109,14 @@ class ProfileVelocity:
         self.at_torque_limit = False
 
     def start(self) -> None:
-        """Operation was enabled, or ramps have changed: the next target counts as new."""
+        """Begin when operation is enabled or ramps have changed: the next target counts as new."""
         self._target = None
 
     def note(self, controlword: int) -> None:
-        """Nothing in this mode depends on edges."""
+        """Ignore the controlword: nothing in this mode depends on edges."""
 
     def follow(self, controlword: int, t: float) -> None:
-        """Aim at the target velocity, or at standstill while halted."""
+        """Aim at the target velocity, or at standstill during a halt."""
         target = self._drive.store.values[_TARGET_VELOCITY]
         halt = controlword & cia402.HALT
         if target == self._target and halt == self._halt:
@@ -132,7 +132,7 @@ class ProfileVelocity:
             self.retarget(target)
 
     def retarget(self, target: int) -> None:
-        """Aim at a target velocity in counts, on the ramps in force."""
+        """Aim at a target velocity in counts, on the present ramps."""
         if target == self._target or self._halt:
             return
         self._target = target

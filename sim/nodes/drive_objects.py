@@ -1,4 +1,4 @@
-"""What the objects of the drive profile (0x6000-0x6FFF) of the simulated drive show, accept and set off."""
+"""Readers, guards and effects of the simulated drive's profile objects (0x6000-0x6FFF)."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ _OPTIONS: dict[int, tuple[int, ...]] = {
     o.FAULT_REACTION_OPTION: (0, 1, 2),
     o.HOMING_METHOD: (0, 1, 2, *range(17, 31), 33, 34, 35, 37),
 }
-"""Values accepted; drives support subsets of the standard's."""
+"""Accepted values; drives support subsets of the standard's."""
 
 _MODES: dict[str, tuple[OperationMode, ...]] = {
     "velocity": (OperationMode.PROFILE_VELOCITY,),
     "position": (OperationMode.PROFILE_POSITION, OperationMode.HOMING),
 }
-"""Modes a drive offers, by what its axis is configured for."""
+"""Modes of a drive, by the configured mode of its axis."""
 
 _RATES = (
     o.PROFILE_ACCELERATION,
@@ -58,12 +58,12 @@ _COMMANDS = (o.CONTROLWORD, o.MODE, o.TARGET_VELOCITY, o.TARGET_POSITION, o.DIGI
 
 
 def entries(config: AxisConfig) -> Mapping[Key, Entry]:
-    """Return the objects that a drive of the axis' profile has."""
+    """Return the objects of a drive with the axis' profile."""
     return DICTIONARY if config.profile == GENERIC else config.drive.dictionary()
 
 
 def overrides(config: AxisConfig, serial_number: int) -> dict[Key, int | str]:
-    """Return the values that make the dictionary this axis' drive: identity, ratings, modes."""
+    """Return the dictionary values of this axis' drive: identity, ratings, modes."""
     modes = 0
     for mode in _MODES[config.mode]:
         modes |= 1 << (mode - 1)
@@ -77,14 +77,14 @@ def overrides(config: AxisConfig, serial_number: int) -> dict[Key, int | str]:
 
 
 def default_axis(config: AxisConfig, lag_s: float) -> VelocityAxis | PositionAxis:
-    """Return an axis at rest at 0 that moves as configured; ``lag_s`` (s) of its velocity loop."""
+    """Return an axis at rest at 0 that moves as configured; ``lag_s`` (s) is for its velocity loop."""
     if config.mode == "position":
         return PositionAxis(config.max_speed, config.acceleration, config.deceleration)
     return VelocityAxis(config.acceleration, config.deceleration, lag_s)
 
 
 def install(drive: DrivePower) -> None:
-    """Connect the drive's objects with what they show and do."""
+    """Connect the drive's objects with their readers, guards and effects."""
     _Objects(drive)
 
 
@@ -120,7 +120,7 @@ class _Objects:
         for key, one in drive.config.drive.substitutes.items():
             store.hooks[one.key[0]] = _Stands(drive, key, one).on_write
 
-    # shown ---------------------------------------------------------------------------------------------------
+    # readers -------------------------------------------------------------------------------------------------
 
     def _statusword(self) -> int:
         return self._drive.statusword
@@ -155,7 +155,7 @@ class _Objects:
         io = self._drive.io
         return 0 if io is None else self._drive.config.io.inputs_shown(io.inputs)
 
-    # accepted ------------------------------------------------------------------------------------------------
+    # guards --------------------------------------------------------------------------------------------------
 
     def _guard_rate(self, sub: int, value: int) -> None:
         if value == 0:
@@ -174,7 +174,7 @@ class _Objects:
         if self._drive.state is State.NOT_READY:
             raise SdoAbortError(sdo.DEVICE_STATE)
 
-    # set off -------------------------------------------------------------------------------------------------
+    # effects -------------------------------------------------------------------------------------------------
 
     def _on_ramp(self, sub: int, value: int) -> None:
         self._drive.reload_ramps()
@@ -185,7 +185,7 @@ class _Objects:
 
 
 class _Stands:
-    """Does, for an object of the maker's, what the standard one does that it stands in for."""
+    """Effect of a maker's object that replaces a standard object."""
 
     def __init__(self, drive: DrivePower, standard: Key, one: Substitute) -> None:
         self._drive = drive
@@ -193,7 +193,7 @@ class _Stands:
         self._one = one
 
     def on_write(self, sub: int, value: int) -> None:
-        """Take the value over into the standard object, inside the drive."""
+        """Write the value into the standard object, inside the drive."""
         one, store = self._one, self._drive.store
         if sub == one.key[1]:
             reference = 0 if one.per_mille_of is None else store.values[one.per_mille_of]
@@ -214,7 +214,7 @@ class _Choice:
 
 
 def wrapped_i32(counts: float) -> int:
-    """Return counts rounded, as an I32: a position counter wraps around."""
+    """Return counts rounded to an I32: a position counter wraps around."""
     return (round(counts) + 0x8000_0000) % 0x1_0000_0000 - 0x8000_0000
 
 

@@ -35,7 +35,7 @@ class ProfilePosition:
         self.limited = False
 
     def start(self) -> None:
-        """Operation was enabled: the axis holds its position until a set-point comes."""
+        """Begin when operation is enabled: the axis holds its position until a set-point comes."""
         self._target = None
         self._buffered = None
         self._halt = False
@@ -44,12 +44,12 @@ class ProfilePosition:
             self._axis.stop(self._drive.ramps.deceleration)
 
     def note(self, controlword: int) -> None:
-        """Take the new-set-point bit while nothing can be done with it: only a later edge counts."""
+        """Record the new-set-point bit while it has no effect: only a later edge counts."""
         self._new = bool(controlword & cia402.NEW_SET_POINT)
         self._acknowledged = self._new and self._acknowledged
 
     def follow(self, controlword: int, t: float) -> None:
-        """Take a set-point on the rising edge of bit 4; pause while bit 8 is set."""
+        """Accept a set-point on the rising edge of bit 4; pause while bit 8 is set."""
         new = bool(controlword & cia402.NEW_SET_POINT)
         if new and not self._new:
             self._take(bool(controlword & cia402.CHANGE_IMMEDIATELY), bool(controlword & _RELATIVE))
@@ -120,9 +120,9 @@ class ProfilePosition:
 
 
 class Homing:
-    """Mode 6: bit 4 starts. Bit 10 standing, 12 homing attained, 13 homing error.
+    """Mode 6: bit 4 starts. Bit 10 standstill, 12 homing attained, 13 homing error.
 
-    The home switch lies at ``home_position`` of the axis; it is approached once, at 0x6099:01. With ``switch_works``
+    The home switch is at ``home_position`` of the axis and is approached once, at 0x6099:01. With ``switch_works``
     false the axis runs a tenth of a unit past it and reports the error.
     """
 
@@ -137,13 +137,13 @@ class Homing:
         self.bits = 0
 
     def start(self) -> None:
-        """Operation was enabled: nothing moves before bit 4 rises."""
+        """Begin when operation is enabled: nothing moves before bit 4 rises."""
         self._running = False
         if not self._axis.still:
             self._axis.stop(self._drive.ramps.deceleration)
 
     def note(self, controlword: int) -> None:
-        """Take the start bit while nothing can be done with it: only a later edge counts."""
+        """Record the start bit while it has no effect: only a later edge counts."""
         self._start = bool(controlword & cia402.HOMING_START)
         self._running = False
 
@@ -158,9 +158,9 @@ class Homing:
         self._start = start
 
     def watch(self, t: float, enabled: bool) -> bool:
-        """Update the status bits; return whether the axis is still on its way."""
+        """Update the status bits; return whether the axis is still moving home."""
         axis = self._axis
-        self._running = self._running and enabled  # a stop on the way is no home
+        self._running = self._running and enabled  # a stop on the way does not attain home
         if self._running and axis.still:
             self._running = False
             if self.switch_works:

@@ -1,6 +1,6 @@
 """The power side of a simulated CiA 402 drive: state machine, ramps to standstill, faults, lost connections.
 
-``commanded`` says what leads from one state to the next; the class does to the axis what the transitions do.
+``commanded`` returns the next state for a controlword; the class applies the transitions to the axis.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ Axis = VelocityAxis | PositionAxis
 DriveMode = ProfileVelocity | ProfilePosition | Homing
 
 CONNECTION_ERROR: Final = 0x8100
-"""EMCY code of a connection ended otherwise than by a lost heartbeat (CiA 301: communication, generic)."""
+"""EMCY code for the end of a connection without a lost heartbeat (CiA 301: communication, generic)."""
 
 _OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
 _HOLDING: Final = 5
-"""Quick stop options from this one on stay in QUICK_STOP_ACTIVE at standstill."""
+"""Least quick stop option that stays in QUICK_STOP_ACTIVE at standstill."""
 
 ENERGISED = frozenset((State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION))
 """States in which the power stage drives the motor."""
@@ -38,7 +38,7 @@ FAULTY = frozenset((State.FAULT_REACTION, State.FAULT))
 class DrivePower(CanopenDevice):
     """A device with a power stage on an axis; see ``cia402_slave.Cia402Slave``.
 
-    ``watching`` says that its status may change without a command: it wants to be advanced.
+    ``watching``: its status may change without a command, so it must be advanced.
     """
 
     __slots__ = (
@@ -91,7 +91,7 @@ class DrivePower(CanopenDevice):
         self.coast_deceleration = axis.deceleration
         self._causes: list[int] = []
         self._controlword = 0
-        self._leaving: State | None = None  # where a ramp down ends
+        self._leaving: State | None = None  # state after a ramp down
         self._steady = False  # nothing but the target can be new in the next process data
         self.watching = False  # status bits may change with time
 
@@ -100,22 +100,22 @@ class DrivePower(CanopenDevice):
 
     @property
     def energised(self) -> bool:
-        """The power stage is on: the drive can give torque."""
+        """Return whether the power stage is on, so that the drive can give torque."""
         return self.state in ENERGISED
 
     def reload_ramps(self) -> None:
-        """Take over ramp and window objects; a move under way continues with them."""
+        """Read ramp and window objects; a move under way continues with them."""
         self.ramps.load(self.store, self.config)
         if isinstance(self.mode, ProfileVelocity):
             self.mode.start()
 
-    # the world around the drive ------------------------------------------------------------------------------
+    # surroundings of the drive -------------------------------------------------------------------------------
 
     def fault(self, code: int, persistent: bool = False) -> None:
-        """Enter the fault reaction with an EMCY code (0x1000..0xFFFF) at the time last advanced to.
+        """Enter the fault reaction with an EMCY code (0x1000..0xFFFF) at the present time.
 
         A ``persistent`` cause refuses every fault reset until ``clear_cause``, and is found again after a reboot. A
-        drive without power or in its self-test notices nothing else.
+        drive without power or in its self-test notices no other fault.
         """
         if persistent and code not in self._causes:
             self._causes.append(code)
@@ -134,7 +134,7 @@ class DrivePower(CanopenDevice):
             self._causes.remove(code)
 
     def set_torque_off(self, off: bool) -> None:
-        """Open (True) or close the safe-torque-off input: the power stage has no supply, the axis coasts."""
+        """Open (True) or close the safe-torque-off input: if open, the power stage has no supply and the axis coasts."""
         self.torque_off = off
         if off and self.state not in FAULTY and self.state is not State.NOT_READY:
             self._power_stage_off(State.SWITCH_ON_DISABLED)
@@ -142,7 +142,7 @@ class DrivePower(CanopenDevice):
         self.update(self.now_s)
 
     def set_local(self, local: bool) -> None:
-        """Take the drive under local control (its own keypad): it ignores the bus and clears bit 9."""
+        """Put the drive under local control (its own keypad): it ignores the bus and clears bit 9."""
         self.local = local
         self._steady = False
         self.pdos.refresh()
@@ -151,7 +151,7 @@ class DrivePower(CanopenDevice):
     # state machine -------------------------------------------------------------------------------------------
 
     def _command(self, controlword: int, t: float) -> None:
-        """Run the power state machine as far as this controlword leads."""
+        """Run the power state machine as far as this controlword allows."""
         rising = controlword & ~self._controlword
         self._controlword = controlword
         if self.state is State.FAULT:
@@ -170,7 +170,7 @@ class DrivePower(CanopenDevice):
             self._transit(wanted)
 
     def _transit(self, wanted: State) -> None:
-        """Take one commanded transition."""
+        """Perform one commanded transition."""
         if self.torque_off and wanted is not State.SWITCH_ON_DISABLED:
             return
         values = self.store.values
@@ -191,7 +191,7 @@ class DrivePower(CanopenDevice):
     def _react(self, end: State, option: int, meanwhile: State) -> None:
         """Leave operation for ``end`` by an option code: 0 coasts at once, 1/5 slow down ramp, 2/6 quick stop ramp.
 
-        The drive shows ``meanwhile`` on the ramp; with 5 and 6 it stays there, energised, at standstill.
+        The drive shows ``meanwhile`` on the ramp; with 5 and 6 it stays in that state, energised, at standstill.
         """
         if option == 0 or self.state not in ENERGISED:
             self._power_stage_off(end)
@@ -221,7 +221,7 @@ class DrivePower(CanopenDevice):
             axis.stop(rate)
 
     def _arrived_at_rest(self) -> None:
-        """End the ramp down: power off, unless a quick stop is to be held."""
+        """End the ramp down: power off, unless the quick stop option holds the axis."""
         end = self._leaving
         self._leaving = None
         held = (
@@ -231,7 +231,7 @@ class DrivePower(CanopenDevice):
             self._power_stage_off(end)
 
     def _enable(self) -> None:
-        """Let the mode drive the axis; without one it is held."""
+        """Start the mode that drives the axis; without a mode the axis is held."""
         self._leaving = None
         self.watching = True
         if self.mode is not None:
@@ -240,7 +240,7 @@ class DrivePower(CanopenDevice):
             self._decelerate(self.ramps.deceleration)
 
     def _power_stage_off(self, state: State) -> None:
-        """Take the torque away: the axis coasts, or follows what pulls at it."""
+        """Remove the torque: the axis coasts, or follows an external pull."""
         self.state = state
         self._leaving = None
         self._steady = False
@@ -254,7 +254,7 @@ class DrivePower(CanopenDevice):
             axis.stop(self.coast_deceleration)
 
     def select_mode(self, code: int) -> bool:
-        """Change the mode of operation while the axis stands; return whether the mode asked for is in force."""
+        """Change the mode of operation while the axis is at rest; return whether the requested mode is in force."""
         mode = self.modes.get(code)
         if mode is self.mode:
             return True
@@ -279,7 +279,7 @@ class DrivePower(CanopenDevice):
     # communication -------------------------------------------------------------------------------------------
 
     def _connection_lost(self, t: float) -> None:
-        """React to a lost connection by 0x6007; only a drive that is switched on has something to do."""
+        """React to a lost connection by 0x6007; only a drive that is switched on reacts."""
         self._drop_outputs(t)
         state = self.state
         option = self.store.values[(o.ABORT_CONNECTION_OPTION, 0)]
@@ -302,7 +302,7 @@ class DrivePower(CanopenDevice):
         self._drop_outputs(t)
 
     def _drop_outputs(self, t: float) -> None:
-        """Switch the digital outputs off: no master commands them [A]."""
+        """Switch the digital outputs off: no master controls them [A]."""
         self.store.values[_OUTPUTS] = 0
         self._switch_outputs(0, t)
 
@@ -316,7 +316,7 @@ class DrivePower(CanopenDevice):
         self.update(t)
 
     def recovered(self, code: int, t: float) -> None:
-        """Report that an error has gone, unless the drive is in fault because of it."""
+        """Report that an error has gone, unless it is the cause of the drive's fault."""
         if self.state in FAULTY and self.store.values[(o.ERROR_CODE, 0)] == code:
             return
         super().recovered(code, t)
@@ -324,10 +324,10 @@ class DrivePower(CanopenDevice):
 
 
 def commanded(state: State, controlword: int, stop_may_end: bool = False) -> State:
-    """Return the state a controlword (0..0xFFFF) leads to next, ``state`` itself when it commands nothing there.
+    """Return the next state for a controlword (0..0xFFFF); ``state`` itself if it commands no transition.
 
-    ``stop_may_end``: quick stop option 5-8, from which operation may be enabled again (transition 16). Fault states
-    are left by the rising edge of bit 7 only, which is not a matter of levels.
+    ``stop_may_end``: quick stop option 5-8, from which operation may be enabled again (transition 16). Only the
+    rising edge of bit 7 leaves a fault state; this function sees levels and not edges.
     """
     if state in FAULTY or state is State.NOT_READY:
         return state

@@ -12,7 +12,7 @@ from sim.wires.can_wire import CanWire
 
 _HISTORY_LENGTH = 8
 
-# Bits of the error register (CiA 301, table 47); bit 0 is set with every other one.
+# Bits of the error register (CiA 301, table 47); bit 0 is set with every other bit.
 GENERIC = 0x01
 CURRENT = 0x02
 VOLTAGE = 0x04
@@ -45,7 +45,7 @@ class Emergencies:
     """
 
     def __init__(self, wire: CanWire, store: ObjectStore) -> None:
-        """Report on ``wire``; register and history live in ``store``."""
+        """Report on ``wire``; register and history are in ``store``."""
         self._wire = wire
         self._store = store
         self.allowed = False
@@ -56,18 +56,18 @@ class Emergencies:
         store.guards[o.EMERGENCY_COB_ID] = self._guard_cob_id
 
     def reset(self, communication_only: bool) -> None:
-        """Forget the errors, all as after power-on or those of the communication; nothing is sent."""
+        """Forget all errors, as after power-on, or those of the communication; nothing is sent."""
         self.present = [
             code for code in self.present if communication_only and register_bits(code) != GENERIC | COMMUNICATION
         ]
         self._last_s = -inf
 
     def refresh(self) -> None:
-        """Show the errors present in the register again, after the communication objects were reset."""
+        """Set the register for the present errors again, after the communication objects were reset."""
         self._store.values[(o.ERROR_REGISTER, 0)] = self._register()
 
     def add(self, code: int, t: float) -> None:
-        """Report error ``code`` at ``t`` s; one that is present already is not reported again."""
+        """Report error ``code`` at ``t`` s, unless it is present already."""
         if code in self.present:
             return
         self.present.append(code)
@@ -80,7 +80,7 @@ class Emergencies:
         self._report(code, t)
 
     def remove(self, code: int, t: float) -> None:
-        """Report at ``t`` s that error ``code`` has gone (EMCY 0x0000 with what remains in the register)."""
+        """Report at ``t`` s that error ``code`` has gone (EMCY 0x0000 with the remaining bits of the register)."""
         if code in self.present:
             self.present.remove(code)
             self._report(0x0000, t)
@@ -98,7 +98,7 @@ class Emergencies:
         cob_id = values[(o.EMERGENCY_COB_ID, 0)]
         if not self.allowed or cob_id & o.COB_INVALID:
             return
-        # Held back by the inhibit time, a message goes as soon as that has passed.
+        # A message held back by the inhibit time is sent as soon as that has passed.
         t = max(t, self._last_s + values[(o.EMERGENCY_INHIBIT, 0)] * 1e-4)
         self._last_s = t
         self._wire.transmit(cob_id & o.COB_ID_MASK, encode_emergency(code, register), t, True)

@@ -1,6 +1,6 @@
-"""A Modbus RTU slave: a register file with the answers, exceptions and silences of a device.
+"""A Modbus RTU slave: a register file with a device's answers, exceptions and silences.
 
-Independent of the library under the drivers: frames are taken apart and put together here.
+Independent of the drivers' library: frames are decoded and composed here.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ ILLEGAL_ADDRESS: Final = 2
 ILLEGAL_VALUE: Final = 3
 DEVICE_FAILURE: Final = 4
 ENDURANCE: Final = 100_000
-"""Writes that a device's non-volatile memory stands (Eurotherm HA028651)."""
+"""Number of writes that a device's non-volatile memory endures (Eurotherm HA028651)."""
 BROADCAST: Final = 0
 PATTERN: Final = (0.0, 0.5, 1.0, 0.5)
-"""What a digital sensor's readings in a row add to a value in counts before it is rounded down: its last bit. A value
-at rest then changes by exactly one count within four readings, as that of a real converter does, and their mean is
+"""Additions to a value in counts, reading by reading, before it is rounded down: the last bit of a digital sensor. A
+value at rest then changes by exactly one count within four readings, like that of a real converter, and their mean is
 within a quarter of a count."""
 
 _MOST_READ: Final = 125
 _MOST_WRITTEN: Final = 123
 """Registers in one request (Modbus application protocol V1.1b3, 6.3 and 6.12)."""
 _REMEMBERED: Final = 64
-"""Requests of each kind kept taken apart."""
+"""Number of decoded requests of each kind that are kept."""
 
 _WORD: Final = Struct(">H")
 _REQUEST: Final = Struct(">BBHH")
@@ -50,7 +50,7 @@ class RegisterWindow:
 
 
 class _Read:
-    """A read request taken apart, with its last reply; ``block`` is the device's number of just these registers."""
+    """A decoded read request with its last reply; ``block`` is the device's number of exactly these registers."""
 
     def __init__(self, window: RegisterWindow, address: int, count: int, head: bytes, block: int) -> None:
         self.window = window
@@ -68,41 +68,41 @@ class ModbusSlave:
     def __init__(
         self, unit_id: int, turnaround_s: float, registers: Iterable[tuple[int, int]], functions: frozenset[int]
     ) -> None:
-        """Give the device address ``unit_id`` and registers at (address, count), which may touch or overlap."""
+        """Set device address ``unit_id`` and registers at (address, count), which may touch or overlap."""
         self.unit_id = unit_id
         self.turnaround_s = turnaround_s
         self.functions = functions
         self.powered = True
         self.due_s = inf
-        """When a device with a loop of its own runs it next, s."""
+        """Time of the next cycle of a device with a control loop, s."""
         self.windows = _windows(registers)
         self._reads: dict[bytes, _Read] = {}
         self._writes: dict[bytes, tuple[bytes, int, tuple[int, ...]]] = {}
         self.stored: frozenset[int] = frozenset()
-        """Registers kept without supply: written to memory when they change [A], each so often (``wear``)."""
+        """Registers kept without supply: a change writes them to memory [A], a limited number of times (``wear``)."""
         self.wear: dict[int, int] = {}
         self.endurance = ENDURANCE
         self.blocks: dict[tuple[int, int], int] = {}
-        """Numbers by (address, count) of what is usually read in one request: ``sample`` is asked for these."""
+        """Block numbers by (address, count) of usual read requests: ``sample`` is called for these."""
 
-    # what a device adds ----------------------------------------------------------------------------------------
+    # hooks for a device ----------------------------------------------------------------------------------------
 
     def advance(self, t0: float, t1: float) -> None:
-        """Live from ``t0`` to ``t1`` s: run what falls due (``due_s``)."""
+        """Advance from ``t0`` to ``t1`` s: run the cycles that are due (``due_s``)."""
 
     def power(self, on: bool) -> None:
-        """Switch the supply; a device without it is silent."""
+        """Switch the supply; a device without supply is silent."""
         self.powered = on
 
     def refresh(self, t: float) -> None:
-        """Bring the registers up to date: they are read at ``t`` s."""
+        """Update the registers for a read at ``t`` s."""
 
     def sample(self, block: int, t: float) -> bytes:
-        """Return the registers of one of ``blocks`` as they are at ``t`` s, without the detour over ``refresh``."""
+        """Return the registers of one of ``blocks`` at ``t`` s, without a call of ``refresh``."""
         raise KeyError(block)
 
     def written(self, address: int, value: int, t: float) -> int:
-        """Take a write at ``t`` s; return 0, or the code of the exception to answer with."""
+        """Process a write at ``t`` s; return 0, or an exception code for the answer."""
         return 0
 
     # registers -------------------------------------------------------------------------------------------------
@@ -115,14 +115,14 @@ class ModbusSlave:
         return None
 
     def get(self, address: int) -> int:
-        """Return a register. Raises KeyError where there is none."""
+        """Return a register. Raises KeyError if there is none."""
         window = self.window(address)
         if window is None:
             raise KeyError(address)
         return int(_WORD.unpack_from(window.data, 2 * (address - window.start))[0])
 
     def put(self, address: int, data: bytes) -> None:
-        """Set the registers from ``address`` to bytes as on the wire. Raises KeyError where there are none."""
+        """Set the registers from ``address`` to bytes as on the wire. Raises KeyError if there are none."""
         window = self.window(address, len(data) // 2)
         if window is None:
             raise KeyError(address)
@@ -134,7 +134,7 @@ class ModbusSlave:
     def answer(self, frame: bytes, t: float) -> bytes | None:
         """Return the reply to a frame that was complete at ``t`` s.
 
-        None, silence: another device's, a broadcast (which is executed), a bad CRC or a broken frame, power off.
+        None, silence: a frame for another device, a broadcast (which is executed), a bad CRC or a broken frame, power off.
         """
         if not self.powered:
             return None
@@ -208,7 +208,7 @@ class ModbusSlave:
         return bytes(read.window.data[read.start : read.last])
 
     def _keep(self, address: int, value: int) -> int:
-        """Count a write to memory; return 0, or the code of the exception where that is worn out."""
+        """Count a write to memory; return 0, or the exception code if the memory is worn out."""
         if value == self.get(address):
             return 0
         worn = self.wear.get(address, 0)

@@ -11,10 +11,10 @@ from math import copysign, exp, inf, isfinite, sqrt
 from typing import Final
 
 SETTLED: Final = 1e-6
-"""Difference to the target (axis units) below which a lagging axis is set on its target."""
+"""Difference to the target (axis units) below which a lagging axis is set to its target."""
 
 _ON_TARGET: Final = 1e-9
-"""Distance (position units) below which a positioning axis is set on its target."""
+"""Distance (position units) below which a positioning axis is set to its target."""
 
 
 def _rate(value: float, name: str) -> float:
@@ -27,8 +27,8 @@ def _rate(value: float, name: str) -> float:
 class VelocityAxis:
     """An axis under velocity control: a linear ramp generator followed by a first-order lag.
 
-    ``value`` is the velocity, ``position`` its integral. ``still`` says that nothing changes until the next
-    ``aim``: a step may be skipped. ``low`` and ``high`` are hard stops of the position.
+    ``value`` is the velocity, ``position`` its integral. ``still``: nothing changes until the next
+    ``aim``, so a step may be skipped. ``low`` and ``high`` are hard stops of the position.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class VelocityAxis:
         self.still = settled and target == 0.0
 
     def block(self, blocked: bool) -> None:
-        """Hold the shaft (True) or free it: a blocked axis stands while its demand moves on."""
+        """Hold the shaft (True) or free it: a blocked axis is at rest while its demand changes on."""
         self.blocked = blocked
         if blocked:
             self.value = 0.0
@@ -76,7 +76,7 @@ class VelocityAxis:
         self.still = False
 
     def stall(self, position: float) -> None:
-        """Stand at ``position``, short of where the demand would have it: what drives the axis is at its limit."""
+        """Stand at ``position``, short of the demand: the drive of the axis is at its limit."""
         self.position = position
         self.value = 0.0
         self.settled = False
@@ -154,8 +154,8 @@ class VelocityAxis:
 class PositionAxis:
     """An axis under position control: trapezoidal moves, retargeted on the fly.
 
-    ``value`` is the velocity, ``position`` the position, ``demand`` the position of the trajectory. ``still`` says
-    that the axis rests where it was sent.
+    ``value`` is the velocity, ``position`` the position, ``demand`` the position of the trajectory. ``still``: the axis
+    rests at its target.
     """
 
     def __init__(
@@ -177,7 +177,7 @@ class PositionAxis:
     def move(
         self, target: float, max_speed: float, acceleration: float | None = None, deceleration: float | None = None
     ) -> None:
-        """Travel to ``target`` from whatever the axis does now; a speed of 0 leaves it where it would stop."""
+        """Travel to ``target`` from the present motion; with a speed of 0 the axis stays where it would stop."""
         if acceleration is not None:
             self.acceleration = _rate(acceleration, "acceleration")
         if deceleration is not None:
@@ -199,7 +199,7 @@ class PositionAxis:
             self.target = self.demand
 
     def block(self, blocked: bool) -> None:
-        """Hold the shaft (True) while its trajectory continues, or free it: it then starts from where it is."""
+        """Hold the shaft (True) while its trajectory continues, or free it: it then starts from its position."""
         self.blocked = blocked
         if blocked:
             self.value = 0.0
@@ -233,7 +233,7 @@ class PositionAxis:
         braking = speed * speed / (2.0 * self.deceleration)
         spare = distance - braking
         if spare <= _ON_TARGET:
-            # Within rounding of the braking point the rate that ends on the target is taken.
+            # Within rounding of the braking point, use the rate that ends exactly on the target.
             exact = distance > 0.0 and spare >= -_ON_TARGET - 1e-6 * distance
             rate = speed * speed / (2.0 * distance) if exact else self.deceleration
             return self._to_rest(value, rate, dt, arrive=exact)
@@ -264,7 +264,7 @@ class PositionAxis:
         return duration
 
     def _to_rest(self, value: float, rate: float, dt: float, *, arrive: bool) -> float:
-        """Brake with ``rate``; at standstill arrive on the target, or rest where a stop was ordered."""
+        """Brake with ``rate``; at standstill arrive on the target, or rest after a commanded stop."""
         duration = abs(value) / rate
         if duration > dt:
             reached = value - copysign(rate, value) * dt

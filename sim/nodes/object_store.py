@@ -1,8 +1,8 @@
-"""The object dictionary of one simulated device: values, access rights, and what a write sets off.
+"""The object dictionary of one simulated device: values, access rights, and effects of writes.
 
 The table of objects is ``drivers.canopen.dictionary``; a store holds the values of one device. Values are plain
-integers (text for names) in ``values``; the hot path reads and writes them there directly. Objects that are measured
-rather than stored have a reader. A guard may refuse a value before it is written, a hook acts on it afterwards.
+integers (text for names) in ``values``; the hot path reads and writes them there directly. Measured objects have a
+reader instead of a stored value. A guard may refuse a value before it is written, a hook acts on it afterwards.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Guard = Callable[[int, int], None]
 """Called with (sub-index, value); raises SdoAbortError to refuse it."""
 
 _COMMUNICATION = range(0x1000, 0x2000)
-"""The objects a communication reset sets back (CiA 301, 7.3.2.2.1)."""
+"""Objects that a communication reset sets back (CiA 301, 7.3.2.2.1)."""
 
 
 class SdoAbortError(Exception):
@@ -41,9 +41,9 @@ class ObjectStore:
         overrides: Mapping[Key, int | str] | None = None,
         entries: Mapping[Key, Entry] = DICTIONARY,
     ) -> None:
-        """Create a device's values: the table's defaults with ``overrides`` (identity, ratings) over them.
+        """Create a device's values: the table's defaults, replaced by ``overrides`` (identity, ratings).
 
-        ``entries``: the objects that the device has. Those of the table that it lacks keep their defaults inside.
+        ``entries``: the objects of the device. Objects of the table that the device lacks keep their defaults inside.
         """
         self.node_id = node_id
         self.entries = entries
@@ -57,7 +57,7 @@ class ObjectStore:
         self.reset()
 
     def reset(self, communication_only: bool = False) -> None:
-        """Set the objects (those of the communication profile only, if so asked) to their power-on values."""
+        """Set the objects to their power-on values, or only those of the communication profile."""
         for key, entry in self._all.items():
             if entry.type is DataType.TEXT or (communication_only and key[0] not in _COMMUNICATION):
                 continue
@@ -71,7 +71,7 @@ class ObjectStore:
                 self._saved[key] = self.values[key]
 
     def restore_defaults(self) -> None:
-        """Make the table's defaults the power-on values again (0x1011 "load"); effective with the next reset."""
+        """Make the table's defaults the power-on values again (0x1011 "load"); they take effect with the next reset."""
         self._saved.clear()
 
     def read(self, key: Key) -> int:
@@ -116,7 +116,7 @@ class ObjectStore:
             hook(sub, value)
 
     def __deepcopy__(self, memo: dict[int, object]) -> ObjectStore:
-        """Copy the values flat (keys and values are immutable) and what refers to the device deeply."""
+        """Copy the values flat (keys and values are immutable), and references to the device deeply."""
         copy = object.__new__(ObjectStore)
         memo[id(self)] = copy
         copy.node_id = self.node_id

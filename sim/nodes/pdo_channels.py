@@ -1,7 +1,7 @@
-"""The process data objects of a simulated device: parameters by SDO under the CiA rules, one received, one sent.
+"""The process data objects of a simulated device: parameters by SDO under the CiA rules, receive PDO, transmit PDO.
 
-A PDO is changed as CiA 301 (7.5.2.36) wants it: disabled by bit 31 of its COB-ID, number of mapped objects to 0, the
-entries, the number of objects, enabled again. Everything else is refused with the abort code of that clause.
+A PDO is changed in the order of CiA 301 (7.5.2.36): disabled by bit 31 of its COB-ID, number of mapped objects to 0,
+the entries, the number of objects, enabled again. Everything else is refused with the abort code of that clause.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sim.nodes.object_store import Key, ObjectStore, SdoAbortError
 from sim.wires.can_traffic import Listener
 
 LAST_CYCLIC: Final = 240
-"""Transmission types up to this one follow the SYNC; 254 and 255 are event driven, those between are refused."""
+"""Last transmission type that follows the SYNC; 254 and 255 are event driven, those between are refused."""
 _EVENT: Final = 254
 _COB_EXTENDED: Final = 0x2000_0000
 _MAX_ENTRIES: Final = 4
@@ -82,7 +82,7 @@ class PdoParameters:
         return not self._store.values[(self._communication, 1)] & o.COB_INVALID
 
     def _locked(self) -> bool:
-        """Return whether it has to be switched off before it is changed; one that cannot be is changed as it is."""
+        """Return whether the PDO must be disabled before a change; if it cannot be disabled, it is changed as it is."""
         return self._valid() and self._store.entries[(self._communication, 1)].writable
 
     def _guard_communication(self, sub: int, value: int) -> None:
@@ -129,7 +129,7 @@ class PdoParameters:
 
 
 class Receiver(Protocol):
-    """Where received PDOs go."""
+    """Receiver of PDOs."""
 
     fresh: list[ReceivePdo]
     plain: bool
@@ -139,18 +139,18 @@ class Receiver(Protocol):
         ...
 
     def examine(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
-        """Take a frame that cannot simply wait for the next SYNC."""
+        """Process a frame that cannot simply wait for the next SYNC."""
         ...
 
 
 class ReceivePdo:
-    """One RPDO: its mapping in force and the last bytes taken.
+    """One RPDO: its present mapping and the last bytes applied.
 
-    Bytes that did not change since they were taken only refresh ``stamp_s``. ``data`` is what the next frame is
-    compared with, None when it counts as new whatever it holds; ``held`` is the last frame of full length.
-    ``deadline_at`` is the time in s by which the next one must have come, infinity while unwatched; ``faulty`` the
-    EMCY code of a wrong length reported, 0 if none. ``sink`` takes the data when it is their time; a device may put
-    a quicker one in place of the general one.
+    Bytes that have not changed since then only refresh ``stamp_s``. The next frame is compared with
+    ``data``; None means that it counts as new with any content. ``held`` is the last frame of full length.
+    ``deadline_at`` is the time in s by which the next frame must have come, infinity while unwatched; ``faulty`` is the
+    EMCY code of a reported wrong length, 0 if none. ``sink`` applies the data at their time; a device may replace the
+    general sink by a quicker one.
     """
 
     def __init__(
@@ -187,7 +187,7 @@ class ReceivePdo:
             self._plain_size = self.size
 
     def unwatch(self) -> None:
-        """Expect nothing until a frame has come again."""
+        """Expect no frame until another has come."""
         self.deadline_at = inf
         self._plain_size = -1
 
@@ -210,7 +210,7 @@ class ReceivePdo:
 class TransmitPdo:
     """One TPDO: packs its objects with one precompiled struct and knows when it is due.
 
-    ``source`` returns its bytes; a device may put a quicker one in place of ``bytes_now``. ``due_s`` is the time of
+    ``source`` returns its bytes; a device may replace ``bytes_now`` by a quicker source. ``due_s`` is the time of
     an event-driven PDO's event timer or of the end of its inhibit time.
     """
 
@@ -245,7 +245,7 @@ class TransmitPdo:
         return self.pack(*[read(key) for key in self.keys])
 
     def sync_due(self) -> bool:
-        """Count a SYNC; return whether the PDO goes with this one (type 0: after a change, n: every n-th)."""
+        """Count a SYNC; return whether the PDO is sent with this SYNC (type 0: after a change, n: every n-th)."""
         if self.kind == 0:
             due = self.changed
             self.changed = False
@@ -257,7 +257,7 @@ class TransmitPdo:
         return True
 
     def event_due(self, data: bytes, t: float) -> bool:
-        """Return whether an event-driven PDO with this content goes at ``t`` s, not held by the inhibit time."""
+        """Return whether an event-driven PDO with this content is sent at ``t`` s, free of the inhibit time."""
         if data == self.sent and t < self.due_s:
             return False
         free_s = self.sent_s + self.inhibit_s
@@ -267,7 +267,7 @@ class TransmitPdo:
         return True
 
     def note_sent(self, data: bytes, t: float) -> None:
-        """Remember what an event-driven PDO sent at ``t`` s and start its event timer."""
+        """Record the data that an event-driven PDO sent at ``t`` s and start its event timer."""
         self.sent = data
         self.sent_s = t
         self.due_s = t + self.timer_s if self.timer_s > 0.0 else inf

@@ -23,7 +23,7 @@ def _nothing() -> bytes:
 
 
 class PdoOwner(Protocol):
-    """The device behind the process data."""
+    """The device that owns the process data."""
 
     def process(self, t: float) -> None:
         """Act on received process data, now in the object store."""
@@ -42,15 +42,15 @@ class PdoOwner(Protocol):
         ...
 
     def prepare_source(self, pdo: TransmitPdo) -> None:
-        """Put a quicker source into a TPDO, where there is one."""
+        """Put a quicker source into a TPDO, if there is one."""
         ...
 
     def prepare_sink(self, pdo: ReceivePdo) -> None:
-        """Put a quicker sink into an RPDO, where there is one."""
+        """Put a quicker sink into an RPDO, if there is one."""
         ...
 
     def reschedule(self) -> None:
-        """Take note of a new ``PdoExchange.due_s``."""
+        """Note a new ``PdoExchange.due_s``."""
         ...
 
 
@@ -58,7 +58,7 @@ class PdoExchange(SyncFollower):
     """All PDOs of one device; running while the device is OPERATIONAL.
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
-    ``plain`` says that the next SYNC asks for nothing but ``sample``, the TPDO ``sample_id``; while it is ``stale`` it
+    ``plain``: the next SYNC needs nothing but ``sample``, the TPDO ``sample_id``. A ``stale`` sample
     has to be taken anew (``sim.wires.can_traffic.SyncFollower``).
     """
 
@@ -136,7 +136,7 @@ class PdoExchange(SyncFollower):
     # in ------------------------------------------------------------------------------------------------------
 
     def examine(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
-        """Take the first RPDO with a deadline, an event-driven one, or one of the wrong length."""
+        """Process the first RPDO with a deadline, an event-driven RPDO, or an RPDO of the wrong length."""
         pdo.data = data
         size = len(data)
         if pdo.faulty:
@@ -159,7 +159,7 @@ class PdoExchange(SyncFollower):
             pdo.sink(data, t)
 
     def refresh(self) -> None:
-        """Let the next frame of every RPDO count as new, even with the bytes of the last one."""
+        """Count the next frame of every RPDO as new, even with the bytes of the last one."""
         for pdo in self.rpdos:
             pdo.data = None
         self._wire.forget_cycle()
@@ -167,7 +167,7 @@ class PdoExchange(SyncFollower):
     # out -----------------------------------------------------------------------------------------------------
 
     def on_sync(self, t: float) -> None:
-        """Apply what came for this SYNC and send the TPDOs that go with it."""
+        """Apply the frames held for this SYNC and send its TPDOs."""
         self._drain(t)
         for cob_id, source in self._each_sync:
             self._wire.transmit(cob_id, source(), t, self.urgent)
@@ -183,7 +183,7 @@ class PdoExchange(SyncFollower):
         self.fresh.clear()
 
     def take(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
-        """Write what an RPDO maps into the object store and have the device act on it."""
+        """Write an RPDO's mapped values into the object store and let the device act on them."""
         self._store.values.update(zip(pdo.keys, pdo.unpack(data), strict=True))
         self.owner.process(t)
 
@@ -194,19 +194,19 @@ class PdoExchange(SyncFollower):
         for pdo in self._event_tpdos:
             data = pdo.source()
             if pdo.cob_id is not None and pdo.event_due(data, t):
-                self._wire.transmit(pdo.cob_id, data, t, data != pdo.sent)  # by the timer alone it is no news
+                self._wire.transmit(pdo.cob_id, data, t, data != pdo.sent)  # urgent only with changed data
                 pdo.note_sent(data, t)
         self._find_due()
 
     def status_changed(self, t: float) -> None:
-        """Take note of a new statusword: a PDO sent on events may carry it."""
+        """Send a new statusword, if an event-driven PDO contains it."""
         if self._status_on_event:
             self.send_events(t)
 
     # timers --------------------------------------------------------------------------------------------------
 
     def fire(self, t: float) -> None:
-        """Do what has fallen due by ``t`` s."""
+        """Run the timers that are due by ``t`` s."""
         for pdo in self.rpdos:
             if pdo.deadline_at <= t and pdo.cob_id is not None:
                 pdo.watch(max(pdo.stamp_s, self._wire.skipped_s(pdo.cob_id)))

@@ -8,16 +8,16 @@ from typing import Final
 from drivers.digital_io import CONTACTOR, GUARD, REQUEST, SAFETY_CHAIN
 
 PULL_IN_S: Final = 0.03
-"""From the request to the feedback of a small power contactor, s [A]."""
+"""Time from the request to the feedback of a small power contactor, s [A]."""
 DROP_OUT_S: Final = 0.02
-"""From the end of the request or of the safety chain to the feedback, s [A]."""
+"""Time from the end of the request or of the safety chain to the feedback, s [A]."""
 
 
 class SafetyIo:
     """Inputs as levels, and a contactor that needs both the request and a healthy safety chain.
 
-    ``contactor_closed`` is the state of its power contacts; ``due_s`` is when it moves next; contacts that are
-    ``welded`` do not open; ``requested``: the contactor is asked for.
+    ``contactor_closed`` is the state of its power contacts; ``due_s`` is the time of its next movement; ``welded``
+    contacts do not open; ``requested``: the program requests a closed contactor.
     """
 
     def __init__(self) -> None:
@@ -45,7 +45,7 @@ class SafetyIo:
         self._guard = closed
 
     def set_outputs(self, word: int, t: float) -> bool:
-        """Take the word of 0x60FE:01, masked by :02, at ``t`` s; return whether the request changed."""
+        """Apply the word of 0x60FE:01, masked by :02, at ``t`` s; return whether the request changed."""
         requested = bool(word & REQUEST)
         if requested == self.requested:
             return False
@@ -69,7 +69,7 @@ class SafetyIo:
         self._aim(t)
 
     def break_coil(self, broken: bool, t: float) -> None:
-        """Open the coil's circuit at ``t`` s, or mend it."""
+        """Open the coil's circuit at ``t`` s, or repair it."""
         self._coil = not broken
         self._aim(t)
 

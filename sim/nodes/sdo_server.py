@@ -1,7 +1,7 @@
 """The SDO server of a simulated device (CiA 301, 7.2.4): expedited and segmented transfers, toggle, abort codes.
 
-Sans-IO: a request of eight bytes in, a reply of eight bytes out. Block transfer is answered as an unknown command, as
-devices without it do.
+Sans-IO: a request of eight bytes in, a reply of eight bytes out. Block transfer is answered as an unknown command,
+as by devices without it.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from drivers.canopen import sdo
 from sim.nodes.object_store import ObjectStore, SdoAbortError
 
 MAX_OBJECT_BYTES = 256
-"""Largest object a client may write, bytes: no object of a servo drive is longer."""
+"""Largest object that a client may write, bytes: no object of a servo drive is longer."""
 
 _IDLE, _UPLOAD, _DOWNLOAD = 0, 1, 2
 
 
 class SdoServer:
-    """One SDO channel; holds the state of a segmented transfer between requests."""
+    """One SDO channel; it keeps the state of a segmented transfer between requests."""
 
     def __init__(self, objects: ObjectStore) -> None:
         """Serve ``objects``."""
@@ -53,7 +53,7 @@ class SdoServer:
             if command in (5, 6):
                 self._address(data)
             elif self._mode == _IDLE:
-                # A segment of no transfer carries no address of its own.
+                # A segment outside a transfer contains no address.
                 self._index = self._sub = 0
             raise SdoAbortError(sdo.UNKNOWN_COMMAND)
         except SdoAbortError as refusal:

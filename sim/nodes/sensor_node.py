@@ -14,18 +14,18 @@ from sim.wires.can_traffic import Beat
 from sim.wires.can_wire import CanWire
 
 BOOT_S = 0.3
-"""From power to the boot-up message, s [A]."""
+"""Time from power to the boot-up message, s [A]."""
 TURNAROUND_S = 0.001
-"""From an SDO request to its answer, s [A]."""
+"""Time from an SDO request to its answer, s [A]."""
 
 
 class SimulatedSensorNode(CanopenDevice):
-    """A node with the channels of a configuration; ``show`` says what they measure."""
+    """A node with the channels of a configuration; ``show`` sets their values."""
 
     __slots__ = ("_frame", "config")
 
     def __init__(self, config: NodeConfig, wire: CanWire) -> None:
-        """Switch it on at time 0."""
+        """Switch the node on at time 0."""
         values: dict[tuple[int, int], int | str] = {}
         for sub, known in ((1, config.vendor_id), (2, config.product_code)):
             if known:
@@ -39,7 +39,7 @@ class SimulatedSensorNode(CanopenDevice):
         self.power(True)
 
     def show(self, values: Mapping[str, float]) -> None:
-        """Measure these from now on, in the channels' units; others as the configuration says."""
+        """Set these channels from now on, in their units; the others stay as configured."""
         data = bytearray(8)
         for name, channel in self.config.channels.items():
             count = values.get(name, channel.simulated) / channel.scale

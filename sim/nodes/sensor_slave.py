@@ -1,4 +1,4 @@
-"""Simulated Modbus sensors, put together from their profiles: a load cell, an infrared thermometer, any other."""
+"""Simulated Modbus sensors, built from their profiles: a load cell, an infrared thermometer, any other."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from drivers.profiles.model import LIMITS, DeviceProfile, Signal, WordOrder
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, PATTERN, ModbusSlave
 
 Quantity = Callable[[], float]
-"""What a channel measures now, in the channel's unit; NaN where it cannot be measured."""
+"""Source of a channel's present value, in the channel's unit; NaN if it cannot be measured."""
 READS_ZERO: Final = 0.0
-"""What a channel shows that measures nothing, in its unit; the nearest end of its range where that excludes zero."""
+"""Value of a channel without a source, in its unit; the nearest end of its range if that excludes zero."""
 FORCES: Final = ("fx", "fy", "fz", "mz")
-"""What a load cell can measure: forces in N, the moment in N m."""
+"""Channels of a load cell: forces in N, the moment in N m."""
 _AS_NAMED: Final[Mapping[str, str]] = {}
 _NOTHING: Final[Mapping[str, Quantity | float]] = {}
 
 
 class UnknownQuantityError(ValueError):
-    """A simulated sensor is to show what the plant does not have."""
+    """A quantity of a simulated sensor that the plant does not have."""
 
     def __init__(self, name: str) -> None:
         super().__init__(f'the simulated rig has no quantity "{name}" that a sensor could show')
@@ -30,29 +30,29 @@ class PlantQuantity:
     """A number of a simulated machine's plant, by its name."""
 
     def __init__(self, plant: object, name: str) -> None:
-        """Raise UnknownQuantityError where the plant has no such number."""
+        """Find the number. Raises UnknownQuantityError if the plant has no number of this name."""
         if name.startswith("_") or not isinstance(getattr(plant, name, None), float):
             raise UnknownQuantityError(name)
         self.plant = plant
         self.name = name
 
     def __call__(self) -> float:
-        """Return the number now."""
+        """Return the present number."""
         return float(getattr(self.plant, self.name))
 
 
 class SensorSlave(ModbusSlave):
     """A sensor with the channels of a profile, sampled whenever its registers are read.
 
-    ``dither`` is the phase of the last bit: set it to 0 where a run must not depend on what was before.
-    ``status_bits`` are set whatever is measured (a broken bridge); ``frozen`` stops the sampling. What cannot be
+    ``dither`` is the phase of the last bit: set it to 0 if a run must not depend on earlier readings.
+    ``status_bits`` are always set (a broken bridge); ``frozen`` stops the sampling. A value that cannot be
     measured sets the lowest status bit that makes a reading invalid.
     """
 
     def __init__(
         self, profile: DeviceProfile, unit_id: int, quantities: Mapping[str, Quantity | float] = _NOTHING
     ) -> None:
-        """Put the registers where ``profile`` has them; ``quantities`` by channel are asked for at each read."""
+        """Place the registers as in ``profile``; the ``quantities`` by channel are called at each read."""
         profile.expect_sensor()
         block = profile.blocks[0]
         read = [(one.address, one.count) for one in profile.blocks]
@@ -84,12 +84,12 @@ class SensorSlave(ModbusSlave):
              *LIMITS[signal.type])
             for signal, limit in zip(block.signals, self._limits, strict=True)
         )
-        """Of each signal: scale, whether its counts are whole, greatest counts, bit of its sign, ends of its type."""
+        """For each signal: scale, whether its counts are whole, greatest counts, bit of its sign, ends of its type."""
         self._shown = bytes(2 * block.count)
         self.blocks = {(block.address, block.count): 0}
 
     def measure(self, t: float) -> list[float]:
-        """Return what the signals of the first read measure at ``t`` s, in their units; anything for the status."""
+        """Return the values of the first read's signals at ``t`` s, in their units; any value for the status."""
         return [
             quantity if isinstance(quantity, float | int) else quantity() for quantity in self._quantities.values()
         ]
@@ -99,11 +99,11 @@ class SensorSlave(ModbusSlave):
         self.put(self._block.address, self.sample(0, t))
 
     def sample(self, block: int, t: float) -> bytes:
-        """Sample at ``t`` s and return all that is read."""
+        """Sample at ``t`` s and return all registers of the first read."""
         return self._shown if self.frozen else self._encode(self.measure(t))
 
     def _encode(self, values: Sequence[float]) -> bytes:
-        """Return the first read with these values, one a signal, as the next phase of the dither rounds them."""
+        """Return the first read with these values, one for each signal, rounded by the next phase of the dither."""
         self.dither = phase = (self.dither + 1) & 3
         step, status = PATTERN[phase], self.status_bits
         counts: list[object] = []
@@ -139,7 +139,7 @@ class SensorSlave(ModbusSlave):
 
 
 class ForceSource(Protocol):
-    """What a load cell measures."""
+    """Source of a load cell's readings."""
 
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return Fx, Fy, Fz in N and the moment in N m at ``t`` s."""
@@ -147,33 +147,33 @@ class ForceSource(Protocol):
 
 
 class CellSlave(SensorSlave):
-    """A load cell's transmitter, with any of the channels fx, fy, fz, mz by whatever names its profile has them."""
+    """A load cell's transmitter, with any of the channels fx, fy, fz, mz under any names of its profile."""
 
     def __init__(
         self, profile: DeviceProfile, unit_id: int, source: ForceSource, forces: Mapping[str, str] = _AS_NAMED
     ) -> None:
-        """Put the registers where ``profile`` has them; ``source`` is asked at each read.
+        """Place the registers as in ``profile``; ``source`` is called at each read.
 
-        ``forces``: which of them a channel of the profile is, where its name does not say it.
+        ``forces``: the force of each channel whose name in the profile does not name it.
         """
         profile.expect("load_cell")
         super().__init__(profile, unit_id)
         self.source = source
         names = [signal.name for signal in self._signals]
         self.forces: tuple[str, ...] = tuple(forces.get(name, name) for name in names)
-        """What its channels show, in the order of the block; its status among them."""
+        """Forces of its channels, in the order of the block, with its status among them."""
         self._plain = names == [*FORCES, "status"]
         self._places = tuple(FORCES.index(force) if force in FORCES else -1 for force in self.forces)
         self._scales = tuple(signal.scale for signal in self._signals)
         self._pack = self._block.pack
 
     def measure(self, t: float) -> list[float]:
-        """Return each channel's force at ``t`` s, 0 where it is none."""
+        """Return each channel's force at ``t`` s, 0 for a channel without one."""
         forces = self.source.forces_measured(t)
         return [forces[place] if place >= 0 else 0.0 for place in self._places]
 
     def sample(self, block: int, t: float) -> bytes:
-        """Sample at ``t`` s; four channels within their range, asked for in every scan, go a short way."""
+        """Sample at ``t`` s; the usual case, four channels within range asked for in every scan, takes a short path."""
         if not self._plain or self.frozen:
             return super().sample(block, t)
         x, y, z, m = forces = self.source.forces_measured(t)
@@ -190,7 +190,7 @@ class CellSlave(SensorSlave):
 
 
 class SurfaceSource(Protocol):
-    """What an infrared thermometer looks at."""
+    """Source of an infrared thermometer's reading."""
 
     def surface_measured_c(self, t: float) -> float:
         """Return the surface temperature in degC at ``t`` s; NaN where it cannot be measured."""
@@ -198,10 +198,10 @@ class SurfaceSource(Protocol):
 
 
 class IrSlave(SensorSlave):
-    """An infrared thermometer. ``sensor_c`` is its own temperature, degC."""
+    """An infrared thermometer; ``sensor_c`` is its own temperature, degC."""
 
     def __init__(self, profile: DeviceProfile, unit_id: int, source: SurfaceSource, sensor_c: float = 25.0) -> None:
-        """Put the registers where ``profile`` has them; ``source`` is asked at each read."""
+        """Place the registers as in ``profile``; ``source`` is called at each read."""
         profile.expect("ir_thermometer")
         super().__init__(profile, unit_id)
         self._emissivity = profile.writes.get("emissivity")
@@ -212,7 +212,7 @@ class IrSlave(SensorSlave):
         self.power(True)
 
     def power(self, on: bool) -> None:
-        """Switch the supply; it starts with an emissivity of 1 [A]."""
+        """Switch the supply; the thermometer starts with an emissivity of 1 [A]."""
         self.powered = on
         if on and self._emissivity is not None:
             words = self._emissivity.words(1.0, self._word_order)
@@ -220,7 +220,7 @@ class IrSlave(SensorSlave):
 
     @property
     def emissivity(self) -> float:
-        """The emissivity set, 1 after power-on; 1 where the device has none to set."""
+        """The present emissivity: 1 after power-on, and for a device without this setting."""
         register = self._emissivity
         if register is None:
             return 1.0
@@ -228,11 +228,11 @@ class IrSlave(SensorSlave):
         return register.value(b"".join(words), self._word_order)
 
     def measure(self, t: float) -> list[float]:
-        """Return the surface's temperature at ``t`` s on every channel but that of the device itself."""
+        """Return the surface's temperature at ``t`` s on every channel except that of the device's own temperature."""
         surface_c = self.source.surface_measured_c(t)
         return [self.sensor_c if of_itself else surface_c for of_itself in self._of_itself]
 
 
 def _most_counts(signal: Signal) -> float:
-    """Return the counts at the end of a load cell's channel; those of 32 bits where the profile states none."""
+    """Return the counts at the end of a load cell's channel; the limit of 32 bits if the profile states none."""
     return float(round(signal.greatest / signal.scale)) if signal.greatest < inf else LIMITS["i32"][1]

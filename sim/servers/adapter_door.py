@@ -1,7 +1,7 @@
 """A door on a real CAN interface: the simulated nodes as nodes of that bus, over python-can.
 
-On SocketCAN any number of programs may be on the bus with them: it is the door to try a second master with. The bus's
-own times come on top of the simulated ones, and what programs send there costs the simulated wire its time as well.
+On SocketCAN any number of programs may use the bus with them: this door is for tests of a second master. The bus's
+own times add to the simulated ones, and frames of programs take their time on the simulated wire as well.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     import can
 
 POLL_S = 0.001
-"""How often an interface that ``select`` cannot wait for is looked at, s [A]."""
+"""Period of polling an interface that ``select`` cannot wait for, s [A]."""
 MOST_AT_ONCE = 256
-"""Frames taken in one turn: the rest waits for the next."""
+"""Frames read in one turn: the rest waits for the next turn."""
 REMEMBERED_S = 0.5
-"""Without a frame for this long no program is on the bus [A]: a master's heartbeats come more often."""
+"""Time without a frame after which no program counts as present, s [A]: a master's heartbeats come more often."""
 _STANDARD = 0x7FF
 
 
@@ -30,11 +30,11 @@ class AdapterDoor:
     """The simulated nodes on a bus of python-can.
 
     ``ignored`` counts frames that the simulated bus does not carry (29-bit, remote, FD and error frames), ``unsent``
-    those that the interface did not take.
+    frames that the interface did not accept.
     """
 
     def __init__(self, wire: CanWire, interface: str, channel: str) -> None:
-        """Open it, at the bit rate of ``wire``; raises OSError."""
+        """Open the interface at the bit rate of ``wire``; raises OSError."""
         import can
 
         self._errors = (can.CanError, OSError, ValueError)
@@ -57,7 +57,7 @@ class AdapterDoor:
 
     @property
     def place(self) -> Place:
-        """Where it is: a channel of an interface."""
+        """Its address: a channel of an interface."""
         return Place(*self._name)
 
     @property
@@ -67,15 +67,15 @@ class AdapterDoor:
 
     @property
     def due_s(self) -> float:
-        """When a frame of a simulated node arrives, or the interface is looked at again, s."""
+        """Time when a frame of a simulated node arrives, or the interface is polled again, s."""
         return min(self._wire.arrives_s, self._due_s)
 
     def sources(self) -> Sequence[Readable]:
-        """Return the bus, where it can be waited for."""
+        """Return the bus, if ``select`` can wait for it."""
         return [self._bus] if self._waits else []
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Pass what was sent to the simulated nodes."""
+        """Pass received frames to the simulated nodes."""
         if self._waits and self._bus not in ready:
             return
         self._now_s = now
@@ -102,7 +102,7 @@ class AdapterDoor:
             self.ignored += 1
 
     def deliver(self, now: float) -> None:
-        """Send what the simulated nodes have sent by now."""
+        """Send the frames that the simulated nodes have sent by now."""
         self._now_s = now
         try:
             frames = self._wire.receive(now)
@@ -115,7 +115,7 @@ class AdapterDoor:
                 self.unsent += 1
 
     def close(self) -> None:
-        """Give the interface back."""
+        """Close the interface."""
         self._bus.shutdown()
 
 

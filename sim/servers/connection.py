@@ -1,4 +1,4 @@
-"""Sockets of the doors: they never block and never raise; a client that is gone is one that cannot be read."""
+"""Sockets of the doors: they never block and never raise; a client that left is ``gone``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sim.servers.doors import Readable
 Session = TypeVar("Session")
 
 MOST_UNSENT = 256 * 1024
-"""Bytes kept for a client that does not read; beyond them what is new is dropped, as a full adapter does [A]."""
+"""Bytes kept for a client that does not read; beyond them new bytes are dropped, as by a full adapter [A]."""
 _CHUNK = 8192
 
 
@@ -30,7 +30,7 @@ class Connection:
         self._unsent = bytearray()
 
     def receive(self) -> bytes:
-        """Return what has arrived, b"" for nothing; ``gone`` is set at the end of the stream."""
+        """Return the bytes received, b"" for none; ``gone`` is set at the end of the stream."""
         try:
             data = self.socket.recv(_CHUNK)
         except (BlockingIOError, InterruptedError):
@@ -64,7 +64,7 @@ class Connection:
 
 
 def accepted(listener: socket.socket) -> Connection | None:
-    """Return the next client's connection; None where the client has left already."""
+    """Return the next client's connection; None if the client has left already."""
     try:
         return Connection(listener.accept()[0])
     except OSError:
@@ -72,7 +72,7 @@ def accepted(listener: socket.socket) -> Connection | None:
 
 
 class ClientsDoor(ABC, Generic[Session]):
-    """A TCP door with several clients, each with a session; beyond ``most`` a connection is closed at once."""
+    """A TCP door with several clients, each with a session; connections beyond ``most`` are closed at once."""
 
     def __init__(self, listener: socket.socket, most: int, begin: Callable[[], Session]) -> None:
         """Wait for clients; ``begin`` makes a client's session."""
@@ -90,7 +90,7 @@ class ClientsDoor(ABC, Generic[Session]):
         return [*self.clients, self.listener]
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Serve the clients, then let others in."""
+        """Serve the clients, then accept others."""
         for client in [client for client in self.clients if client in ready]:
             self.serve(*self.clients[client], now)
         connection = accepted(self.listener) if self.listener in ready else None
@@ -103,10 +103,10 @@ class ClientsDoor(ABC, Generic[Session]):
 
     @abstractmethod
     def serve(self, connection: Connection, session: Session, now: float) -> None:
-        """Take what a client has sent, at ``now`` s."""
+        """Process a client's bytes, at ``now`` s."""
 
     def deliver(self, now: float) -> None:
-        """Send what is left to send, and forget clients that are gone."""
+        """Send what is queued, and forget clients that are gone."""
         for client, (connection, session) in tuple(self.clients.items()):
             connection.send(self.outgoing(session))
             if connection.gone:
@@ -115,14 +115,14 @@ class ClientsDoor(ABC, Generic[Session]):
                 self.left(session, now)
 
     def outgoing(self, session: Session) -> bytearray:
-        """Return what a session has for its client; sending empties it."""
+        """Return the queued bytes of a session; sending empties them."""
         return bytearray()
 
     def left(self, session: Session, now: float) -> None:
         """Act on a client that is gone."""
 
     def close(self) -> None:
-        """Shut the door and let go of every client."""
+        """Close the door and every client's connection."""
         self.listener.close()
         for connection, _ in self.clients.values():
             connection.close()
@@ -130,7 +130,7 @@ class ClientsDoor(ABC, Generic[Session]):
 
 
 def listen(host: str, port: int) -> socket.socket:
-    """Listen on an address, port 0 = any free one; raises OSError where that cannot be."""
+    """Return a listener on an address, port 0 = any free one; raises OSError if that is impossible."""
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         if sys.platform == "win32":  # there SO_REUSEADDR would share the port with another program

@@ -1,4 +1,4 @@
-"""What a door into the simulated rig is, and which ones there are to choose from."""
+"""Interface of the doors into the simulated rig, and the choice of doors."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 CAN_DOORS = ("tcp", "slcan")
-"""Ways to the CAN bus besides a real interface, which is named ``INTERFACE:CHANNEL``."""
+"""Doors of the CAN bus besides a real interface, which is named ``INTERFACE:CHANNEL``."""
 
 
 class Readable(Protocol):
@@ -20,22 +20,22 @@ class Readable(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a wire is for a program: what it speaks, and the address, device or channel to open."""
+    """Address of a wire for a program: its protocol, and the address, device or channel to open."""
 
     speaks: str
     at: str
 
     def __str__(self) -> str:
-        """Return it as the ready line shows it."""
+        """Return the address as in the ready line."""
         return f"{self.at} ({self.speaks})"
 
 
 class WireDoor(Protocol):
-    """One wire of the rig, open to other programs. No method waits, and none raises for what a client does."""
+    """One wire of the rig, open to other programs. No method waits, and no action of a client makes it raise."""
 
     @property
     def place(self) -> Place:
-        """Where it is."""
+        """Its address."""
         ...
 
     @property
@@ -45,32 +45,32 @@ class WireDoor(Protocol):
 
     @property
     def due_s(self) -> float:
-        """When ``deliver`` has something to do next, s of the rig; infinity when a program has to begin."""
+        """Time when ``deliver`` has work, s of the rig; infinity while only a program can begin."""
         ...
 
     def sources(self) -> Sequence[Readable]:
-        """Return what may have something to read."""
+        """Return the objects that may become readable."""
         ...
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Take what has come from those ``sources`` that are ready, at ``now`` s of the rig."""
+        """Read from those ``sources`` that are ready, at ``now`` s of the rig."""
         ...
 
     def deliver(self, now: float) -> None:
-        """Pass on what has arrived on the wire by ``now`` s."""
+        """Deliver the frames that have arrived on the wire by ``now`` s."""
         ...
 
     def close(self) -> None:
-        """Shut it and let go of its clients."""
+        """Close the door and the connections of its clients."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Doors:
-    """Which door each wire gets: ``can`` one of CAN_DOORS or ``INTERFACE:CHANNEL`` of python-can, ``lines`` one of
-    LINE_DOORS; TCP doors listen at ``host`` from ``port`` on (0 = any free ones): CAN there, the lines after it.
+    """Choice of a door for each wire: ``can`` is one of CAN_DOORS or ``INTERFACE:CHANNEL`` of python-can, ``lines`` one
+    of LINE_DOORS. TCP doors listen at ``host`` from ``port`` on (0 = any free ones): CAN first, then the lines.
 
-    ``links``: folder that gets a link to each pseudo-terminal, named ``can`` or as the line; "" = none.
+    ``links``: folder for a link to each pseudo-terminal, named ``can`` or as the line; "" = none.
     """
 
     can: str = "tcp"

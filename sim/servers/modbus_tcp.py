@@ -1,7 +1,7 @@
 """A Modbus TCP gateway in front of a simulated serial line; sans-IO.
 
-Requests are unwrapped (MBAP header off, CRC on) and go over the line one at a time, with its wire times; replies return
-to the client that asked. An absent slave stays silent, as on the line itself: no gateway exception is made up.
+Requests are unwrapped (MBAP header off, CRC on) and sent over the line one at a time, with its wire times; replies
+return to the client that asked. An absent slave stays silent, as on the line itself: there is no gateway exception.
 Source: Modbus messaging on TCP/IP implementation guide V1.0b, 3.1.3.
 """
 
@@ -17,9 +17,9 @@ from drivers.ports import BusLost
 from sim.wires.modbus_wire import ModbusWire
 
 PATIENCE_S = 0.25
-"""How long the gateway waits for a slave before it serves the next request, s [A]: beyond any profile's time-out."""
+"""Longest wait of the gateway for a slave before it serves the next request, s [A]: beyond any profile's time-out."""
 MOST_WAITING = 16
-"""Requests of one client that may wait; one that sends more gets silence for them."""
+"""Greatest number of waiting requests of one client; further requests get no answer."""
 
 _HEADER = Struct(">HHHB")
 _SHORTEST, _LONGEST = 2, 254
@@ -38,7 +38,7 @@ class ModbusSession:
         self._buffer = b""
 
     def feed(self, data: bytes) -> list[tuple[int, bytes]]:
-        """Take what the client sent; return complete requests as (transaction, unit id and PDU)."""
+        """Process the client's bytes; return complete requests as (transaction, unit id and PDU)."""
         requests: list[tuple[int, bytes]] = []
         buffer = self._buffer + data
         while len(buffer) >= _HEADER.size:
@@ -55,7 +55,7 @@ class ModbusSession:
         return requests
 
     def reply(self, transaction: int, frame: bytes) -> None:
-        """Queue a reply, given as unit id and PDU."""
+        """Queue a reply from its unit id and PDU."""
         self.outgoing += _HEADER.pack(transaction, 0, len(frame), frame[0]) + frame[1:]
 
 
@@ -80,22 +80,23 @@ class ModbusGateway:
 
     @property
     def due_s(self) -> float:
-        """When ``serve`` has something to do next, s; infinity when nothing is asked."""
+        """Time when ``serve`` has work, s; infinity without a request."""
         if self._active is None:
             return -inf if self._waiting else inf
         return min(self._active.until_s, self.wire.arrives_s)
 
     def take(self, session: ModbusSession, data: bytes, now: float) -> None:
-        """Take what a client sent."""
+        """Process a client's bytes."""
         waiting = sum(1 for one in self._waiting if one.session is session)
         for number, frame in session.feed(data)[: MOST_WAITING - waiting]:
             self._waiting.append(_Transaction(session, number, with_crc(frame)))
         self.serve(now)
 
     def forget(self, session: ModbusSession) -> None:
-        """Drop what a client that is gone has asked.
+        """Drop the requests of a client that is gone.
 
-        Of what is on the line already the reply is waited for, if one is on its way: two may not speak at once.
+        If its request is on the line already and a reply is on its way, the gateway waits for the reply: two may not
+        send at once.
         """
         self._waiting = deque(one for one in self._waiting if one.session is not session)
         if self._active is not None and self._active.session is session:
@@ -103,12 +104,12 @@ class ModbusGateway:
             self._end_if_unheard()
 
     def _end_if_unheard(self) -> None:
-        """End a transaction whose client is gone, once its reply cannot come any more."""
+        """End a transaction whose client is gone, once its reply can no longer come."""
         if self._active is not None and self._active.session is None and not isfinite(self.wire.arrives_s):
             self._active = None
 
     def serve(self, now: float) -> None:
-        """Pass replies on that have arrived, and requests whose turn it is."""
+        """Return the replies that have arrived, and send the next request."""
         self._collect(now)
         while self._active is None and self._waiting:
             self._start(self._waiting.popleft(), now)

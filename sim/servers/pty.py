@@ -8,22 +8,22 @@ from contextlib import suppress
 from pathlib import Path
 
 MOST_UNSENT = 16 * 1024
-"""Bytes kept for a program that does not read; beyond them what is new is dropped, as an adapter does [A]."""
+"""Bytes kept for a program that does not read; beyond them new bytes are dropped, as by an adapter [A]."""
 _CHUNK = 4096
 NONE_HERE = "this system has no pseudo-terminals (Windows): use the TCP doors, or a pair of virtual serial ports"
 
 
 class Pty:
-    """A serial port, seen from its far end. ``name`` is the device that a program opens.
+    """The far end of a serial port; ``name`` is the device that a program opens.
 
-    It never blocks. The near end is kept open here: settings survive a program that leaves, and one that has left is
-    not seen, as an adapter does not see it. ``dropped`` counts bytes that were not fetched.
+    It never blocks. The near end is kept open here: settings survive when a program leaves. Its leaving is
+    not noticed, just as an adapter does not notice it. ``dropped`` counts bytes that were not fetched.
     """
 
     def __init__(self, baud: int, link: Path | None = None) -> None:
         """Open one, raw, its near end set to ``baud`` bit/s until a program sets it; ``link``: path of a link to it.
 
-        Raises OSError where there are none, or where the link cannot be made.
+        Raises OSError if there are no pseudo-terminals, or if the link cannot be made.
         """
         if sys.platform == "win32":
             raise OSError(NONE_HERE)
@@ -52,7 +52,7 @@ class Pty:
 
     @property
     def baud(self) -> int:
-        """Baud rate that the program has set, bit/s; 0 for one without a constant of its own."""
+        """Baud rate set by the program, bit/s; 0 for a rate without a constant."""
         if sys.platform == "win32":
             return 0
         import termios
@@ -60,7 +60,7 @@ class Pty:
         return _rates().get(termios.tcgetattr(self._near)[5], 0)
 
     def read(self) -> bytes:
-        """Return what the program has sent, b"" for nothing."""
+        """Return the program's bytes, b"" for none."""
         try:
             return os.read(self._far, _CHUNK)
         except OSError:
@@ -81,11 +81,11 @@ class Pty:
         del self._unsent[:sent]
 
     def forget(self) -> None:
-        """Drop what has not been sent."""
+        """Drop the bytes that were not sent."""
         self._unsent.clear()
 
     def close(self) -> None:
-        """Close both ends and take the link away."""
+        """Close both ends and remove the link."""
         os.close(self._far)
         os.close(self._near)
         if self._link is not None:
@@ -113,7 +113,7 @@ def _rates() -> dict[int, int]:
 
 
 def _point(link: Path, device: str) -> None:
-    """Let ``link`` name ``device``; a link of an earlier process is replaced, anything else is not."""
+    """Point ``link`` at ``device``; a link of an earlier process is replaced, any other file is not."""
     link.parent.mkdir(parents=True, exist_ok=True)
     if link.is_symlink():
         link.unlink()

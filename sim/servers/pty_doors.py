@@ -15,34 +15,34 @@ from sim.wires.can_wire import CanWire
 from sim.wires.modbus_wire import ModbusWire
 
 ADAPTER_BAUD = 115200
-"""Baud rate of the adapter's port before a program sets it, bit/s. Its characters are not paced: adapters of today are
-USB devices, which take no note of it; one on a real serial port of this rate carries 400 frames a second."""
+"""Baud rate of the adapter's port before a program sets it, bit/s. It does not limit the characters: adapters of today
+are USB devices, which ignore it; an adapter on a real serial port of this rate carries 400 frames a second."""
 REMEMBERED_S = 1.0
-"""A program that has asked nothing for this long is taken to be gone, s [A]: a serial port does not say."""
+"""Time without a request after which a program counts as gone, s [A]: a serial port does not report it."""
 
 
 class SlcanDoor:
-    """The CAN bus behind a serial adapter. One program: who opens the device as well takes its bytes away."""
+    """The CAN bus behind a serial adapter, for one program: a second one on the device would take its bytes away."""
 
     def __init__(self, wire: CanWire, link: Path | None = None) -> None:
-        """Wait with the channel closed; raises OSError where there is no pseudo-terminal."""
+        """Wait with the channel closed; raises OSError if there is no pseudo-terminal."""
         self.pty = Pty(ADAPTER_BAUD, link)
         self.session = SlcanSession(wire.bitrate)
         self._wire = wire
 
     @property
     def place(self) -> Place:
-        """Where it is: a device."""
+        """Its address: a device."""
         return Place("slcan", self.pty.name)
 
     @property
     def taken(self) -> bool:
-        """The channel is open."""
+        """Whether the channel is open."""
         return self.session.is_open
 
     @property
     def due_s(self) -> float:
-        """When the next frame for the program arrives, s."""
+        """Arrival of the next frame for the program, s."""
         return self._wire.arrives_s if self.session.is_open else inf
 
     def sources(self) -> Sequence[Readable]:
@@ -50,7 +50,7 @@ class SlcanDoor:
         return [self.pty]
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Put what the program sent on the bus."""
+        """Put the program's frames on the bus."""
         if self.pty not in ready:
             return
         was_open = self.session.is_open
@@ -58,12 +58,12 @@ class SlcanDoor:
             for can_id, data in self.session.feed(self.pty.read()):
                 self._wire.send(can_id, data, now)
         except BusLost:
-            self.session.is_open = False  # the adapter has lost its bus: it says nothing more
+            self.session.is_open = False  # the adapter has lost its bus: it sends nothing more
         if was_open and not self.session.is_open:
             self.pty.forget()
 
     def deliver(self, now: float) -> None:
-        """Send what has arrived; with the channel closed, frames pass unseen."""
+        """Send the frames that have arrived; with the channel closed they are dropped."""
         try:
             self.session.relay(self._wire.receive(now))
         except BusLost:
@@ -72,15 +72,15 @@ class SlcanDoor:
         self.session.outgoing.clear()
 
     def close(self) -> None:
-        """Shut it."""
+        """Close it."""
         self.pty.close()
 
 
 class RtuDoor:
-    """A Modbus line behind a serial port, with the line's own times; a port at another baud rate is not understood."""
+    """A Modbus line behind a serial port, with the line's own times; bytes at another baud rate are garbled."""
 
     def __init__(self, wire: ModbusWire, baud: int, link: Path | None = None) -> None:
-        """Listen; ``baud`` is the line's, bit/s. Raises OSError where there is no pseudo-terminal."""
+        """Listen; ``baud`` is the line's, bit/s. Raises OSError if there is no pseudo-terminal."""
         self.pty = Pty(baud, link)
         self.ear = RtuEar(wire)
         self._baud = baud
@@ -89,17 +89,17 @@ class RtuDoor:
 
     @property
     def place(self) -> Place:
-        """Where it is: a device."""
+        """Its address: a device."""
         return Place("Modbus RTU", self.pty.name)
 
     @property
     def taken(self) -> bool:
-        """A program has asked something lately."""
+        """Whether a program has sent a request lately."""
         return self._now_s - self._heard_s < REMEMBERED_S
 
     @property
     def due_s(self) -> float:
-        """When a request ends or a reply arrives, s."""
+        """Time when a request ends or a reply arrives, s."""
         return self.ear.due_s
 
     def sources(self) -> Sequence[Readable]:
@@ -107,16 +107,16 @@ class RtuDoor:
         return [self.pty]
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Hear what the program sends."""
+        """Process the program's bytes."""
         if self.pty in ready:
             self.ear.hear(self.pty.read(), now, understood=self.pty.baud in (self._baud, 0))
             self._heard_s = now
 
     def deliver(self, now: float) -> None:
-        """Send what has arrived on the line."""
+        """Send the bytes that have arrived on the line."""
         self._now_s = now
         self.pty.write(self.ear.serve(now))
 
     def close(self) -> None:
-        """Shut it."""
+        """Close it."""
         self.pty.close()

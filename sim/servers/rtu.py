@@ -1,8 +1,8 @@
 """The far end of a serial port on a simulated Modbus line; sans-IO.
 
-A pseudo-terminal hands a whole frame over at once; on the line its characters take their time. The end of a request is
-found as a slave finds it, by the silence after its last character, reckoned from the line's baud rate. Replies leave
-when their last character is over: ``ModbusWire`` knows when.
+A pseudo-terminal transfers a whole frame at once; on the line its characters take their time. The end of a request is
+found as by a slave: by the silence after its last character, calculated from the line's baud rate. Replies leave
+after their last character, at the time that ``ModbusWire`` gives.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from drivers.ports import BusLost
 from sim.wires.modbus_wire import ModbusWire
 
 LONGEST_FRAME = 256
-"""Bytes of the longest RTU frame (Modbus over serial line V1.02, 2.5.1): of more, slaves understand nothing."""
+"""Bytes of the longest RTU frame (Modbus over serial line V1.02, 2.5.1): slaves ignore a longer one."""
 
 
 class RtuEar:
-    """Hears what a computer sends on a line; ``garbled`` counts bytes that came with other settings than the line's."""
+    """Receives the computer's bytes on a line; ``garbled`` counts bytes with other settings than the line's."""
 
     def __init__(self, wire: ModbusWire) -> None:
         """Listen in front of the slaves on ``wire``."""
@@ -29,13 +29,13 @@ class RtuEar:
 
     @property
     def due_s(self) -> float:
-        """When ``serve`` has something to do next, s: a request ends, or bytes arrive."""
-        # A line that is unplugged has "now" as its time: there is nothing to come for.
+        """Time when ``serve`` has work, s: a request ends, or bytes arrive."""
+        # An unplugged line has "now" as its time, although no bytes will come.
         arrives_s = self.wire.arrives_s if self.wire.connected else inf
         return self._over_s + self.wire.gap_s if self._frame else arrives_s
 
     def hear(self, data: bytes, now: float, *, understood: bool = True) -> None:
-        """Take bytes that came at ``now`` s; ``understood``: sent with the line's own baud rate."""
+        """Process bytes that came at ``now`` s; ``understood``: sent with the line's own baud rate."""
         if not data:
             return
         if not understood:
@@ -48,7 +48,7 @@ class RtuEar:
         self._frame += data
 
     def serve_request(self, now: float) -> None:
-        """Hand a request on whose silence is over by ``now`` s."""
+        """Send a request to the slaves once the silence after it is over by ``now`` s."""
         if not self._frame or now < self._over_s + self.wire.gap_s:
             return
         frame = bytes(self._frame)
@@ -62,10 +62,10 @@ class RtuEar:
             return  # an unplugged line is silent
 
     def serve(self, now: float) -> bytes:
-        """Hand on a request that is complete, and return the bytes that have arrived for the computer."""
+        """Send a complete request to the slaves, and return the bytes that have arrived for the computer."""
         self.serve_request(now)
         if self._frame and self._began_s < self.wire.arrives_s:
-            return b""  # the computer speaks while a slave does: the line will say what is left of it
+            return b""  # the computer sends while a slave does: the line decides what is left of the reply
         try:
             return b"".join(data for _, data in self.wire.read(now))
         except BusLost:

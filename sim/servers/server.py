@@ -1,7 +1,7 @@
-"""The simulated rig alive in real time, with its doors open.
+"""The simulated rig in real time, with its doors open.
 
-One thread, one loop: it sleeps in ``select`` until a client sends something, a frame has arrived on a simulated wire,
-a node has something due or the next step of the plant is. Clients come and go; the rig lives on.
+One thread, one loop: it sleeps in ``select`` until a client sends something, a frame arrives on a simulated wire,
+a node has something due, or the next step of the plant is due. Clients come and go; the rig continues.
 """
 
 from __future__ import annotations
@@ -21,46 +21,46 @@ from sim.servers.pty_doors import RtuDoor, SlcanDoor
 from sim.servers.tcp_doors import GatewayDoor, SocketcandDoor
 
 STEP_S = 0.01
-"""The rig is advanced this often at least, s, and shown to the observer."""
+"""Longest step of the rig, s; after each the observer sees the rig."""
 LONGEST_SLEEP_S = 0.05
-"""Of this computer's clock: how long it takes to notice, at most, that it is asked to end, s [A]."""
+"""Longest delay before the loop notices a request to end, s of this computer's clock [A]."""
 
 
 class Observer(Protocol):
     """Sees the rig every ``STEP_S``."""
 
     def observe(self, rig: SimRig, controlled: bool) -> None:
-        """Take note of the rig as it is; ``controlled``: a program is on its CAN bus."""
+        """Record the rig's present state; ``controlled``: a program is on its CAN bus."""
         ...
 
 
 class Life(Protocol):
-    """What advances the rig: the rig itself, or what happens to it on the way."""
+    """Advances the rig: the rig itself, or a wrapper that causes events on the way."""
 
     @property
     def due_s(self) -> float:
-        """When something happens by itself, s of the rig."""
+        """Time of the next event, s of the rig."""
         ...
 
     def advance(self, now: float) -> None:
-        """Let everything live until ``now`` s."""
+        """Advance everything to ``now`` s."""
         ...
 
 
 class RigServer:
     """A simulated rig in real time behind doors.
 
-    ``can`` and ``lines`` are its doors; ``latest_s`` is how late the loop has come to something at most, s of the rig:
-    more than some milliseconds means that this machine cannot keep the rig's time. ``speed`` is how many seconds of
-    the rig a second of this computer's clock is worth: the loop has to know it to sleep.
+    ``can`` and ``lines`` are its doors; ``latest_s`` is the greatest delay of the loop, s of the rig: more than some
+    milliseconds means that this machine cannot keep the rig's time. ``speed`` is the number of seconds of the rig in a
+    second of this computer's clock: the loop needs it to sleep.
     """
 
     def __init__(
         self, rig: SimRig, host: str, port: int, observer: Observer | None = None, doors: Doors | None = None
     ) -> None:
-        """Open a door for every wire; without ``doors`` on ``host`` and ``port``.
+        """Open a door for every wire, on ``host`` and ``port`` if ``doors`` is not given.
 
-        Raises OSError where a port, a device or an interface cannot be had.
+        Raises OSError if a port, a device or an interface is not available.
         """
         self.rig = rig
         self.latest_s = 0.0
@@ -75,21 +75,21 @@ class RigServer:
 
     @property
     def line_places(self) -> dict[str, Place]:
-        """Where each Modbus line is."""
+        """Address of each Modbus line."""
         return {name: door.place for name, door in self.lines.items()}
 
     def add(self, door: WireDoor) -> None:
-        """Serve one more door, which is shut with the others."""
+        """Serve one more door, which is closed with the others."""
         self._doors.append(door)
 
     def serve(self, now: Callable[[], float], stopped: Callable[[], bool]) -> None:
-        """Let the rig live by the clock ``now`` (s, from 0) until ``stopped``, which is asked every step."""
+        """Run the rig by the clock ``now`` (s, from 0) until ``stopped``, which is called every step."""
         self._step_due_s = now()
         while not stopped():
             self.turn(now)
 
     def turn(self, now: Callable[[], float]) -> None:
-        """Sleep until something is to be done, and do it."""
+        """Sleep until work is due, and do it."""
         due = self._due_s()
         asleep_s = min(max(0.0, due - now()) / self.speed, LONGEST_SLEEP_S)
         sources = [source for door in self._doors for source in door.sources()]
@@ -110,14 +110,14 @@ class RigServer:
                 self._step_due_s += STEP_S
 
     def close(self) -> None:
-        """Shut every door."""
+        """Close every door."""
         for door in self._doors:
             door.close()
 
     def _due_s(self) -> float:
-        """Return when the loop must turn next, s."""
+        """Return the time of the next turn, s."""
         due = self._step_due_s if self.life is None else min(self._step_due_s, self.life.due_s)
-        # The rig takes no step shorter than this: what a node has due before it waits as long.
+        # The rig takes no shorter step: a node's due time before its end waits until then.
         soonest = self.rig.now_s + SHORTEST_STEP_S
         for drive in self.rig.axes.values():
             if drive.due_s < due:

@@ -1,9 +1,9 @@
 """A serial CAN adapter's half of slcan, the LAWICEL protocol of lines that end with CR; sans-IO.
 
 Source: LAWICEL CANUSB manual and its CAN232 manual, chapter "available commands": ``Sn`` bit rate, ``O`` open, ``L``
-open to listen only, ``C`` close, ``tiiildd..`` and ``Tiiiiiiiildd..`` a frame, ``r`` and ``R`` a remote one, ``F``
-status, ``V`` version, ``N`` serial number, ``Z0/Z1`` time stamps, ``M``, ``m`` acceptance. What is done is answered
-with CR (a frame with ``z`` or ``Z`` and CR), what is not with BELL.
+open to listen only, ``C`` close, ``tiiildd..`` and ``Tiiiiiiiildd..`` a frame, ``r`` and ``R`` a remote frame, ``F``
+status, ``V`` version, ``N`` serial number, ``Z0/Z1`` time stamps, ``M``, ``m`` acceptance. A command that is carried
+out is answered with CR (a frame with ``z`` or ``Z`` and CR), any other with BELL.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from drivers.ports import CanFrame
 BITRATES = {0: 10_000, 1: 20_000, 2: 50_000, 3: 100_000, 4: 125_000, 5: 250_000, 6: 500_000, 7: 800_000, 8: 1_000_000}
 """Bit rate in bit/s by the number of the command ``S``. python-can sends S7 for 750 kbit/s, which no manual has."""
 LONGEST_LINE = 64
-"""Characters that a line may take; the longest valid one, an extended frame, has 26."""
+"""Greatest length of a line, characters; the longest valid line, an extended frame, has 26."""
 BUS_ERROR = 0x80
-"""Bit of the status: a bus error, as an adapter at a wrong bit rate sees them."""
+"""Status bit of a bus error, as an adapter at a wrong bit rate reports it."""
 
 _OK, _BELL = b"\r", b"\a"
 _HIGHEST_ID = 0x7FF
@@ -25,9 +25,9 @@ _DIGITS = frozenset(hexdigits.encode("ascii"))
 
 
 class SlcanSession:
-    """The adapter: ``feed`` takes what the computer sent, ``outgoing`` holds what is to be sent to it.
+    """The adapter: ``feed`` takes the computer's bytes, ``outgoing`` holds the bytes for the computer.
 
-    ``bitrate`` is that of the bus, bit/s: opened at another one, the adapter receives nothing and reaches no node.
+    ``bitrate`` is that of the bus, bit/s: opened at another rate, the adapter receives nothing and reaches no node.
     ``ignored`` counts frames that the simulated bus does not carry (29-bit identifiers, remote frames), ``refused``
     lines that are no valid command.
     """
@@ -46,11 +46,11 @@ class SlcanSession:
 
     @property
     def deaf(self) -> bool:
-        """Return whether the channel is open at another bit rate than the bus has."""
+        """Return whether the channel is open at a bit rate that differs from the bus."""
         return self.is_open and self._own_rate != self.bitrate
 
     def feed(self, data: bytes) -> list[tuple[int, bytes]]:
-        """Take what the computer sent; return the frames for the bus as (identifier, data), in order."""
+        """Process the computer's bytes; return the frames for the bus as (identifier, data), in order."""
         frames: list[tuple[int, bytes]] = []
         *lines, self._buffer = (self._buffer + data).split(b"\r")
         for line in lines:
@@ -61,7 +61,7 @@ class SlcanSession:
         return frames
 
     def relay(self, frames: list[CanFrame]) -> None:
-        """Queue frames of the bus for the computer; a closed channel has none."""
+        """Queue frames of the bus for the computer; a closed channel drops them."""
         if not self.is_open or self.deaf:
             return
         for t, can_id, data in frames:
@@ -93,7 +93,7 @@ class SlcanSession:
                 self._set(command, rest)
 
     def _set(self, command: bytes, rest: bytes) -> None:
-        """Take a setting: the channel has to be closed for it."""
+        """Apply a setting; the channel has to be closed."""
         valid = not self.is_open
         if command == b"S" and rest.isdigit() and int(rest) in BITRATES:
             rate = BITRATES[int(rest)]
@@ -136,7 +136,7 @@ def _hex(text: bytes) -> bool:
 
 
 def _rate_of(btr0: int, btr1: int) -> int:
-    """Return the bit rate in bit/s of an SJA1000's bus timing registers at 16 MHz (data sheet, 6.5)."""
+    """Return the bit rate in bit/s for an SJA1000's bus timing registers at 16 MHz (data sheet, 6.5)."""
     quantum_s = 2 * ((btr0 & 0x3F) + 1) / 16e6
     quanta = 1 + (btr1 & 0x0F) + 1 + (btr1 >> 4 & 0x07) + 1
     return round(1.0 / (quantum_s * quanta))

@@ -1,8 +1,8 @@
-"""The server's half of socketcand's protocol, as far as a client in raw mode speaks it; sans-IO.
+"""The server's half of the socketcand protocol, as far as a client in raw mode uses it; sans-IO.
 
-Source: github.com/linux-can/socketcand, doc/protocol.md. A client is greeted with ``< hi >``, opens a bus by name,
-asks for ``< rawmode >``, then sends ``< send id length b0 b1 ... >`` and gets ``< frame id seconds data >``. Remote
-and FD frames do not exist in it.
+Source: github.com/linux-can/socketcand, doc/protocol.md. The server greets a client with ``< hi >``. The client opens a
+bus by name, asks for ``< rawmode >``, then sends ``< send id length b0 b1 ... >`` and gets
+``< frame id seconds data >``. The protocol has no remote and FD frames.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from drivers.ports import CanFrame
 
 GREETING = b"< hi >"
 BUSY = b"< error another program is connected >"
-"""What a second client gets instead of the greeting: one controls."""
+"""Answer to a second client instead of the greeting: only one client has control."""
 HOLD_BACK_S = 0.05
-"""No frame is sent to a client this long after its raw mode began, unless it sends one first, s [A].
+"""Time after the begin of raw mode in which no frame is sent to a client unless it sends one first, s [A].
 
-Clients compare the answer ``< ok >`` with a whole piece of what they receive (python-can 4.6): a frame in the same
+Clients compare the answer ``< ok >`` with a whole piece of received bytes (python-can 4.6): a frame in the same
 piece would end their connection.
 """
 LONGEST_ELEMENT = 256
-"""Characters that an element may take; the longest valid one has less than 60."""
+"""Greatest length of an element, characters; the longest valid element has less than 60."""
 
 _OK = b"< ok >"
 _STANDARD_DIGITS = 3
@@ -29,14 +29,14 @@ _HIGHEST_ID = 0x7FF
 
 
 class SocketcandSession:
-    """One client's conversation: ``feed`` takes what it sent, ``outgoing`` holds what is to be sent to it.
+    """One client's conversation: ``feed`` takes the client's bytes, ``outgoing`` holds the bytes for the client.
 
-    ``ended`` says why the conversation is over, "" while it is not. ``ignored`` counts frames that the simulated bus
-    does not carry (29-bit identifiers), ``refused`` elements that are no valid command.
+    ``ended`` is the reason for the end of the conversation, "" before it. ``ignored`` counts frames that the simulated
+    bus does not carry (29-bit identifiers), ``refused`` elements that are no valid command.
     """
 
     def __init__(self) -> None:
-        """Greet."""
+        """Queue the greeting."""
         self.outgoing = bytearray(GREETING)
         self.bus = ""
         self.ended = ""
@@ -47,11 +47,11 @@ class SocketcandSession:
 
     @property
     def raw(self) -> bool:
-        """Return whether frames go both ways."""
+        """Return whether frames are exchanged in both directions."""
         return self._frames_from_s < inf
 
     def feed(self, data: bytes, now: float) -> list[tuple[int, bytes]]:
-        """Take what the client sent; return the frames for the bus as (identifier, data), in order."""
+        """Process the client's bytes; return the frames for the bus as (identifier, data), in order."""
         frames: list[tuple[int, bytes]] = []
         buffer = self._buffer + data
         while True:
@@ -71,7 +71,7 @@ class SocketcandSession:
         return frames
 
     def relay(self, frames: list[CanFrame], now: float) -> None:
-        """Queue frames of the bus for the client; before it can take any they are dropped, as on any other bus."""
+        """Queue frames of the bus for the client; before it can accept them they are dropped, as on any other bus."""
         if now < self._frames_from_s:
             return
         for t, can_id, data in frames:
@@ -92,7 +92,7 @@ class SocketcandSession:
                 self.outgoing += b"< error unknown command >"
 
     def _send(self, words: list[bytes], frames: list[tuple[int, bytes]]) -> None:
-        self._frames_from_s = -inf  # it is past its handshake
+        self._frames_from_s = -inf  # the client has completed its handshake
         try:
             can_id = int(words[1], 16)
             length = int(words[2], 16)

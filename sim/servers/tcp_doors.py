@@ -35,17 +35,17 @@ class SocketcandDoor:
 
     @property
     def place(self) -> Place:
-        """Where it is: bus@host:port."""
+        """Its address: bus@host:port."""
         return Place(SOCKETCAND, f"{BUS}@{address_of(self.listener)}")
 
     @property
     def taken(self) -> bool:
-        """A client is connected."""
+        """Whether a client is connected."""
         return self.connection is not None
 
     @property
     def due_s(self) -> float:
-        """When the next frame for the client arrives, s."""
+        """Arrival of the next frame for the client, s."""
         return inf if self.connection is None else self._wire.arrives_s
 
     def sources(self) -> Sequence[Readable]:
@@ -53,14 +53,14 @@ class SocketcandDoor:
         return [self.listener] if self.connection is None else [self.connection.socket, self.listener]
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Serve the client before those who want to become one."""
+        """Serve the client, then new connections."""
         if self.connection is not None and self.connection.socket in ready:
             self._take(now)
         if self.listener in ready:
             self._accept()
 
     def _accept(self) -> None:
-        """Let a client in, or turn it away where another one is connected."""
+        """Accept a client, or reject it if another one is connected."""
         connection = accepted(self.listener)
         if connection is None:
             return
@@ -72,7 +72,7 @@ class SocketcandDoor:
             connection.close()
 
     def _take(self, now: float) -> None:
-        """Put what the client sent on the bus."""
+        """Put the client's frames on the bus."""
         connection, session = self.connection, self._session
         if connection is None:
             return
@@ -86,7 +86,7 @@ class SocketcandDoor:
             self._close_client()
 
     def deliver(self, now: float) -> None:
-        """Send the client what has arrived; without one, frames pass unseen."""
+        """Send the client the frames that have arrived; without a client they are dropped."""
         connection, session = self.connection, self._session
         try:
             frames = self._wire.receive(now)
@@ -107,7 +107,7 @@ class SocketcandDoor:
             self.connection = None
 
     def close(self) -> None:
-        """Shut it."""
+        """Close it."""
         self.listener.close()
         self._close_client()
 
@@ -122,12 +122,12 @@ class GatewayDoor(ClientsDoor[ModbusSession]):
 
     @property
     def place(self) -> Place:
-        """Where it is: host:port."""
+        """Its address: host:port."""
         return Place(GATEWAY, address_of(self.listener))
 
     @property
     def due_s(self) -> float:
-        """When the gateway has something to do next, s."""
+        """Time when the gateway has work, s."""
         return self.gateway.due_s
 
     def serve(self, connection: Connection, session: ModbusSession, now: float) -> None:
@@ -149,6 +149,6 @@ class GatewayDoor(ClientsDoor[ModbusSession]):
 
 
 def address_of(listener: socket.socket) -> str:
-    """Return where a socket listens, as host:port."""
+    """Return the address of a listener, as host:port."""
     host, port = listener.getsockname()[:2]
     return f"{host}:{port}"

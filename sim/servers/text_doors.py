@@ -13,29 +13,29 @@ from sim.servers.doors import Place, Readable
 from sim.servers.tcp_doors import address_of
 
 LONGEST_LINE = 1024
-"""Characters of a command; who sends more without a line's end is no person."""
+"""Greatest length of a command, characters; a longer line does not come from a person."""
 MOST_CLIENTS = 4
 
 Command = Callable[[str, float], Sequence[str]]
-"""Does what a line says at a time (s of the rig), and returns the lines of its answer."""
+"""Carries out a line at a time (s of the rig), and returns the lines of its answer."""
 
 
 class TextLines:
-    """Splits what arrives into lines."""
+    """Splits received bytes into lines."""
 
     def __init__(self) -> None:
-        """Begin with an empty one."""
+        """Begin with an empty line."""
         self._buffer = b""
 
     def feed(self, data: bytes) -> list[str]:
-        """Return the lines that are complete."""
+        """Return the complete lines."""
         *lines, self._buffer = (self._buffer + data).split(b"\n")
         self._buffer = self._buffer[-LONGEST_LINE:]
         return [line[-LONGEST_LINE:].decode("utf-8", errors="replace").strip() for line in lines]
 
 
 class CommandDoor(ClientsDoor[TextLines]):
-    """Commands over TCP on loopback: one a line; the answer ends with an empty line."""
+    """Commands over TCP on loopback: one in each line; an empty line ends the answer."""
 
     due_s = inf
 
@@ -46,7 +46,7 @@ class CommandDoor(ClientsDoor[TextLines]):
 
     @property
     def place(self) -> Place:
-        """Where it is: host:port."""
+        """Its address: host:port."""
         return Place("commands", address_of(self.listener))
 
     def serve(self, connection: Connection, session: TextLines, now: float) -> None:
@@ -78,20 +78,20 @@ class StandardInput:
         return [sys.stdin] if self._open and _in_foreground(sys.stdin.fileno()) else []
 
     def read(self, ready: Collection[Readable], now: float) -> None:
-        """Do what was typed."""
+        """Carry out the typed commands."""
         if not self._open or sys.stdin not in ready:
             return
         try:
             data = os.read(sys.stdin.fileno(), LONGEST_LINE)
         except OSError:
             data = b""
-        self._open = bool(data)  # at its end the rig lives on, without commands
+        self._open = bool(data)  # at its end the rig continues without commands
         for line in self._lines.feed(data):
             for text in self._command(line, now):
                 self._say(text)
 
     def deliver(self, now: float) -> None:
-        """Pass nothing on."""
+        """Do nothing: answers are printed at once."""
 
     def close(self) -> None:
         """Leave standard input as it is."""

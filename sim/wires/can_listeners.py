@@ -1,4 +1,4 @@
-"""Who listens on a simulated CAN bus, and which cycle of frames all of them have taken already."""
+"""Listeners of a simulated CAN bus, and the cycle of frames that all of them have processed already."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def _rank(entry: tuple[int, object]) -> int:
 
 
 class CanListeners:
-    """The nodes of a bus and what they listen to; the bus itself (``sim.wires.can_wire.CanWire``) calls them."""
+    """The nodes of a bus and their listeners; the bus itself (``sim.wires.can_wire.CanWire``) calls them."""
 
     __slots__ = (
         "_cycle_ids",
@@ -34,7 +34,7 @@ class CanListeners:
     )
 
     def __init__(self, frame_s: tuple[float, ...]) -> None:
-        """Begin without listeners; ``frame_s``: s that a frame takes on the wire, by its number of bytes."""
+        """Begin without listeners; ``frame_s``: time of a frame on the wire, s, by its number of bytes."""
         self.nodes: list[WiredNode] = []
         self._frame_s = frame_s
         self._routes: dict[int, tuple[Listener, ...]] = {}
@@ -42,12 +42,12 @@ class CanListeners:
         self._followers: tuple[SyncFollower, ...] = ()
         self._ranked_followers: list[tuple[int, SyncFollower]] = []
         self._repeatable: set[int] = set()
-        self._taken: tuple[bytes, ...] | None = None  # payloads of a cycle that every listener has taken already
+        self._taken: tuple[bytes, ...] | None = None  # payloads of a cycle that every listener has processed
         self._cycle_ids: tuple[int, ...] = ()
         self._cycle_listeners: list[tuple[Listener, ...]] = []
         self._cycle_s = 0.0
-        self._cycled_s = -inf  # when that cycle last went unheard
-        self._skipped_s: dict[int, float] = {}  # the same of frames of earlier cycles
+        self._cycled_s = -inf  # when that cycle was last skipped by all listeners
+        self._skipped_s: dict[int, float] = {}  # the same for frames of earlier cycles
         self._offsets_s: tuple[float, ...] = ()
 
     def attach(self, node: WiredNode) -> None:
@@ -57,9 +57,9 @@ class CanListeners:
     def listen(self, can_id: int, listener: Listener, rank: int = 0, *, repeatable: bool = False) -> None:
         """Call ``listener`` for every frame of the computer with this identifier.
 
-        Listeners are called in the order of ``rank``: nodes that answer a broadcast at the same time give their
-        node id, because the lowest identifier wins the wire. ``repeatable``: the same data again mean nothing to the
-        listener; it need not be called for them (``forget_cycle``) and asks when they came (``skipped_s``).
+        Listeners are called in the order of ``rank``: nodes that answer a broadcast at the same time pass their
+        node id, because the lowest identifier wins the wire. ``repeatable``: the listener ignores unchanged data, so it
+        need not be called for them (``forget_cycle``) and asks for their time (``skipped_s``).
         """
         first = not self._routes.get(can_id)
         if repeatable and (first or can_id in self._repeatable):
@@ -80,41 +80,41 @@ class CanListeners:
         self._route(can_id, ranked)
 
     def forget_cycle(self) -> None:
-        """Have the next cycle taken by every listener, whatever it holds."""
+        """Make every listener process the next cycle, whatever its content."""
         if self._taken is not None:
             for can_id in self._cycle_ids:
                 self._skipped_s[can_id] = self._cycled_s
             self._taken = None
 
     def skipped_s(self, can_id: int) -> float:
-        """Return when a frame last went past its ``repeatable`` listeners because it held nothing new, s; or -inf."""
+        """Return when a frame last skipped its ``repeatable`` listeners because it held nothing new, s; or -inf."""
         if self._taken is not None and can_id in self._cycle_ids:
             return self._cycled_s
         return self._skipped_s.get(can_id, -inf)
 
     def follow(self, follower: SyncFollower, rank: int) -> None:
-        """Have a device answer SYNC, in the order of ``rank`` (its node id)."""
+        """Add a device that answers SYNC, in the order of ``rank`` (its node id)."""
         self._ranked_followers.append((rank, follower))
         self._ranked_followers.sort(key=_rank)
         self._adopt_followers(self._ranked_followers)
         self.forget_cycle()
 
     def unfollow(self, follower: SyncFollower) -> None:
-        """Let a device answer SYNC no more; nothing happens when it did not."""
+        """Remove a device that answers SYNC; nothing happens if it did not."""
         self._ranked_followers = [entry for entry in self._ranked_followers if entry[1] is not follower]
         self._adopt_followers(self._ranked_followers)
         self.forget_cycle()
 
     def _route(self, can_id: int, ranked: list[tuple[int, Listener]]) -> None:
-        """Take over who listens to an identifier."""
+        """Apply the new listeners of an identifier."""
         self._routes[can_id] = tuple(entry[1] for entry in ranked)
 
     def _adopt_followers(self, ranked: list[tuple[int, SyncFollower]]) -> None:
-        """Take over who answers SYNC."""
+        """Apply the new devices that answer SYNC."""
         self._followers = tuple(entry[1] for entry in ranked)
 
     def _remember(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...]) -> None:
-        """Note a cycle that was taken, if its frames need not be taken again while they stay the same."""
+        """Record a cycle that was processed, if its frames can be skipped while they stay the same."""
         self.forget_cycle()
         if not can_ids or can_ids[-1] != SYNC_ID or self._routes.get(SYNC_ID):
             return

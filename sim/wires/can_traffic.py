@@ -1,4 +1,4 @@
-"""What takes part in the traffic of a simulated CAN bus: listeners, devices that answer SYNC, periodic frames."""
+"""Participants in the traffic of a simulated CAN bus: listeners, devices that answer SYNC, periodic frames."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ class WiredNode(Protocol):
     due_s: float
 
     def advance(self, t0: float, t1: float) -> None:
-        """Move from ``t0`` to ``t1`` seconds, sending what falls due on the way."""
+        """Advance from ``t0`` to ``t1`` seconds, and send the frames that fall due."""
         ...
 
 
 class SyncFollower(ABC):
     """A device that answers SYNC.
 
-    ``plain``: nothing but one TPDO goes with the next SYNC: ``sample`` under ``sample_id``, or what ``take_sample``
-    returns where it is ``stale``.
+    ``plain``: the next SYNC needs only one TPDO, ``sample`` under ``sample_id``; if that is ``stale``, the result of
+    ``take_sample``.
     """
 
     __slots__ = ("plain", "sample", "sample_id", "stale", "take_sample")
 
     def __init__(self, take_sample: Callable[[], bytes]) -> None:
-        """Not ``plain``: answer by ``on_sync``."""
+        """Begin not ``plain``: the device answers by ``on_sync``."""
         self.plain = False
         self.stale = True
         self.sample = b""
@@ -44,7 +44,7 @@ class SyncFollower(ABC):
 
 
 class Beat:
-    """A frame that a node sends in a fixed period, by itself; ``due_s`` is when it is sent next."""
+    """A frame that a node sends by itself in a fixed period; ``due_s`` is its next time."""
 
     __slots__ = ("can_id", "data", "due_s", "period_s")
 

@@ -1,9 +1,9 @@
-"""A CAN bus in place: the computer's frames reach the simulated nodes at once, with computed wire times.
+"""A CAN bus without a scheduler: the computer's frames reach the simulated nodes at once, with computed wire times.
 
-Nothing is scheduled: a frame that is sent is given its start (when the wire is free) and its arrival (start plus
-worst-case wire time), the nodes that listen to its identifier are called with the arrival time, and what they answer
-is queued for the computer with its own arrival time. Frames a node sends by itself (heartbeats, emergencies, delayed
-answers) wait in time order until the wire is read, so they win and lose the wire in the order of their times.
+A frame that is sent gets its start (when the wire is free) and its arrival (start plus worst-case wire time). The
+nodes that listen to its identifier are called with the arrival time, and their answers
+are queued for the computer with their own arrival times. Frames that a node sends by itself (heartbeats, emergencies,
+delayed answers) wait in time order until the wire is read, so they win and lose the wire in the order of their times.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _LOAD_MARK_S: Final = 0.1
 
 
 def _same_lengths(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> bool:
-    """Return whether the frames of two cycles are as long as each other: with equal identifiers, equal times."""
+    """Return whether the frames of two cycles have equal lengths: with equal identifiers, their times are equal."""
     if len(payloads) != len(others):
         return False
     same = True
@@ -37,8 +37,8 @@ class CanWire(CanListeners):
     """The bus and the computer's port on it (``drivers.ports.CanPort``).
 
     ``urgent_s`` is the arrival time of the earliest urgent frame not yet received (emergency, boot-up, change of a
-    drive's state, input change), infinity if there is none. ``ready_s`` is when the next frame that a node sends by
-    itself asks for the wire. ``watchers`` are called for every frame in both directions, with its arrival.
+    drive's state, input change), infinity if there is none. ``ready_s`` is the time when the next frame that a node
+    sends by itself needs the wire. ``watchers`` are called for every frame in both directions, with its arrival.
     """
 
     __slots__ = (
@@ -79,7 +79,7 @@ class CanWire(CanListeners):
     # the computer's side -------------------------------------------------------------------------------------
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
-        """Put a frame on the wire at ``now`` s or when it is free; every listening node is called in place.
+        """Put a frame on the wire at ``now`` s or when it is free; call every listening node at once.
 
         Raises BusLost when the adapter is disconnected and ValueError for more than 8 bytes.
         """
@@ -107,8 +107,8 @@ class CanWire(CanListeners):
     def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
         """Send the frames of a bus cycle one after the other.
 
-        A frame that its listeners have taken already only takes its time on the wire: equal process data mean nothing
-        new to a drive. SYNC is answered as ever.
+        A frame that its listeners have processed already only occupies the wire: a drive ignores unchanged process
+        data. SYNC is answered as always.
         """
         taken = self._taken
         if (
@@ -170,7 +170,7 @@ class CanWire(CanListeners):
         self.urgent_s = inf
 
     def reconnect(self) -> None:
-        """Plug the adapter in again; what was sent meanwhile stays lost."""
+        """Plug the adapter in again; frames sent meanwhile stay lost."""
         self.connected = True
 
     # the nodes' side -----------------------------------------------------------------------------------------
@@ -182,16 +182,16 @@ class CanWire(CanListeners):
         self._find_ready()
 
     def unbeat(self, beat: Beat, t: float) -> None:
-        """End a periodic frame at ``t`` s; nothing happens when it was not sent."""
+        """End a periodic frame at ``t`` s; nothing happens if it was not being sent."""
         if self.ready_s <= t:
             self.settle(t)
         self._beats = [other for other in self._beats if other is not beat]
         self._find_ready()
 
     def transmit(self, can_id: int, data: bytes, t: float, urgent: bool = False) -> None:
-        """Send a node's frame to the computer, ready to go at ``t`` s.
+        """Send a node's frame to the computer, ready at ``t`` s.
 
-        A frame ready while the wire is busy follows at once; one ready later waits for its time, so that nodes may
+        A frame that is ready while the wire is busy follows at once; a later frame waits for its time. So nodes may
         be advanced one after the other over the same interval.
         """
         start = self._busy_s
@@ -225,7 +225,7 @@ class CanWire(CanListeners):
 
     @property
     def arrives_s(self) -> float:
-        """Arrival of the next frame not received yet, s: the earliest it can have; infinity when none is under way."""
+        """Earliest arrival of the next frame not received yet, s; infinity when none is under way."""
         arrival = self.ready_s + self._frame_s[0]
         if self._inbox and self._inbox[0][0] < arrival:
             arrival = self._inbox[0][0]
@@ -233,7 +233,7 @@ class CanWire(CanListeners):
 
     @property
     def load(self) -> float:
-        """Share of the last second the wire was occupied, 0..1 (worst-case stuffing), as of the last receive."""
+        """Share of the last second that the wire was occupied, 0..1 (worst-case stuffing), as of the last receive."""
         if len(self._marks) < 2:
             return 0.0
         (t0, occupied0), (t1, occupied1) = self._marks[0], self._marks[-1]
@@ -246,7 +246,7 @@ class CanWire(CanListeners):
             watcher(t, can_id, data, sent)
 
     def _answer(self, t: float) -> None:
-        """Have every device answer a SYNC that arrived at ``t`` s; the lowest identifier goes first."""
+        """Let every device answer a SYNC that arrived at ``t`` s; the lowest identifier is first."""
         inbox, frame_s = self._inbox, self._frame_s
         quick = self.connected and not self.watchers
         arrival = self._busy_s
@@ -298,7 +298,7 @@ class CanWire(CanListeners):
             self._find_urgent(now)
 
     def _queue(self, beat: Beat) -> None:
-        """Put a periodic frame where its time, then its identifier, belongs: nearly always at the end."""
+        """Insert a periodic frame by its time, then its identifier: nearly always at the end."""
         beats = self._beats
         at = len(beats)
         while at > 0:
@@ -318,7 +318,7 @@ class CanWire(CanListeners):
             self.urgent_s = arrival
 
     def _find_urgent(self, now: float) -> None:
-        """Find the earliest urgent arrival after ``now`` s; waiting frames count with the earliest they can have."""
+        """Find the earliest urgent arrival after ``now`` s; waiting frames count with their earliest possible one."""
         self._urgent = [t for t in self._urgent if t > now]
         earliest = min(self._urgent, default=inf)
         if self.connected:
@@ -328,7 +328,7 @@ class CanWire(CanListeners):
         self.urgent_s = earliest
 
     def _mark(self, now: float) -> None:
-        """Note the occupation so far; marks older than one second before ``now`` go."""
+        """Record the occupation so far; drop marks older than one second before ``now``."""
         marks = self._marks
         marks.append((now, self.occupied_s))
         while len(marks) > 2 and marks[1][0] <= now - 1.0 + 1e-9:

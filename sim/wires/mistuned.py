@@ -1,4 +1,4 @@
-"""Ports of a computer whose adapter is not set as the devices on its wire are: no device understands it."""
+"""Ports of a computer whose adapter has other settings than the devices on its wire: no device understands it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ class MistunedCan(FrameByFrame):
     """A CAN adapter at another bit rate than its bus: no frame is acknowledged, and its controller goes bus-off."""
 
     def __init__(self) -> None:
-        """Nothing has been sent."""
+        """Begin before the first frame."""
         super().__init__()
         self.bus_off = False
 
@@ -28,7 +28,7 @@ class MistunedCan(FrameByFrame):
 
 
 class MistunedLine(WatchedLine):
-    """A serial port at another speed or parity than its devices: they take no frame for one, and are silent."""
+    """A serial port at another speed or parity than its devices: they recognise no frame, and are silent."""
 
     def write(self, data: bytes, now: float) -> None:
         """Send bytes that no device understands."""

@@ -1,7 +1,7 @@
-"""A Modbus RTU line in place: the computer's request reaches the simulated slaves at once, with computed wire times.
+"""A Modbus RTU line without a scheduler: the computer's request reaches the simulated slaves at once, with wire times.
 
-Nothing is scheduled: a request is given its arrival (its length on the wire and the silence that ends a frame), the
-slave it is for answers with its registers as they are then, and the reply is queued with its own arrival time.
+A request gets its arrival (its length on the wire and the silence that ends a frame). The addressed
+slave answers with its registers at that time, and the reply is queued with its own arrival time.
 """
 
 from __future__ import annotations
@@ -19,35 +19,35 @@ Kind = Literal[
     "silence", "lost", "late", "corrupt", "truncate", "split", "noise", "wrong_id", "stale", "exception",
     "swapped", "torn", "merged",
 ]  # fmt: skip
-"""What happens to a transaction:
+"""Faults of a transaction:
 
 ``silence`` the slave does not get the request; ``lost`` it acts, the reply is lost; ``late`` the reply comes
 ``delay_s`` later; ``corrupt`` one bit of it is wrong; ``truncate`` its end is missing; ``split`` its second half comes
-``delay_s`` later; ``noise`` a few bytes come before it; ``wrong_id`` it carries another address; ``stale`` the reply to
+``delay_s`` later; ``noise`` a few bytes come before it; ``wrong_id`` it has another address; ``stale`` the reply to
 the request before is sent again; ``exception`` the slave answers with exception ``code`` and does nothing; ``swapped``
-each pair of registers comes in the other order; ``torn`` each pair has its first register from the reply before, as far
-as the device had come with writing it; ``merged`` the reply is kept, and comes in one piece with the next one.
+each pair of registers comes in the other order; ``torn`` the first register of each pair is from the reply before, as
+if the device had not finished writing it; ``merged`` the reply is kept, and comes in one piece with the next one.
 """
 
 
 @dataclass(slots=True)
 class Impairment:
-    """What is wrong with a line: the next ``count`` transactions (-1 = all) of one slave, after ``skip`` good ones."""
+    """A fault of a line: the next ``count`` transactions (-1 = all) of one slave, after ``skip`` good ones."""
 
     kind: Kind
     count: int = 1
     unit_id: int = 0
-    """Slave it concerns; 0 = every one."""
+    """Address of the faulty slave; 0 = every slave."""
     skip: int = 0
     delay_s: float = 0.05
     code: int = 4
     kept: bytes = b""
     """A reply that waits for the next one."""
     besides: Impairment | None = None
-    """What was wrong with the line before: it strikes where this one does not."""
+    """The earlier fault of the line: it applies where this one does not."""
 
     def striking(self, unit_id: int) -> Impairment | None:
-        """Return which impairment concerns this transaction, and count it there."""
+        """Return the impairment that applies to this transaction, and count the transaction there."""
         impairment: Impairment | None = self
         while impairment is not None:
             if impairment.strikes(unit_id):
@@ -56,7 +56,7 @@ class Impairment:
         return None
 
     def strikes(self, unit_id: int) -> bool:
-        """Return whether this transaction is concerned, and count it."""
+        """Return whether the impairment applies to this transaction, and count it."""
         if self.count == 0 or self.unit_id not in (0, unit_id):
             return False
         if self.skip > 0:
@@ -70,10 +70,10 @@ class Impairment:
 class ModbusWire:
     """The line and the computer's port on it (``drivers.ports.LinePort``).
 
-    ``watchers`` are called for every frame either way; ``impair`` spoils transactions; ``occupied_s`` is how long
-    the line has carried characters, ``collisions`` how often the computer spoke while a slave did. The computer's
-    adapter may hold back what it receives, as a USB adapter's latency timer does. ``arrives_s`` is
-    when the next bytes not read yet arrive, s: infinity when none are on their way, -infinity when a read would raise.
+    ``watchers`` are called for every frame either way; ``impair`` spoils transactions; ``occupied_s`` is the time
+    for which the line has carried characters, ``collisions`` counts requests sent during a reply. The computer's
+    adapter may hold received bytes back, like a USB adapter with its latency timer. ``arrives_s`` is the arrival
+    of the next unread bytes, s: infinity when none are on their way, -infinity when a read would raise.
     """
 
     def __init__(
@@ -85,8 +85,8 @@ class ModbusWire:
     ) -> None:
         """Create a quiet line at ``baud`` bit/s with 8 data bits and 1 stop bit, and put ``slaves`` on it.
 
-        ``held_s``: the adapter hands everything over this much after its last character, s. A real latency timer takes
-        0 to its whole time by chance: this is the worst of it.
+        ``held_s``: the adapter delivers everything this long after its last character, s. A real latency timer takes
+        0 to its whole time by chance: this is the worst case.
         """
         self._held_s = held_s
         self.baud = baud
@@ -109,11 +109,11 @@ class ModbusWire:
 
     @property
     def remedy(self) -> str:
-        """What makes the computer's adapter deliver at once."""
+        """Advice that makes the computer's adapter deliver at once."""
         return "lower sim.latency_timer"
 
     def attach(self, slave: ModbusSlave) -> None:
-        """Put a slave on the line. Raises ValueError when its address is taken."""
+        """Put a slave on the line. Raises ValueError if its address is taken."""
         if slave.unit_id in self._slaves:
             raise ValueError(f"two slaves have Modbus address {slave.unit_id}")
         self._slaves[slave.unit_id] = slave
@@ -125,7 +125,7 @@ class ModbusWire:
     # the computer's side ---------------------------------------------------------------------------------------
 
     def write(self, data: bytes, now: float) -> None:
-        """Send a frame at ``now`` s; the slave answers in place. Raises BusLost when disconnected."""
+        """Send a frame at ``now`` s; the slave answers at once. Raises BusLost when disconnected."""
         if not self.connected:
             raise BusLost("the simulated serial adapter is disconnected")
         length_s = len(data) * self.character_s
@@ -154,7 +154,7 @@ class ModbusWire:
         if reply is None:
             self._busy_s = end
             return
-        # As ``_reply`` does; by itself because nearly every transaction ends here.
+        # As in ``_reply``, but written out here: nearly every transaction ends here.
         length_s = len(reply) * self.character_s
         self._busy_s = arrival = t + slave.turnaround_s + length_s
         self.occupied_s += length_s
@@ -188,7 +188,7 @@ class ModbusWire:
         return add_watcher(self.watchers, watcher)
 
     def disconnect(self) -> None:
-        """Unplug the computer's adapter: what is under way is lost, and every call raises BusLost."""
+        """Unplug the computer's adapter: bytes under way are lost, and every call raises BusLost."""
         self.connected = False
         self._inbox = []
         self.arrives_s = -inf
@@ -205,7 +205,7 @@ class ModbusWire:
             watcher(t, data, sent)
 
     def _reply(self, reply: bytes, start: float) -> None:
-        """Let a slave send from ``start`` s."""
+        """Send a slave's reply from ``start`` s."""
         length_s = len(reply) * self.character_s
         arrival = start + length_s
         self._busy_s = arrival
@@ -219,7 +219,7 @@ class ModbusWire:
             self.arrives_s = arrival
 
     def _collide(self, now: float, end: float) -> None:
-        """Two talk at once: the request is not understood, and the rest of the reply is not either."""
+        """Handle two senders at once: the request and the rest of the reply are garbled."""
         self.collisions += 1
         self._inbox = [
             (t, data) if t <= now else (t, bytes(byte ^ 0x55 for byte in data)) for t, data in self._inbox
@@ -227,7 +227,7 @@ class ModbusWire:
         self._busy_s = max(self._busy_s, end)
 
     def _spoil(self, impairment: Impairment, slave: ModbusSlave, data: bytes, t: float) -> None:
-        """Do to a transaction what is wrong with the line."""
+        """Apply the line's fault to a transaction."""
         kind = impairment.kind
         start = t + slave.turnaround_s
         before = self._last_reply
@@ -242,7 +242,7 @@ class ModbusWire:
             return
         half = len(reply) // 2
         if kind == "late":
-            # Others may talk before it: the line is busy when it comes, not until then.
+            # Other devices may send before it: the line is busy when it comes, not until then.
             self._reply(reply, start + impairment.delay_s)
             self._busy_s = t
         elif kind == "split":
@@ -273,9 +273,10 @@ class ModbusWire:
 
 
 def _in_pairs(before: bytes, reply: bytes, *, swap: bool) -> bytes:
-    """Return a reply to a read with its registers put together anew, two by two; every other reply as it is.
+    """Return a reply to a read with its registers combined anew, in pairs; every other reply unchanged.
 
-    The first of each pair is that of ``before``, a reply of the same shape, or with ``swap`` the second one.
+    The first register of each pair is that of ``before``, a reply of the same shape; with ``swap`` it is the second
+    one.
     """
     head, data = reply[:3], reply[3:-2]
     if reply[1] not in (READ_HOLDING, READ_INPUT) or reply[2] != len(data) or before[:3] != head:

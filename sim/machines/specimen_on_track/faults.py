@@ -1,7 +1,7 @@
 """Faults of a specimen on a track: the catalogue, its effects, and the language of its scripts.
 
-Budgets count from the onset, or from when the fault can be noticed, to the safe commands, with one scan of 50 ms at the
-slow rate on top; all are [A].
+Budgets count up to the safe commands, from the onset or from the time when the fault can be noticed, with one scan of
+50 ms at the slow rate added; all are [A].
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ AXES: Final = ("track", "lift")
 
 
 class Onset(Enum):
-    """The earliest time at which a fault of this machine shows: its budget counts from then on."""
+    """The earliest time at which a fault of this machine can be noticed: its budget counts from then on."""
 
     ALWAYS = "at once, once the run has begun"
     DRIVES = "at once, once every drive is configured"
@@ -48,16 +48,16 @@ class Onset(Enum):
 
 
 class TrackOverspeeds(drives.Runaway):
-    """The track moves by itself whenever its power stage is on, whatever is commanded."""
+    """The track moves by itself whenever its power stage is on, whatever the command."""
 
     __slots__ = ()
 
     def __init__(self, mm_s: float) -> None:
-        """At this speed, mm/s."""
+        """Take the speed, mm/s."""
         super().__init__("track", mm_s)
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Override what was commanded, in the track's own unit."""
+        """Override the command, in the track's own unit."""
         rig = scene.machine(TrackRig)
         axis = rig.axes["track"].axis
         if rig.axes["track"].energised and isinstance(axis, VelocityAxis):
@@ -66,13 +66,13 @@ class TrackOverspeeds(drives.Runaway):
 
 @switched
 def track_rubs_otherwise(scene: Scene, on: bool, now: float, percent: float) -> None:
-    """The track has ``percent`` of its first friction: another place of it, dust."""
+    """The track has ``percent`` of its original friction: another place on it, dust."""
     scene.machine(TrackRig).plant.grip = max(0.01 * percent, 0.0) if on else 1.0
 
 
 @switched
 def end_switch_dead(scene: Scene, on: bool, now: float) -> None:
-    """The end switches open nothing any more."""
+    """The end switches no longer open the safety chain."""
     scene.machine(TrackRig).switches_work = not on
 
 
@@ -91,7 +91,7 @@ def _drive_rows() -> Iterator[FaultKind]:
 
 
 _SILENT_S: Final = {"load cell": (Onset.SLIDING, 0.2 + SCAN_S), "chamber": (Onset.TEMPERED, 3.0 + SCAN_S)}
-"""When the readings of a device are needed, and their age at which they are stale with the row's delay, s."""
+"""For each device: when its readings are needed, and the age at which they are stale plus the row's delay, s."""
 
 
 _CELL: Final = partial(SensorFault, "load cell", force="fx")

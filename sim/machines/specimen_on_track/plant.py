@@ -1,11 +1,11 @@
 """The plant: a specimen on an arm, loaded by weights, on a track that moves under it.
 
-The arm holds the specimen back through a spring (arm, cell, rubber). While the contact sticks, the spring is drawn out
-by as much as the track moves; at the limit it slides. The limit is the law's coefficient at the track's speed and the
-specimen's temperature times the load, and above it by ``static_excess`` after a rest, a share that goes with the
-sliding distance. Air and specimen are one lump of heat each; flashes of temperature at the asperities are not modelled.
-Below some mm/s friction heats nothing: 20 N at 10 mm/s and mu = 2 are 0.4 W, of which the specimen's share warms it by
-0.2 K.
+The arm holds the specimen back through a spring (arm, cell, rubber). While the contact sticks, the track's movement
+extends the spring; at the force limit the contact slides. The limit is the load times the law's coefficient at the
+track's speed and the specimen's temperature. After a rest it is higher by the share ``static_excess``, which vanishes
+with the sliding distance. Air and specimen are one lump of heat each; flashes of temperature at the asperities are not
+modelled. Below some mm/s friction heats nothing: 20 N at 10 mm/s and mu = 2 are 0.4 W, and the specimen's share of that
+warms it by 0.2 K.
 Every public attribute is the truth.
 """
 
@@ -40,7 +40,7 @@ class TrackPlant:
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
-        """Build a rig at ambient temperature without a specimen; draw what stays the same for the session."""
+        """Build a rig at ambient temperature without a specimen; draw the numbers that stay for the session."""
         p = parameters
         self.parameters = p
         self._seed = seed
@@ -56,12 +56,12 @@ class TrackPlant:
         self._pyrometer.reset(p.ambient)
         self._air.reset(p.ambient)
         self.setting: LawSetting = NO_SETTING
-        """Where a law that is made of materials finds them."""
+        """Source of the materials for a law that is made of materials."""
         self._dry: FrictionLaw | None = None
         self._law: FrictionLaw | None = None
         self._specimen = self._repeat = 1.0
         self.grip = 1.0
-        """What the track has of the friction that it had at first."""
+        """Share of its original friction that the track has."""
         self._stick_slip: StickSlip | None = None
         if p.stick_slip > 0.0:
             self._stick_slip = StickSlip(p.stick_slip, p.stick_slip_frequency, unused)
@@ -78,7 +78,7 @@ class TrackPlant:
     def install(self, specimen: int, compound: str) -> None:
         """Put a specimen in (``specimen`` keys its scatter), at ambient temperature.
 
-        Raises ValueError for a rubber that the parameters, or the setting's materials, do not have.
+        Raises ValueError for a rubber that is missing in the parameters, or in the setting's materials.
         """
         self._dry = self.parameters.friction_of(compound, self.setting)
         self._law = self.parameters.contact.through(self._dry, self.interface)
@@ -91,7 +91,7 @@ class TrackPlant:
         self._key_streams()
 
     def put_on(self, weights_n: float) -> None:
-        """Hang weights on the arm, N (with the arm's own weight, which is balanced otherwise). Raises ValueError."""
+        """Put weights on the arm, N (including the arm's own weight if it is not balanced). Raises ValueError."""
         if not 0.0 <= weights_n < float("inf"):
             raise ValueError(f"weights must be finite and at least 0 N, not {weights_n!r}")
         self.weights_n = weights_n
@@ -120,9 +120,10 @@ class TrackPlant:
     # time ----------------------------------------------------------------------------------------------------
 
     def advance(self, dt: float, track_m_s: float, lift_mm: float, chamber_percent: float) -> None:
-        """Move on by ``dt`` s with the track's speed and the arm's position as at its end, and the chamber's output.
+        """Advance by ``dt`` s; the track's speed and the arm's position are those at the end.
 
-        ``lift_mm`` is 0 lowered; ``chamber_percent`` -100 (cooling) to 100, without meaning where nothing is enclosed.
+        ``lift_mm`` is 0 when lowered; ``chamber_percent`` is the chamber's output, -100 (cooling) to 100, without
+        meaning if the specimen is not enclosed.
         """
         contact = self.parameters.contact
         pressed = (contact.touch - lift_mm) / contact.touch
@@ -134,13 +135,13 @@ class TrackPlant:
         self._warm(dt, chamber_percent)
 
     def _rub(self, dt: float, track_m_s: float, law: FrictionLaw) -> None:
-        """Draw the spring out, or slide at the limit."""
+        """Extend the spring, or slide at the limit."""
         self.slip_m_s = self.power_w = 0.0
         if track_m_s == 0.0:
             self._since_rest_m = 0.0
             limit_n = self.load_n * self.mu * (1.0 + self.parameters.contact.static_excess)
             if abs(self.force_n) > limit_n:
-                self.force_n = copysign(limit_n, self.force_n)  # the load has become less
+                self.force_n = copysign(limit_n, self.force_n)  # the load has decreased
             return
         contact, speed = self.parameters.contact, abs(track_m_s)
         mu = law.mu(self.specimen_c, self.load_n, speed) * self._specimen * self._repeat * self.grip
@@ -151,7 +152,7 @@ class TrackPlant:
         drawn_n = self.force_n + stiffness_n_m * moved_m
         length_m = 1e-3 * contact.static_length
         if self._since_rest_m > 0.0 and drawn_n * track_m_s < 0.0:
-            self._since_rest_m = 0.0  # turned back: the contact holds until the spring is drawn the other way
+            self._since_rest_m = 0.0  # reversal: the contact holds until the spring is extended the other way
         excess = 0.0
         if self._since_rest_m < _SHEDDING_OVER * length_m:
             excess = contact.static_excess * exp(-self._since_rest_m / length_m)
@@ -168,12 +169,12 @@ class TrackPlant:
         self.power_w = limit_n * self.slip_m_s
 
     def _release(self) -> None:
-        """Take all force off; the next touch begins as after a rest."""
+        """Set all forces to 0; the next touch begins as after a rest."""
         self.force_n = self.load_n = self.slip_m_s = self.power_w = self.mu = 0.0
         self._since_rest_m = 0.0
 
     def _warm(self, dt: float, chamber_percent: float) -> None:
-        """Let air and specimen follow for ``dt`` s, exactly for powers that stay the same meanwhile."""
+        """Advance the temperatures of air and specimen by ``dt`` s, exactly for constant powers."""
         p, h = self.parameters, self.parameters.heat
         if p.enclosed:
             goal_c = p.ambient + 0.01 * chamber_percent * h.chamber_rate * h.chamber_time
@@ -188,13 +189,13 @@ class TrackPlant:
 
     @property
     def exit_c(self) -> float:
-        """Temperature of the track's surface where it leaves the contact, degC."""
+        """Temperature of the track's surface at the exit edge of the contact, degC."""
         return self.specimen_c + self.parameters.heat.exit_rise * self.power_w
 
-    # what the sensors see ------------------------------------------------------------------------------------
+    # readings of the sensors ---------------------------------------------------------------------------------
 
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
-        """Return what the cell reads now: the tangential force in N as the first of four channels."""
+        """Return the cell's present readings: the tangential force in N as the first of four channels."""
         s = self.parameters.sensors
         seen_n = self.force_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
         rms_n = self.parameters.noise * s.force_rms
@@ -203,9 +204,9 @@ class TrackPlant:
         return min(max(seen_n, -s.force_range), s.force_range), 0.0, 0.0, 0.0
 
     def controller_measured_c(self, t: float) -> float:
-        """Return what the chamber's sensor reads now, degC."""
+        """Return the present reading of the chamber's sensor, degC."""
         return self._air.measure()
 
     def surface_measured_c(self, t: float) -> float:
-        """Return what the pyrometer at the contact's exit edge reads now, degC."""
+        """Return the present reading of the pyrometer at the contact's exit edge, degC."""
         return self._pyrometer.measure()

@@ -1,7 +1,7 @@
 """The rig of a specimen on a track: drives, end switches and stops of the travel, and the sensors on their wires.
 
-A linear track runs between two stops. Its end switches, a little before them, open the safety chain at the drive with
-the inputs; an attendant moves the track back by hand.
+A linear track runs between two stops. The end switches, a little before the stops, open the safety chain at the drive
+with the inputs; an attendant moves the track back by hand.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from sim.wires.can_wire import CanWire
 TRACK_LAG_S: Final = 0.004
 """Lag of the track behind its velocity command, s [A]."""
 TRACK_LEVER_M: Final = 0.05
-"""Torque at the track's drive by force at the specimen, m [A]."""
+"""Torque at the track's drive per force at the specimen, m [A]."""
 _METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
 """Metres in the track's unit of length."""
 WORDS: Final = {
     "load_cell": "load cell", "chamber": "chamber", "pyrometer": "pyrometer", "thermometer": "thermometer",
 }  # fmt: skip
-"""Names of the devices for people, by their keys in the wiring."""
+"""Names of the devices for people, by the keys in the wiring."""
 
 
 class AmbientAir:
     """The air that a thermometer beside the rig measures."""
 
     def __init__(self, plant: TrackPlant) -> None:
-        """``plant``: the one whose room it is."""
+        """Take the plant, for its room temperature."""
         self._plant = plant
 
     def surface_measured_c(self, t: float) -> float:
@@ -48,21 +48,21 @@ class TrackRig(SimRig):
     """A friction tester with a specimen on a track, on simulated wires.
 
     Drives: track (mm/s or m/s at the specimen), and lift (mm, 0 lowered) unless the arm is moved by hand. Devices by
-    their keys in the wiring: load_cell, and any of chamber, pyrometer, thermometer. The other methods are the
-    attendant's hands.
+    their keys in the wiring: load_cell, and any of chamber, pyrometer, thermometer. The other methods are the actions
+    of the attendant.
     """
 
     def __init__(
         self, spec: RigSpec, parameters: TrackParameters, seed: int, can_wire: type[CanWire] = CanWire
     ) -> None:
-        """Switch everything on at time 0, the arm raised; ``can_wire``: the kind of bus, as for faults.
+        """Switch everything on at time 0, the arm raised; ``can_wire``: the class of the bus, another one for faults.
 
         Raises UnknownQuantityError for a further sensor of a quantity that the plant does not have.
         """
         self.plant = TrackPlant(parameters, seed)
         self._raised_mm = parameters.contact.lift_travel
         self.hand_mm = self._raised_mm
-        """Place of an arm without a drive, mm."""
+        """Position of an arm without a drive, mm."""
         can = can_wire(spec.bitrate)
         axes = {name: self._drive(name, config, can) for name, config in spec.axes.items()}
         wired = {name: self._device(name, spec.devices[name]) for name in WORDS if name in spec.devices}
@@ -76,10 +76,10 @@ class TrackRig(SimRig):
         """Metres in the track's unit of length."""
         self._linear = parameters.motion == "linear"
         self.switches_work = True
-        """The end switches work."""
+        """Whether the end switches work."""
         self.beyond_switch = False
         self.hit_stop = False
-        """The track has hit a stop of its travel."""
+        """Whether the track has hit a stop of its travel."""
         self._plant_s = 0.0
 
     def _drive(self, name: str, config: AxisConfig, can: CanWire) -> Cia402Slave:
@@ -104,14 +104,14 @@ class TrackRig(SimRig):
             return IrSlave(profile, unit_id, self.plant, sensor_c=self.plant.parameters.ambient)
         return IrSlave(profile, unit_id, AmbientAir(self.plant), sensor_c=self.plant.parameters.ambient)
 
-    # -- the wires' side ------------------------------------------------------------------------------------------
+    # -- interface to the wires -----------------------------------------------------------------------------------
 
     @property
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
         return self.plant.parameters.ambient
 
-    # -- the machine's side ---------------------------------------------------------------------------------------
+    # -- mechanics ------------------------------------------------------------------------------------------------
 
     @property
     def track_m_s(self) -> float:
@@ -120,7 +120,7 @@ class TrackRig(SimRig):
 
     @property
     def lift_mm(self) -> float:
-        """Place of the arm, mm: 0 lowered."""
+        """Position of the arm, mm: 0 lowered."""
         return self._lift.axis.position if self._lift is not None else self.hand_mm
 
     def follow(self, t1: float, still: bool) -> None:
@@ -136,7 +136,7 @@ class TrackRig(SimRig):
             self._look_at_the_ends()
 
     def _look_at_the_ends(self) -> None:
-        """Open or close the end switches, and note a stop that was hit."""
+        """Open or close the end switches, and note a hit on a stop."""
         p = self.plant.parameters
         at_mm = self._track.axis.position * self.metres * 1e3
         if at_mm <= 0.0 or at_mm >= p.travel:
@@ -151,17 +151,17 @@ class TrackRig(SimRig):
 
     @property
     def of_materials(self) -> bool:
-        """Whether friction is made of a rubber and a surface, whose place ``take`` sets."""
+        """Whether the friction law is made of a rubber and a surface; ``take`` sets their source."""
         return self.plant.parameters.of_materials
 
     def take(self, setting: LawSetting) -> None:
-        """Set the place of the materials, before a specimen is mounted."""
+        """Set the source of the materials, before a specimen is mounted."""
         self.plant.setting = setting
 
-    # -- the attendant's hands ------------------------------------------------------------------------------------
+    # -- actions of the attendant ---------------------------------------------------------------------------------
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
-        """Put specimen number ``specimen`` of a rubber on the arm; ``wheel`` and ``new_specimen`` mean nothing here."""
+        """Put specimen ``specimen`` of a rubber on the arm; ``wheel`` and ``new_specimen`` have no effect here."""
         self.plant.install(specimen, compound)
 
     def put_on(self, weights_n: float) -> None:

@@ -1,8 +1,8 @@
-"""When heat flows in the plant: short explicit steps while something happens, long implicit ones while nothing does.
+"""Time steps of the heat in the plant: short explicit steps after a disturbance, long implicit steps when calm.
 
-Powers are summed up tick by tick and flow, as their mean, in steps of the thermal model's own. After some seconds
-without friction, and without a change of what touches or turns, the fast parts of the temperature profile have died
-away and the implicit step of ``sim.thermal`` serves as well at a fifth of the work.
+Powers are summed tick by tick, and their mean is applied in the thermal model's own steps. After some seconds without
+friction and without a change of contact or rotation, the fast parts of the temperature profile have decayed. Then the
+implicit step of ``sim.physics.thermal`` is as good, at a fifth of the work.
 """
 
 from __future__ import annotations
@@ -14,21 +14,21 @@ from sim.physics.thermal import CALM_STEP_S, ThermalModel
 from sim.sensors import TemperatureSensor
 
 CALM_AFTER_S: Final = 5.0
-"""Time without a disturbance after which all is calm: then both steps agree within 0.02 K, on the hot rig too."""
+"""Time without a disturbance after which heat is calm: then both steps agree within 0.02 K, on the hot rig too."""
 CALM_FRICTION_W: Final = 1.0
-"""Friction that is no disturbance: rolling at 200 N with 4 mm/s of slip."""
+"""Friction power that is no disturbance: rolling at 200 N with 4 mm/s of slip."""
 SAME_STEP_S: Final = 1e-9
-"""Ticks whose lengths differ by less share their step constants: a float clock's differences are never quite equal."""
+"""Ticks share step constants if their lengths differ by less: differences of a float clock are never quite equal."""
 
 
 class HeatFlow:
-    """Temperatures of wheel, hub and belt (``state``), and what follows them: the hub's sensor and the load cell.
+    """Temperatures of wheel, hub and belt (``state``), and their followers: the hub's sensor and the load cell.
 
-    ``rubber_c`` is the rubber's mean temperature as of the last flow of heat, degC.
+    ``rubber_c`` is the rubber's mean temperature after the last thermal step, degC.
     """
 
     def __init__(self, model: ThermalModel, ambient_c: float, sensor: TemperatureSensor, cell: LoadCellSensor) -> None:
-        """Start with everything at ambient temperature, nothing touching or turning."""
+        """Begin with everything at ambient temperature, without contact and rotation."""
         self._model = model
         self._ambient_c = ambient_c
         self._sensor = sensor
@@ -43,7 +43,7 @@ class HeatFlow:
         self.restart()
 
     def restart(self) -> None:
-        """Begin anew with the temperatures as they are: another wheel is on."""
+        """Begin anew with the temperatures as they are, after a change of the wheel."""
         self._key = 0
         self._gains = self._every_gains[0]
         self._pending_s = self._heater_j = self._friction_j = self._touch_s = 0.0
@@ -52,7 +52,7 @@ class HeatFlow:
         self._stir()
 
     def advance(self, dt: float, heater_w: float, friction_w: float, touching: bool, rotating: bool) -> float:
-        """Move on by ``dt`` s with these powers and return the temperature of the tread's surface, degC."""
+        """Advance by ``dt`` s with these powers and return the temperature of the tread's surface, degC."""
         key = 2 * touching + rotating
         if key != self._key or friction_w > CALM_FRICTION_W:
             self._quiet_s = 0.0
@@ -72,7 +72,7 @@ class HeatFlow:
         return per_cell * state.cells_c[-1] + per_w * friction_w + per_belt * state.belt_c + of_air
 
     def _flow(self) -> None:
-        """Let heat flow for the whole steps that are due, with the mean powers since the last."""
+        """Apply the mean powers since the last thermal step, for the whole steps that are due."""
         pending_s, due_s = self._pending_s, self._due_s
         heater_w, friction_w = self._heater_j / pending_s, self._friction_j / pending_s
         contact = self._touch_s / pending_s
@@ -98,7 +98,7 @@ class HeatFlow:
             self._sensor.retime(CALM_STEP_S)
 
     def _disturb(self) -> None:
-        """End the calm: what has not flowed yet flows now, as it was until now."""
+        """End the calm: apply the heat not yet applied, under the conditions until now."""
         pending_s = self._pending_s
         if pending_s > SAME_STEP_S:
             touching, rotating = self._key > 1, self._key & 1 != 0
@@ -111,7 +111,7 @@ class HeatFlow:
         self._stir()
 
     def _stir(self) -> None:
-        """Take short steps."""
+        """Switch to short steps."""
         self._calm = False
         self._quiet_s = 0.0
         self._due_s = self._model.step_s - SAME_STEP_S

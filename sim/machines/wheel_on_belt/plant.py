@@ -1,7 +1,7 @@
-"""The plant: wheel, belt, contact, heat and what the sensors see of them; friction and wear: ``rubbing``.
+"""The plant: wheel, belt, contact, heat and sensors; friction and wear are in ``rubbing``.
 
-``Plant.advance`` is called once a tick with where the drives are at its end; forces follow at once, heat in steps of
-its own. Every public attribute is the truth; the ``measured`` methods are what instruments make of it.
+``Plant.advance`` is called once a tick with the drives' positions and speeds at its end. Forces follow at once, heat in
+its own steps. Every public attribute is the truth; the ``measured`` methods return the instruments' readings.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from sim.sensors import SpeedSensor, TemperatureSensor
 
 _TURN: Final = 2.0 * pi
 _SAME_SIZE_K: Final = 0.005
-"""A change of the rubber's mean temperature that is waited for: 0.02 um of radius, 0.002 % of stiffness."""
+"""Least change of the rubber's mean temperature that is applied, K: 0.02 um of radius, 0.002 % of stiffness."""
 
 
 class Plant(Rubbing):
-    """The physics of one rig, with a wheel on it after ``install``. Deep-copyable; all randomness from one seed."""
+    """The physics of one rig, with a wheel after ``install``. Deep-copyable; all randomness is from one seed."""
 
     def __init__(self, parameters: SimParameters, seed: int) -> None:
-        """Build a rig at ambient temperature without a wheel; draw what stays the same for the session."""
+        """Build a rig at ambient temperature without a wheel; draw the numbers that stay for the session."""
         super().__init__(parameters, seed)
         p = parameters
         self._seed = seed
@@ -45,7 +45,7 @@ class Plant(Rubbing):
         self.set_relaxation(p.relaxation * p.contact.relaxation)
         self._build_sensors()
         self.hung: tuple[float, float, float] | None = None
-        """What a person has hung on the load cell, N."""
+        """Forces of a weight that a person has hung on the load cell, N."""
         model = ThermalModel(p.wheel, p.thermal, p.friction_heat_fraction, p.belt_conductance)
         self._flow = HeatFlow(model, p.ambient, self.hub_sensor, self.load_cell)
         self._place: tuple[int, ...] = ()
@@ -54,11 +54,11 @@ class Plant(Rubbing):
         self._key_streams()
 
     def _build_sensors(self) -> None:
-        """Make the sensors with the imperfections of this session."""
+        """Create the sensors with the imperfections of this session."""
         s, noise, seed = self.parameters.sensors, self.parameters.noise, self._seed
         sign = -1.0 if self.parameters.mirrored else 1.0
         bias, wheel, belt = (sign * u for u in uniforms(3, seed, "session"))
-        unused = NormalStream(seed, "unused")  # _key_streams gives each its own
+        unused = NormalStream(seed, "unused")  # _key_streams gives each sensor its own
         self.load_cell = LoadCellSensor(s, noise, seed, self.parameters.ambient, sign)
         self.ir = TemperatureSensor(s.ir_time, noise * s.ir_rms, noise * s.ir_bias * bias, unused)
         self.hub_sensor = TemperatureSensor(s.hub_time, noise * s.hub_rms, 0.0, unused)
@@ -79,14 +79,14 @@ class Plant(Rubbing):
             self._stick_slip.restart(NormalStream(seed, "stick-slip", *place))
 
     def _mount(self, diameter_mm: float, sliding_m: float) -> None:
-        """Put a wheel of ambient temperature on, out of contact."""
+        """Mount a wheel at ambient temperature, out of contact."""
         wheel = self.parameters.wheel
         self._flow.state.set_rubber(self.parameters.ambient)
         self._flow.restart()
         self.surface_c = self.parameters.ambient
         self.cold_mm = self.diameter_mm = self.size * diameter_mm
         self._touch_mm = self.parameters.contact.gap + 0.5 * (wheel.outer_diameter - self.diameter_mm)
-        self._warm_c = inf  # whatever the heat has done to the last one
+        self._warm_c = inf  # heat effects of the last wheel do not count
         if self._relaxation is not None:
             self._relaxation.forget()
         self.sliding_m = sliding_m
@@ -104,11 +104,11 @@ class Plant(Rubbing):
         diameter_mm: float | None = None,
         sliding_m: float = 0.0,
     ) -> None:
-        """Put a wheel on: rubber at ambient temperature, out of contact.
+        """Mount a wheel: rubber at ambient temperature, out of contact.
 
-        ``specimen`` and ``wheel`` (0 and up) key the wheel's scatter. ``new_specimen`` starts hub, belt and
-        load cell at ambient temperature too; otherwise they keep theirs. A resumed run gives the
-        ``diameter_mm`` (at ambient temperature) and the sliding distance in m that the wheel had; by default it is
+        ``specimen`` and ``wheel`` (0 and up) key the wheel's scatter. With ``new_specimen`` hub, belt and
+        load cell start at ambient temperature as well; otherwise they keep their temperatures. A resumed run passes the
+        wheel's earlier ``diameter_mm`` (at ambient temperature) and sliding distance in m; by default the wheel is
         new. Raises UnknownCompoundError.
         """
         p = self.parameters
@@ -126,7 +126,7 @@ class Plant(Rubbing):
         self._key_streams()
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, setting: WheelSetting) -> None:
-        """Draw the scatter of a setting and of a repeat, and start its streams of noise; all numbers 0 and up.
+        """Draw the scatter of a setting and of a repeat, and start the repeat's noise streams; all numbers 0 and up.
 
         Raises RuntimeError when no wheel is installed.
         """
@@ -141,11 +141,11 @@ class Plant(Rubbing):
         self._key_streams()
 
     def set_runout(self, runout_mm: float) -> None:
-        """Let the tread swing by this much, peak to peak in mm, once a turn."""
+        """Set the swing of the tread, peak to peak in mm, once a turn."""
         self._swing_mm = 0.5 * runout_mm
 
     def set_relaxation(self, share: float) -> None:
-        """Let the contact lose this share of its load in a decade of time, 0 to 0.15, from now on."""
+        """Set the share of the load that the contact loses in a decade of time, 0 to 0.15, from now on."""
         if self._relaxation is not None and share > 0.0:
             self._relaxation.change(share)
             return
@@ -154,13 +154,13 @@ class Plant(Rubbing):
             self._relaxation.retime(self._dt)
 
     def set_size(self, share: float) -> None:
-        """Have a wheel on of another diameter than it should be, and every one from now on; out of contact only."""
+        """Set the diameter of this and every later wheel as a share of the right one; out of contact only."""
         self.cold_mm *= share / self.size
         self.size = share
         self._grow(self._flow.rubber_c)
 
     def _grow(self, rubber_c: float) -> None:
-        """Take over what the wheel's temperatures do to its size and stiffness."""
+        """Update the wheel's size and stiffness for its temperatures."""
         self._warm_c = rubber_c
         if not (self._warmth.matters or self.size != 1.0) or not self._compound:
             return
@@ -181,7 +181,7 @@ class Plant(Rubbing):
         sideslip_deg: float,
         heater_w: float,
     ) -> None:
-        """Move on by ``dt`` s, 1 to 100 ms: speeds and positions are those at its end, the heater's power is its mean.
+        """Advance by ``dt`` s, 1 to 100 ms; speeds and positions are those at the end, the heater's power is the mean.
 
         ``press_mm`` is 0 when fully lifted and grows towards the wheel.
         """
@@ -218,7 +218,7 @@ class Plant(Rubbing):
         self.ir.follow(surface_c)
 
     def _retime(self, dt: float) -> None:
-        """Prepare what depends on the length of a tick alone."""
+        """Prepare the values that depend on the length of a tick alone."""
         self._dt = dt
         if self._relaxation is not None:
             self._relaxation.retime(dt)
@@ -227,7 +227,7 @@ class Plant(Rubbing):
         self._deficit_keep = exp(-dt / self.parameters.friction.touch_time)
 
     def press_at_mm(self, load_n: float) -> float:
-        """Return where the press would stand now under a load of at least 0 N, at rest, mm."""
+        """Return the position of the press under a load of at least 0 N, now and at rest, mm."""
         factor, exponent, _ = self._stiffness
         lost_n = self._relaxation.lost_n if self._relaxation is not None else 0.0
         depth_mm = math.pow((load_n + lost_n) / factor, 1.0 / exponent)
@@ -249,7 +249,7 @@ class Plant(Rubbing):
         return self.heat.belt_c
 
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
-        """Return what the load cell reads now (Fx, Fy, Fz in N, moment in N m); ``t`` is the time of asking."""
+        """Return the load cell's present readings (Fx, Fy, Fz in N, moment in N m); ``t`` is the time of asking."""
         fy = self.force_y_n
         if self.hung is not None:
             x, y, z = self.hung
@@ -257,9 +257,9 @@ class Plant(Rubbing):
         return self.load_cell.measure(self.force_x_n, fy, self.force_z_n, self._arm_m * fy)
 
     def surface_measured_c(self, t: float) -> float:
-        """Return what the infrared thermometer reads now, in degC; ``t`` is the time of asking."""
+        """Return the infrared thermometer's present reading, in degC; ``t`` is the time of asking."""
         return self.ir.measure()
 
     def controller_measured_c(self, t: float) -> float:
-        """Return what the hub's sensor reads now, in degC; ``t`` is the time of asking."""
+        """Return the present reading of the hub's sensor, in degC; ``t`` is the time of asking."""
         return self.hub_sensor.measure()

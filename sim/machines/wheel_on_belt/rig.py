@@ -1,6 +1,6 @@
-"""The rig of a wheel on a belt: which drive moves what, and what loads its shaft.
+"""The rig of a wheel on a belt: the motion and the load of each drive.
 
-The press goes no deeper than the torque that its drive is allowed (0x6072) brings it; wheel and belt have torque enough
+The press goes no deeper than the torque limit of its drive (0x6072) allows; wheel and belt have enough torque
 for any friction.
 """
 
@@ -28,35 +28,35 @@ from sim.wires.can_wire import CanWire
 PRESS_LAG_S: Final = 0.03
 """Lag of the press screw behind its velocity command, s [A]."""
 PRESS_TRAVEL_MM: Final = 30.0
-"""Travel of the press from fully lifted, mm [A]: beyond a wheel worn to its hub."""
+"""Travel of the press from fully lifted, mm [A]: beyond the hub of a fully worn wheel."""
 PRESS_SPRING_MM_S: Final = -20.0
-"""Speed at which the spring retracts an unpowered press, mm/s [A]."""
+"""Speed of an unpowered press that the spring retracts, mm/s [A]."""
 FORCES: Final = ("fx", "fy", "fz")
-"""What the load cell has to measure, each by a transmitter; one may measure all."""
+"""Forces to measure, each by a transmitter of the load cell; one transmitter may measure all."""
 _NO_ANGLES: Final = frozenset({"wheel_speed", "slip_velocity", "load", "temperature"})
-"""Axes of a condition that are no angle; the others are."""
+"""Axes of a condition that are no angle; all others are angles."""
 _NEAR_LIMIT: Final = 0.5
-"""Below this share of the force that the press can bring about no single step brings it there."""
+"""Share of the press' greatest force; below it no single step reaches that force."""
 
 
 def _measuring(cells: Mapping[str, CellSlave], force: str) -> CellSlave:
-    """Return the transmitter that measures a force; the first where none does."""
+    """Return the transmitter that measures a force; the first if none does."""
     return next((cell for cell in cells.values() if force in cell.forces), next(iter(cells.values())))
 
 
 class WheelRig(SimRig):
     """A rubber friction tester with a wheel on a belt, on simulated wires.
 
-    Drives: wheel (rad/s), belt (m/s), press (mm, mm/s), and those that hold a position (deg) where no person sets
-    it: of them only sideslip changes the friction; of a tilt the paper has no data.
-    Devices: load cell, thermometer, jacket. ``install``, ``remount`` and ``begin_repeat`` are the hands of the person
+    Drives: wheel (rad/s), belt (m/s), press (mm, mm/s), and those that hold an angle (deg) unless a person sets
+    it. Of the angles only sideslip changes the friction; the paper has no data for a tilt.
+    Devices: load cell, thermometer, jacket. ``install``, ``remount`` and ``begin_repeat`` are the actions of the person
     at the rig.
     """
 
     def __init__(
         self, spec: RigSpec, parameters: SimParameters, seed: int, can_wire: type[CanWire] = CanWire
     ) -> None:
-        """Switch everything on at time 0; ``can_wire``: the kind of bus, another one where it can be faulty."""
+        """Switch everything on at time 0; ``can_wire``: the class of the bus, another one for faults."""
         self.plant = Plant(parameters, seed)
         can = can_wire(spec.bitrate)
         self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
@@ -83,16 +83,16 @@ class WheelRig(SimRig):
         self._slip_nm = capstan_n(drives) * self._roller_m
         self._belt_creep = drives.belt_creep
         self.belt_slip = 0.0
-        """By what share the belt is slower than its drive roller: beyond elastic creep the roller slips under it."""
+        """Share by which the belt is slower than its drive roller: beyond elastic creep the roller slips under it."""
         self._limit_nm = self._pushed_n = self._held_n = 0.0
         self._pressed_mm = 0.0
         self._stalled = False
         self.swapped = False
-        """The drives of wheel and belt are connected the wrong way round: each moves what the other should."""
+        """Whether the drives of wheel and belt are swapped: each moves the other's part."""
         self.turned: set[str] = set()
         """Press or positioned axes that move the wrong way round: the motor's direction was never set."""
         self._turned_rad = self._travelled_m = self._seen_s = 0.0
-        """How far the wheel's shaft has turned and the belt's surface has come, and until when: what marks show."""
+        """Travel of the wheel's shaft and of the belt's surface, and the time of both: what marks on them show."""
         self._plant_s = 0.0
         self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
         self._sideslip = self.axes.get("sideslip")
@@ -103,17 +103,17 @@ class WheelRig(SimRig):
         screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
         return Cia402Slave(config, can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
 
-    # -- the wires' side ------------------------------------------------------------------------------------------
+    # -- interface to the wires -----------------------------------------------------------------------------------
 
     @property
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
         return self.plant.parameters.ambient
 
-    # -- the machine's side ---------------------------------------------------------------------------------------
+    # -- mechanics ------------------------------------------------------------------------------------------------
 
     def follow(self, t1: float, still: bool) -> None:
-        """Let the plant follow its drives to ``t1`` s, and load them."""
+        """Advance the plant with its drives to ``t1`` s, and load the drives."""
         plant = self.plant
         if not still:
             dt = t1 - self._seen_s
@@ -122,7 +122,7 @@ class WheelRig(SimRig):
         self._seen_s = t1
         elapsed = t1 - self._plant_s
         if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
-            return  # nothing but temperatures changes, and they take their time
+            return  # only temperatures change, and slowly
         self._plant_s = t1
         wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
         if plant.force_z_n > 0.0 or self._stalled:
@@ -149,13 +149,13 @@ class WheelRig(SimRig):
 
     @property
     def wheel_rad_s(self) -> float:
-        """How fast the wheel turns, rad/s: what its drive shows, but for the error of its scale."""
+        """Speed of the wheel, rad/s: the speed that its drive shows, without the error of its scale."""
         shaft = self._belt.axis.value / self._roller_m if self.swapped else self._wheel.axis.value
         return shaft / self.plant.wheel_speed.factor
 
     @property
     def belt_m_s(self) -> float:
-        """How fast the belt's surface moves, m/s."""
+        """Speed of the belt's surface, m/s."""
         surface = self._wheel.axis.value * self._roller_m if self.swapped else self._belt.axis.value
         return surface / self.plant.belt_speed.factor
 
@@ -167,11 +167,11 @@ class WheelRig(SimRig):
 
     @property
     def rim_m_s(self) -> float:
-        """How fast the wheel's tread moves, m/s."""
+        """Speed of the wheel's tread, m/s."""
         return 0.0005 * self.plant.diameter_mm * self.wheel_rad_s
 
     def _show(self, wheel_rad_s: float, belt_m_s: float) -> None:
-        """Let three drives show their torques, and the errors of their encoders: those are noisy while they turn."""
+        """Set the torques that three drives show, and the errors of their encoders, which are noisy during rotation."""
         plant, wheel, belt, press = self.plant, self._wheel, self._belt, self._press
         wheel_nm, belt_nm = plant.drive_torque_nm, -plant.belt_force_n * self._roller_m
         if self.belt_slip > self._belt_creep and self.belt_m_s != 0.0:
@@ -198,7 +198,7 @@ class WheelRig(SimRig):
             press.load(press_nm, 0.0)
 
     def _bear(self, drive: Cia402Slave) -> None:
-        """Keep the press from going deeper than its drive's torque can: it stalls; a greater load drives it back."""
+        """Limit the press to its drive's torque: it stalls; a greater load drives it back."""
         limit_nm, plant = drive.torque_limit_nm, self.plant
         if not drive.energised and self._spring_mm_s:
             # The spring alone makes coast_deceleration of the screw's inertia; the load pushes the same way.
@@ -221,11 +221,11 @@ class WheelRig(SimRig):
             self._stalled = False
             drive.unstall()
 
-    # -- the person's side ----------------------------------------------------------------------------------------
+    # -- actions of the person ------------------------------------------------------------------------------------
 
     def ruler(self, axis: str) -> float:
-        """Return where an axis truly is: the wheel's shaft in deg, belt and press in mm, others in deg; "diameter": of
-        the cold wheel, mm."""
+        """Return the true position of an axis: the wheel's shaft in deg, belt and press in mm, others in deg;
+        "diameter" of the cold wheel, mm."""
         if axis == "wheel":
             return math.degrees(self._turned_rad)
         if axis == "belt":
@@ -236,7 +236,7 @@ class WheelRig(SimRig):
         return -place if axis in self.turned else place
 
     def hang(self, fx: float, fy: float, fz: float) -> None:
-        """Hang a weight on the load cell: forces in N beside those of the contact; zeros take it off."""
+        """Hang a weight on the load cell: forces in N besides those of the contact; zeros remove it."""
         self.plant.hung = (fx, fy, fz) if fx or fy or fz else None
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
@@ -245,26 +245,26 @@ class WheelRig(SimRig):
         self.plant.install(specimen, wheel, compound, new_specimen)
 
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Put a worn wheel on: diameter in mm, sliding distance in m; the rig is at ambient temperature."""
+        """Mount a worn wheel: diameter in mm, sliding distance in m; the rig is at ambient temperature."""
         self.plant.install(specimen, wheel, compound, True, diameter_mm, sliding_m)
 
     def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Put a wheel back on that was on before: diameter in mm, sliding distance in m; the rig stays warm."""
+        """Mount a wheel again that was on before: diameter in mm, sliding distance in m; the rig stays warm."""
         self._plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, False, diameter_mm, sliding_m)
 
     def belt_travelled(self, travel_m: float) -> None:
-        """Have the belt on that an interrupted run has used, as far as its travel under load tells, m."""
+        """Mount the belt of an interrupted run, worn by its travel under load, m."""
         self.plant.travel(travel_m, self.ambient_c)
 
     def truth(self, held: Mapping[str, float]) -> dict[str, float]:
-        """Return what the plant knows of the repeat that has begun, at setpoints by axis (speeds m/s, N, deg, degC)."""
+        """Return the plant's truth about the repeat that has begun, at setpoints by axis (speeds m/s, N, deg, degC)."""
         belt_m_s = held["wheel_speed"] - held["slip_velocity"]
         slip_m_s = slip_velocity(held["wheel_speed"], belt_m_s, held["sideslip"])[2]
         return self.plant.truth(held["temperature"], held["load"], slip_m_s, held["sideslip"])
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
-        """Begin a repeat at setpoints by axis: the random streams, and the sensors' dither, start anew with it."""
+        """Begin a repeat at setpoints by axis: restart the random streams and the sensors' dither."""
         angles = tuple(value for axis, value in held.items() if axis not in _NO_ANGLES)
         setting = WheelSetting(held["slip_velocity"], held["load"], angles, held["temperature"])
         self.plant.begin_repeat(condition, repeat, attempt, setting)

@@ -1,12 +1,12 @@
-"""Friction between wheel and belt: the law, what scatters about it, and what it wears.
+"""Friction between wheel and belt: the law, its scatter, and the wear.
 
 Forces are those on the belt in the wheel's frame: Fx along the wheel's plane (above 0 when the wheel drives), Fy across
-it, Fz the load. ``diameter_mm`` is the wheel's as it is, grown by its heat; ``cold_mm`` that at ambient temperature,
-which a calliper would find: wear takes from it.
+it, Fz the load. ``diameter_mm`` is the wheel's present diameter, grown by its heat; ``cold_mm`` is that at ambient
+temperature, for a calliper: wear reduces it.
 
-Scatter multiplies the coefficient. A setting has one factor for each compound, however often a recipe measures it, on
-whichever wheel, in whichever place: it is how far the model misses the rubber there. A wheel and a repeat have their
-own.
+Scatter multiplies the coefficient. A setting has one factor for each compound, the same for every repeat, wheel and
+place in a recipe: it is the error of the model for this rubber at this setting. A wheel and a repeat have factors of
+their own.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from sim.physics.parameters import SimParameters
 from sim.physics.slip import cornering_factor, traction_direction
 
 _RUNNING_IN_LASTS: Final = 37.0
-"""Running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
+"""Number of running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
 
 class Rubbing:
     """A wheel that rubs on a belt: its forces, its wear, the belt's grip. ``Plant`` presses, heats and measures it."""
 
     def __init__(self, parameters: SimParameters, seed: int) -> None:
-        """Begin with a new belt that nothing touches."""
+        """Begin with a new belt without contact."""
         p = parameters
         self.parameters = p
         self.surface_c = p.ambient
@@ -37,14 +37,14 @@ class Rubbing:
         self.slip_m_s = self.sliding_m = 0.0
         self._arm_m = 0.001 * p.friction.aligning_arm
         self._within = Autoregressive(p.scatter * p.variability.within, p.variability.within_time)
-        self._noise = NormalStream(seed, "unused")  # each place has its own
+        self._noise = NormalStream(seed, "unused")  # each place has its own stream
         self._stick_slip: StickSlip | None = None
         if p.stick_slip > 0.0:
             self._stick_slip = StickSlip(p.stick_slip, p.stick_slip_frequency, self._noise)
         self._grip = 1.0
         self._blunts = p.counterface.loss > 0.0
         self.belt_grip = 1.0
-        """What the belt has left of the grip that it began with; wheels come and go on it."""
+        """Share of its original grip that the belt has left; it is kept when wheels are changed."""
         self._deficit_keep = 1.0
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
         self._compound = ""
@@ -54,7 +54,7 @@ class Rubbing:
         self._release()
 
     def _take(self, compound: str) -> None:
-        """Take the law of a compound, and what running-in and wear make of the parameters."""
+        """Set the law of a compound, and the running-in and wear of the parameters."""
         p = self.parameters
         a = p.abrasion
         self._law = laws.make(p.friction_model, compound)
@@ -63,18 +63,18 @@ class Rubbing:
         self._wear_per_width = p.wear * a.wear_rate / (pi * p.wheel.width)
 
     def _release(self) -> None:
-        """Take all force off; the next touch builds friction up anew."""
+        """Set all forces to 0; the next touch builds friction up anew."""
         self.mu = 0.0
         self.force_x_n = self.force_y_n = self.force_z_n = 0.0
         self.drive_torque_nm = 0.0
         self._deficit = self.parameters.friction.touch_deficit
 
     def truth(self, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> dict[str, float]:
-        """Return what makes the coefficient of the repeat that has begun, and the state that it begins in.
+        """Return the factors of the coefficient for the repeat that has begun, and the state at its begin.
 
-        ``model``: of the compound at these setpoints; times ``condition`` and ``wheel`` it is this wheel's coefficient
-        in this condition on the belt as it was at first, times ``belt`` on the belt as it is, times ``run`` this
-        repeat's, before noise, running-in and wear.
+        ``model`` is the compound's coefficient at these setpoints. Times ``condition`` and ``wheel`` it is this wheel's
+        coefficient in this condition on the belt in its original state; times ``belt``, on the belt as it is; times
+        ``run``, this repeat's, before noise, running-in and wear.
         """
         model = self._law.mu(temperature_c, load_n, slip_m_s) * cornering_factor(self._compound, sideslip_deg)
         return {
@@ -88,16 +88,16 @@ class Rubbing:
         }
 
     def set_grip(self, share: float) -> None:
-        """Let the belt transmit this share of the friction from now on: 1 as at first, 0 torn, above 1 sharper."""
+        """Set the share of the friction that the belt transmits from now on: 1 as new, 0 torn, above 1 sharper."""
         self._grip = share
         self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
 
     def travel(self, travel_m: float, surface_c: float) -> None:
-        """Let the belt travel under load, m, below rubber of a surface temperature, degC: it goes blunt and clogs."""
+        """Let the belt travel under load, m, at a surface temperature of the rubber, degC: it goes blunt and clogs."""
         self.belt_grip *= self.parameters.counterface.grip_kept(travel_m, surface_c)
 
     def _yaw(self, sideslip_deg: float) -> None:
-        """Prepare what depends on the sideslip angle alone."""
+        """Prepare the values that depend on the sideslip angle alone."""
         self._sideslip_deg = sideslip_deg
         angle = radians(sideslip_deg)
         self._cos, self._sin = cos(angle), sin(angle)
@@ -154,26 +154,26 @@ class Rubbing:
 
 
 def wheel_factor(parameters: SimParameters, seed: int, specimen: int, wheel: int) -> float:
-    """Return what multiplies the friction of one wheel."""
+    """Return the friction factor of one wheel."""
     sigma = parameters.scatter * parameters.variability.wheel
     return 1.0 + sigma * normal(seed, "wheel", specimen, wheel)
 
 
 class WheelSetting(NamedTuple):
-    """What a condition is held at, as far as friction depends on it: slip m/s, load N, angles deg, surface degC."""
+    """Setpoints of a condition that friction depends on: slip m/s, load N, angles deg, surface degC."""
 
     slip_m_s: float
     load_n: float
     angles_deg: tuple[float, ...]
-    """Of the driven angles, in the order of the machine's axes."""
+    """The driven angles, in the order of the machine's axes."""
     temperature_c: float
 
     @property
     def key(self) -> tuple[int, ...]:
         """Return whole numbers of at least 0 that are the same for the same setting.
 
-        In steps of 0.1 mm/s, 0.1 N, 0.01 deg and 0.1 K, finer than a rig holds any of them. Slip and angles without
-        their sign, as in the friction law.
+        They count steps of 0.1 mm/s, 0.1 N, 0.01 deg and 0.1 K, finer than any rig holds. Slip and angles are without
+        sign, as in the friction law.
         """
         return (
             round(1e4 * abs(self.slip_m_s)),
@@ -184,11 +184,11 @@ class WheelSetting(NamedTuple):
 
 
 def condition_factor(parameters: SimParameters, seed: int, compound: str, setting: WheelSetting) -> float:
-    """Return what multiplies the friction of a compound at a setting: how far the model misses it."""
+    """Return the friction factor of a compound at a setting: the error of the model there."""
     sigma = parameters.scatter * parameters.variability.condition(compound)
     return 1.0 + sigma * normal(seed, "condition", zlib.crc32(compound.encode()), *setting.key)
 
 
 def run_factor(parameters: SimParameters, seed: int, *place: int) -> float:
-    """Return what multiplies the friction of one repeat (specimen, wheel, condition, repeat, attempt)."""
+    """Return the friction factor of one repeat (specimen, wheel, condition, repeat, attempt)."""
     return 1.0 + parameters.scatter * parameters.variability.run * normal(seed, "run", *place)

@@ -1,7 +1,8 @@
-"""The load cell under the belt, and what it makes of the truth.
+"""The load cell under the belt, and its readings of the true forces.
 
-``noise`` scales every imperfection; at 0 the cell gives the true value within its range. What is constant for a session
-(sensitivity, linearity, drift, crosstalk, misalignment) is drawn from the seed alone. Sizes: ``SensorParameters``.
+``noise`` scales every imperfection; at 0 the cell gives the true value within its range. Numbers that are constant for
+a session (sensitivity, linearity, drift, crosstalk, misalignment) depend on the seed alone. Sizes:
+``SensorParameters``.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ class LoadCellSensor:
     def __init__(
         self, sensors: SensorParameters, noise: float, seed: int, ambient_c: float, sign: float = 1.0
     ) -> None:
-        """Draw the session's imperfections; the zero is that at ambient temperature. ``sign``: -1 turns them round."""
+        """Draw the session's imperfections; the zero is that at ambient temperature. ``sign``: -1 reverses them."""
         draws = [sign * u for u in uniforms(16, seed, "session cell")]
         self._noisy = noise > 0.0
         self._ranges_n = (sensors.range_x, sensors.range_y, sensors.range_z)
-        # A parabola through zero and the range's end, farthest off at half range, is a slope that falls with force.
+        # A parabola through zero and the range's end, with most error at half range, is a slope that falls with force.
         slopes = [4.0 * noise * sensors.linearity * u for u in draws[0:3]]
         bends = [slope / most for slope, most in zip(slopes, self._ranges_n, strict=True)]
         self._sizes = (*slopes, *bends, noise * sensors.force_rms, noise * sensors.moment_rms)
@@ -38,19 +39,19 @@ class LoadCellSensor:
         self.noise = NormalStream(seed, "cell")
 
     def warm(self, dt_s: float, belt_c: float) -> None:
-        """Let the cell follow its share of the belt's excess over ambient for ``dt_s`` (much less than its lag)."""
+        """Advance the cell by ``dt_s`` (much less than its lag) towards its share of the belt's excess over ambient."""
         goal = self._reference_c + self._warming * (belt_c - self._reference_c)
         self.set_temperature(self.cell_c + (goal - self.cell_c) * dt_s / self._time_s)
 
     def set_temperature(self, cell_c: float) -> None:
-        """Bring the cell to a temperature in degC."""
+        """Set the cell's temperature in degC."""
         self.cell_c = cell_c
         x, y, z = self._drift_n_k
         excess_k = cell_c - self._reference_c
         self._offsets_n = (x * excess_k, y * excess_k, z * excess_k)
 
     def measure(self, fx: float, fy: float, fz: float, mz: float) -> tuple[float, float, float, float]:
-        """Return Fx, Fy, Fz in N, cut off at the ranges, and the moment in N m, as the cell sees them now."""
+        """Return the cell's present readings: Fx, Fy, Fz in N, cut off at the ranges, and the moment in N m."""
         xx, xy, xz, yx, yy, yz, zx, zy, zz = self._matrix
         x = xx * fx + xy * fy + xz * fz
         y = yx * fx + yy * fy + yz * fz
@@ -70,7 +71,7 @@ class LoadCellSensor:
 
 
 def _scaled(matrix: tuple[float, ...], most: float, seed: int) -> tuple[float, ...]:
-    """Return what the channels see with the errors of their sensitivities, which a stream of its own draws."""
+    """Return the matrix with the errors of the channels' sensitivities, from a random stream of their own."""
     gains = [1.0 + most * u for u in uniforms(3, seed, "session cell sensitivity")]
     return tuple(gains[place // 3] * entry for place, entry in enumerate(matrix))
 

@@ -1,4 +1,4 @@
-"""What can go wrong with a wheel on a belt: the catalogue, its ranges, and the language of its scripts."""
+"""Faults of a wheel on a belt: the catalogue, its ranges, and the language of its scripts."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ LANGUAGE = FaultLanguage(CATALOGUE, STEPS)
 parse = LANGUAGE.parse
 parse_script = LANGUAGE.parse_script
 _LAGS = {"load cell": 4.0, "thermometer": 6.0, "hub sensor": 40.0}
-"""Greatest time constant, or delay, of a sensor that is searched, s."""
+"""Greatest time constant, or delay, of a sensor in a search, s."""
 
 
 def _ranges() -> Iterator[tuple[str, float, float, float]]:
-    """Yield phrase, least and greatest magnitude, and the one that is no fault, where a search begins."""
+    """Yield phrase, least and greatest magnitude, and the faultless magnitude, at which a search begins."""
     yield "load cell offset", -200.0, 200.0, 0.0
     yield "load cell drift", -5.0, 5.0, 0.0
     yield "load cell gain", 50.0, 150.0, 100.0

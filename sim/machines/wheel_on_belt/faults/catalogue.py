@@ -1,8 +1,8 @@
-"""The catalogue of faults: one row each. A fault without a row does not exist for language and campaign.
+"""The catalogue of faults: one row each. Language and campaign know only faults with a row.
 
-Budgets are those of docs/kinds/wheel-on-belt.md, from the onset (or from when the fault can be noticed) to the safe
-commands, with one scan of 50 ms at the slow rate on top; [A] where that page gives none. A row that MAY trip has none
-and says why nothing can be asked of it.
+Budgets are those of docs/kinds/wheel-on-belt.md, up to the safe commands, from the onset (or from the time when the
+fault can be noticed), with one scan of 50 ms at the slow rate added; [A] if that page gives none. A row that MAY trip
+has no budget, and the reason why no trip is required.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from sim.machines.wheel_on_belt.rig import FORCES
 
 
 class Exposure(Enum):
-    """When a fault can be noticed at all: its budget counts from then on."""
+    """The earliest time at which a fault can be noticed: its budget counts from then on."""
 
     ALWAYS = "at once, once the run has begun"
     RUNNING = "at once, where it begins in a run and no wheel was just changed"
@@ -52,7 +52,7 @@ class Exposure(Enum):
 
 
 VELOCITY_AXES = ("wheel", "belt", "press")
-"""Of these drives an emergency stop takes the torque away at once (stop category 0 [A])."""
+"""Drives without torque at once after an emergency stop (stop category 0 [A])."""
 AXES = (*VELOCITY_AXES, "sideslip", "camber")
 STEPS = ("connect", "install", "pre-grind", "rest", "heat", "soak", "tare", "roll", "measure", "lift", "cool", "prompt")
 """Names of steps that a fault can wait for."""
@@ -61,15 +61,15 @@ CELL, SURFACE, HUB = (partial(SensorFault, device) for device in ("load cell", "
 OUTPUT = partial(controller_output, "jacket")
 
 POLL_S = 0.2 + SCAN_S
-"""A temperature is polled at 5 Hz and judged by the next scan, s."""
+"""Time to judge a temperature, s: it is polled at 5 Hz and judged by the next scan."""
 HUB_S = 0.2 + 0.125 + 2.0 * SCAN_S
-"""The same of the hub, which its controller samples every 125 ms, s."""
+"""Time to judge the hub's temperature, s: its controller samples it every 125 ms."""
 FOLLOW_S = 0.1 + 1.1 + SCAN_S
-"""A speed may lag behind a ramp of 0.3 of the rig's (0.6 m/s2) on its way to another: 0.54 m/s and 50 mm/s more, s."""
+"""Time to judge a speed, s: it may lag behind a ramp of 0.3 of the rig's (0.6 m/s2), by 0.54 m/s, and 50 mm/s more."""
 SHOWS_S = 40.0
-"""A hub sensor may show nothing for this long before its heat is missed: the range of delays is 40 s, s."""
+"""Time without a hub reading before its heat is missed, s: the range of delays is 40 s."""
 NOISY_S = 2.0 + 3.0 + 1.0
-"""A line counts its failures over two seconds, may fail for three, and a slow device is asked once a second [A], s."""
+"""Time to judge a noisy line, s: it counts failures over 2 s, may fail for 3 s, and asks a slow device each 1 s [A]."""
 
 (
     ALWAYS, RUNNING, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, RUBBING, ASTRAY, HEATING,
@@ -143,7 +143,7 @@ _WATCHED = {
     "thermometer": (HEATING, 1.2 + SCAN_S),
     "jacket": (ALWAYS, 1.2 + SCAN_S),
 }
-"""When the readings of a device are needed; the age at which they are stale with the delay of the interlock, s."""
+"""When the readings of a device are needed, and their age at which they are stale plus the interlock's delay, s."""
 
 
 def _modbus_rows() -> Iterator[FaultKind]:
@@ -279,12 +279,12 @@ def _may(phrase: str, make: Callable[..., Effect], unit: str | None = None, valu
 
 
 def _hides(phrase: str, make: Callable[..., Effect], unit: str, value: float) -> FaultKind:
-    """Return the row of a fault that makes the controller heat what nothing shows; a small one goes unnoticed."""
+    """Return the row of a fault that makes the controller overheat unseen; a small one stays unnoticed."""
     return FaultKind(phrase, make, HIDDEN, TRIP, SHOWS_S, unit, value, slow=True, note=_UNASKED)
 
 
 def _misread_rows() -> Iterator[FaultKind]:
-    """Yield sensors that show something else than is: by a share, late, of another channel or sign."""
+    """Yield sensors with a wrong reading: by a share, late, from another channel or with the wrong sign."""
     yield _may("load cell gain", partial(CELL, "gain"), "%", 70.0)
     for channels in CROSSED:
         what, _, which = channels.partition(" ")
@@ -306,11 +306,11 @@ ASSEMBLY = (
     "wheel drive reversed", "belt drive reversed", "wheel speed", "belt speed", "wheel and belt drives swapped",
     "wheel diameter",
 )  # fmt: skip
-"""Beginnings of the phrases of faults that a machine is put together with: none of them begins in a run."""
+"""Beginnings of the phrases of assembly faults of the machine: none of them begins in a run."""
 
 
 def _machine_rows() -> Iterator[FaultKind]:
-    """Yield faults of how the machine was put together, and of the rubber on its hub."""
+    """Yield faults of the machine's assembly, and of the rubber on its hub."""
     for axis in ("wheel", "belt"):
         yield _may(f"{axis} drive reversed", partial(k.reversed_shaft, axis), slow=True)
         yield _may(f"{axis} speed scale", partial(k.speed_scale, axis), "%", 110.0, slow=True)

@@ -13,13 +13,13 @@ from sim.nodes.controller_slave import JACKET_HOTTEST_C
 from sim.wires.modbus_wire import Impairment
 
 HALF_DEG: Final = 20.0
-"""The worn place reaches this far to either side of its centre, degrees of the wheel's turn [A]."""
+"""Reach of the worn place to either side of its centre, degrees of the wheel's turn [A]."""
 DETACHED_S = 20.0
-"""Time constant of a hub sensor that has come loose, s [A]: the fixed one's is 1 s."""
+"""Time constant of a loose hub sensor, s [A]: a fixed one has 1 s."""
 
 
 class _Together(Effect):
-    """Faults that come and go together."""
+    """Faults that begin and end together."""
 
     def __init__(self, *effects: Effect) -> None:
         self._effects = effects
@@ -36,18 +36,18 @@ class _Together(Effect):
 
 
 def common_supply_off(percent: float) -> Effect:
-    """The supply that hub sensor and thermometer share is off: both show ``percent`` of what is above ambient."""
+    """The common supply of hub sensor and thermometer is off: both show ``percent`` of the excess above ambient."""
     return _Together(SensorFault("jacket", "gain", percent), SensorFault("thermometer", "gain", percent))
 
 
 def hub_detached(percent: float) -> Effect:
-    """The hub's sensor sits loose: it shows ``percent`` of what is above ambient, late by DETACHED_S."""
+    """The hub's sensor is loose: it shows ``percent`` of the excess above ambient, late by DETACHED_S."""
     return _Together(SensorFault("jacket", "gain", percent), SensorFault("jacket", "lag", DETACHED_S))
 
 
 @switched
 def heater_element(scene: Scene, on: bool, now: float, percent: float) -> None:
-    """The way from the controller's output to the heat is broken: a shorted relay (100 %) or an open line (0 %).
+    """The path from the controller's output to the heat is broken: a shorted relay (100 %) or an open line (0 %).
 
     The controller continues to show the output that it commands.
     """
@@ -61,15 +61,15 @@ def limiter_dead(scene: Scene, on: bool, now: float) -> None:
 
 
 class WornSector(Effect):
-    """A slip ring worn at one place: requests to the jacket fail while the wheel stands within HALF_DEG of an angle.
+    """A slip ring worn at one place: requests to the jacket fail while the wheel is within HALF_DEG of an angle.
 
-    ``turns`` of the wheel count from when it begins; at the angle 0 it stands then.
+    ``turns`` of the wheel count from the begin of the fault; the wheel's angle is 0 then.
     """
 
     every_step = True
 
     def __init__(self, degrees: float) -> None:
-        """At this angle."""
+        """Take the angle of the worn place."""
         self._at_rev = degrees / 360.0
         self._impairment: Impairment | None = None
         self._last_s = 0.0
@@ -83,13 +83,13 @@ class WornSector(Effect):
         line.impair = self._impairment
 
     def end(self, scene: Scene, now: float) -> None:
-        """Let the line be sound again."""
+        """Repair the line."""
         if self._impairment is not None:
             self._impairment.count = 0
             self._impairment = None
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Follow the wheel to ``now`` s."""
+        """Update the wheel's angle for ``now`` s."""
         self.turns += scene.machine(WheelRig).wheel_rad_s * (now - self._last_s) / (2.0 * pi)
         self._last_s = now
         if self._impairment is not None:

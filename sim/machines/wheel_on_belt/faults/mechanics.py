@@ -1,4 +1,4 @@
-"""Faults of wheel, belt and press: how they were put together, the rubber on its hub, what slips or tears."""
+"""Faults of wheel, belt and press: errors of assembly, the rubber on its hub, slipping or torn parts."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.sensors import SpeedSensor
 
 LEAST_SHARE = 0.01
-"""A scale or a size is never less than this share of what it should be: nothing is divided by 0."""
+"""Least share of its right value that a scale or a size may have: nothing is divided by 0."""
 
 
 def _sensor(scene: Scene, axis: str) -> SpeedSensor:
-    """Return what lies between the shaft of "wheel" or "belt" and its drive's speed."""
+    """Return the sensor between the shaft of "wheel" or "belt" and its drive's speed reading."""
     plant = scene.machine(WheelRig).plant
     return plant.wheel_speed if axis == "wheel" else plant.belt_speed
 
@@ -39,29 +39,29 @@ def drives_swapped(scene: Scene, on: bool, now: float) -> None:
 
 
 class DiameterOff(Effect):
-    """The wheels have another diameter than they should: from the next time on that the wheel is out of contact."""
+    """The wheels have a wrong diameter: from the next time on that the wheel is out of contact."""
 
     every_step = True
 
     def __init__(self, percent: float) -> None:
-        """Of ``percent`` of the diameter."""
+        """Take the share of the right diameter, percent."""
         self.share = max(0.01 * percent, LEAST_SHARE)
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Put it on once nothing is in its way."""
+        """Mount the wrong wheel once the wheel is out of contact."""
         plant = scene.machine(WheelRig).plant
         if plant.size != self.share and plant.force_z_n == 0.0:
             plant.set_size(self.share)
 
     def end(self, scene: Scene, now: float) -> None:
-        """Have a wheel of the right size on, if it is free."""
+        """Mount a wheel of the right size if the wheel is out of contact."""
         if scene.machine(WheelRig).plant.force_z_n == 0.0:
             scene.machine(WheelRig).plant.set_size(1.0)
 
 
 @switched
 def rubber_detached(scene: Scene, on: bool, now: float, swing_mm: float) -> None:
-    """A part of the rubber has come off its hub: the tread, and the force, swings once a turn by this much more.
+    """A part of the rubber has come off its hub: tread and force swing more, once a turn, by this travel.
 
     ``swing_mm``: peak to peak.
     """
@@ -71,7 +71,7 @@ def rubber_detached(scene: Scene, on: bool, now: float, swing_mm: float) -> None
 
 @switched
 def rubber_relaxes(scene: Scene, on: bool, now: float, percent: float) -> None:
-    """The rubber (overheated, or not cured) relaxes by ``percent`` of the load in a decade of time, up to 15 %."""
+    """The rubber (overheated, or not cured) relaxes by ``percent`` of the load in each decade of time, up to 15 %."""
     plant = scene.machine(WheelRig).plant
     sound = plant.parameters.relaxation * plant.parameters.contact.relaxation
     plant.set_relaxation(min(0.01 * percent, 0.15) if on else sound)
@@ -79,18 +79,19 @@ def rubber_relaxes(scene: Scene, on: bool, now: float, percent: float) -> None:
 
 @switched
 def belt_rubs_otherwise(scene: Scene, on: bool, now: float, percent: float) -> None:
-    """The belt has ``percent`` of its first friction: another lot, a joint, dust."""
+    """The belt has ``percent`` of its original friction: another lot, a joint, dust."""
     scene.machine(WheelRig).plant.set_grip(max(0.01 * percent, 0.0) if on else 1.0)
 
 
 class BeltSlips(Effect):
-    """Something holds the belt back (caught, pressed on its support): it is slower than its roller, and its encoder.
+    """Something holds the belt back (caught, pressed on its support): it is slower than its roller and its encoder.
 
-    Beyond elastic creep the roller slips under it, and pulls with all that its wrap can instead of braking the wheel.
+    Beyond elastic creep the roller slips under it: it then pulls with the full force of its wrap instead of braking the
+    wheel.
     """
 
     def __init__(self, percent: float) -> None:
-        """By this much, percent of the speed."""
+        """Take the speed lost, percent."""
         self.share = 0.01 * percent
 
     def begin(self, scene: Scene, now: float) -> None:
@@ -108,7 +109,7 @@ class BeltSlips(Effect):
 
 
 class BeltTorn(Effect):
-    """The belt is torn: its roller turns on, the belt itself goes with whatever touches it and stands otherwise.
+    """The belt is torn: its roller turns on; the belt itself moves with the wheel that touches it, or is at rest.
 
     Nothing holds the belt against the wheel any more: no friction, and no torque at either drive.
     """
@@ -122,13 +123,13 @@ class BeltTorn(Effect):
         plant.set_grip(0.0)
 
     def end(self, scene: Scene, now: float) -> None:
-        """Have a new belt."""
+        """Mount a new belt."""
         plant = scene.machine(WheelRig).plant
         plant.belt_speed.factor = self._factor
         plant.set_grip(1.0)
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Let the belt go with the wheel where it is touched, through the encoder's scale: no other place is needed."""
+        """Move the belt with the wheel in contact, through its encoder's scale: no other change is needed."""
         rig = scene.machine(WheelRig)
         plant, roller_m_s = rig.plant, rig.axes["belt"].axis.value
         rim_m_s = 0.0005 * plant.diameter_mm * rig.axes["wheel"].axis.value / plant.wheel_speed.factor
@@ -137,20 +138,20 @@ class BeltTorn(Effect):
 
 
 class WheelSlipsOnShaft(Effect):
-    """The wheel's clamping has come loose: in contact it rolls with the belt, whatever its shaft does."""
+    """The wheel's clamping is loose: in contact the wheel rolls with the belt, whatever its shaft does."""
 
     every_step = True
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Come loose."""
+        """Loosen the clamping."""
         self._factor = scene.machine(WheelRig).plant.wheel_speed.factor
 
     def end(self, scene: Scene, now: float) -> None:
-        """Be clamped again."""
+        """Clamp the wheel again."""
         scene.machine(WheelRig).plant.wheel_speed.factor = self._factor
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Let the wheel roll on the belt in contact, and go with its shaft out of it."""
+        """Make the wheel roll on the belt in contact, and turn with its shaft out of contact."""
         rig = scene.machine(WheelRig)
         plant, shaft = rig.plant, rig.axes["wheel"].axis.value
         belt_m_s = rig.axes["belt"].axis.value / plant.belt_speed.factor
