@@ -134,7 +134,7 @@ class DrivePower(CanopenDevice):
             self._causes.remove(code)
 
     def set_torque_off(self, off: bool) -> None:
-        """Open (True) or close the safe-torque-off input: if open, the power stage has no supply and the axis coasts."""
+        """Open (True) or close the safe-torque-off input: open, the power stage has no supply and the axis coasts."""
         self.torque_off = off
         if off and self.state not in FAULTY and self.state is not State.NOT_READY:
             self._power_stage_off(State.SWITCH_ON_DISABLED)

@@ -134,7 +134,7 @@ class ModbusSlave:
     def answer(self, frame: bytes, t: float) -> bytes | None:
         """Return the reply to a frame that was complete at ``t`` s.
 
-        None, silence: a frame for another device, a broadcast (which is executed), a bad CRC or a broken frame, power off.
+        None, silence: frame for another device, a broadcast (which is executed), a bad CRC, a broken frame, power off.
         """
         if not self.powered:
             return None

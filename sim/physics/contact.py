@@ -1,10 +1,10 @@
-"""Load between wheel and belt from how far, and how fast, the press drives one into the other.
+"""Load between wheel and belt from the depth, and the rate of the depth, to which the press drives the wheel in.
 
 F = k d^n + c dd/dt, never below zero: the belt cannot pull. With n = 1.3 the stiffness grows with F^0.23,
 as measured on rollers pressed on a plane (Hertz line); all values are assumptions of ``ContactParameters``.
 The load follows from position and velocity alone, so no step length can make it unstable.
 
-Rubber besides relaxes at held depth (``Relaxation``), and softens and grows with temperature (``Warmth``).
+Rubber also relaxes at constant depth (``Relaxation``), and softens and grows with temperature (``Warmth``).
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ _B_S: Final = 10.0
 _C_S: Final = 100.0
 _D_S: Final = 1000.0
 _E_S: Final = 10_000.0
-"""One relaxation time a decade: together they lose the same share of the load in every decade between. Not a tuple: the
-compiled module does not find a tuple of numbers that is a constant."""
+"""One relaxation time for each decade: together they lose the same share of the load in every decade between. Not a
+tuple: the compiled module does not find a constant that is a tuple of numbers."""
 
 
 class ContactModel:
     """Load of one wheel on the belt's support plate: ``factor`` k in N/mm^n, ``exponent`` n, ``damping_n_s_mm`` c."""
 
     def __init__(self, parameters: ContactParameters) -> None:
-        """Find the factor k that gives the stiffness asked for at the reference load."""
+        """Find the factor k for the required stiffness at the reference load."""
         n = parameters.exponent
         slope = parameters.reference_stiffness / (n * parameters.reference_load ** (1.0 - 1.0 / n))
         self.factor = slope**n  # N/mm^n
@@ -47,25 +47,26 @@ class ContactModel:
 
 
 class Relaxation:
-    """What rubber gives way at held depth, and takes back when it is left alone.
+    """Loss of load in rubber at constant depth, and its recovery without load.
 
-    A generalised Maxwell body (quasi-linear viscoelasticity): the load is what the depth asks for less ``share`` times
-    a memory of it for each of five relaxation times. At held depth that is a loss of ``share`` in every decade of time.
+    A generalised Maxwell body (quasi-linear viscoelasticity): the load is the elastic load of the depth less ``share``
+    times a memory of that load for each of five relaxation times. At constant depth that is a loss of ``share`` in
+    every decade of time.
     """
 
     def __init__(self, share: float) -> None:
-        """Take the share of the load that is lost in a decade, 0 to 0.15; no load has been on yet."""
+        """Take the share of the load that is lost in a decade, 0 to 0.15; the rubber has carried no load yet."""
         self.share = share
         self._gains = (0.0, 0.0, 0.0, 0.0, 0.0)
         self.forget()
 
     def forget(self) -> None:
-        """Begin with rubber that no load has been on."""
+        """Begin with rubber that has carried no load."""
         self._memory = (0.0, 0.0, 0.0, 0.0, 0.0)
         self._apart_s = 0.0
 
     def change(self, share: float) -> None:
-        """Lose another share (above 0) from now on; what is lost so far stays lost."""
+        """Change the share (above 0) from now on; load lost so far stays lost."""
         scale = self.share / share
         a, b, c, d, e = self._memory
         self._memory = (a * scale, b * scale, c * scale, d * scale, e * scale)
@@ -80,11 +81,11 @@ class Relaxation:
 
     @property
     def lost_n(self) -> float:
-        """What is missing of the load just now, N."""
+        """Load missing at present, N."""
         return self.share * sum(self._memory)
 
     def load_n(self, elastic_n: float) -> float:
-        """Go on by a step in contact and return what is left of the load that the depth asks for, N (below 0: none)."""
+        """Advance by a step in contact and return what remains of the elastic load, N (below 0: none)."""
         if self._apart_s > 0.0:
             self._recover()
         a, b, c, d, e = self._memory
@@ -98,11 +99,11 @@ class Relaxation:
         return elastic_n - self.share * (a + b + c + d + e)
 
     def rest(self, dt_s: float) -> None:
-        """Go on by a step out of contact."""
+        """Advance by a step out of contact."""
         self._apart_s += dt_s
 
     def _recover(self) -> None:
-        """Forget as much as the time out of contact allows."""
+        """Recover for the time out of contact."""
         apart_s = self._apart_s
         a, b, c, d, e = self._memory
         self._memory = (
@@ -113,14 +114,14 @@ class Relaxation:
 
 
 class Warmth:
-    """What the temperatures of rubber and hub do to the wheel: stiffness and radius, by their excess over ambient.
+    """Effect of the temperatures of rubber and hub on the wheel: stiffness and radius, by their excess over ambient.
 
-    The layer is bonded to the hub: it cannot grow along it, so that nearly all its gain of volume goes outward, less
-    only near the free side faces. The hub grows as metal does.
+    The layer is bonded to the hub and cannot grow along it. So nearly all its gain of volume goes outward, less
+    only near the free side faces. The hub grows like metal.
     """
 
     def __init__(self, parameters: SimParameters) -> None:
-        """Prepare the coefficients; ``matters`` is False where all are switched off."""
+        """Prepare the coefficients; ``matters`` is False if all are switched off."""
         p, contact = parameters, parameters.contact
         self._ambient_c = p.ambient
         self._softening_per_k = p.softening * contact.softening
@@ -134,6 +135,6 @@ class Warmth:
         return exp(self._softening_per_k * (self._ambient_c - rubber_c))
 
     def growth_mm(self, rubber_c: float, hub_c: float, cold_mm: float) -> float:
-        """Return what the radius of a wheel of ``cold_mm`` diameter at ambient has gained at these temperatures."""
+        """Return the gain in radius of a wheel of ``cold_mm`` diameter at ambient for these temperatures, mm."""
         layer_mm = max(0.0, 0.5 * cold_mm - self._hub_radius_mm)
         return self._layer_per_k * layer_mm * (rubber_c - self._ambient_c) + self._hub_mm_k * (hub_c - self._ambient_c)

@@ -1,9 +1,9 @@
 """Friction coefficient of rubber on the abrasive belt, as formulas of temperature, load and slip speed.
 
 Source: Polymers 2024, 16(5), 596, doi 10.3390/polym16050596, CC BY 4.0 ("the paper"), Eqs 1 and 4-9. The
-paper prints the slip speed in mm/s; its own coefficients only give its own data with m/s, which is what is
-used here. Temperature is in degC as it is, load in N, slip speed (resultant) in m/s. Slip direction and
-sideslip are in ``sim.slip``.
+paper prints the slip speed in mm/s, but its coefficients reproduce its data only with m/s. So m/s is
+used here. Temperature is in degC, load in N, slip speed (resultant) in m/s. Slip direction and
+sideslip are in ``sim.physics.slip``.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ MODEL_NAMES: Final = ("paper", "v2")
 
 
 class UnknownCompoundError(ValueError):
-    """A compound without a friction model; the message names those that have one."""
+    """A compound without a friction model; the message names the compounds that have one."""
 
     def __init__(self, compound: str) -> None:
-        """Keep the name that was asked for."""
+        """Keep the compound's name."""
         super().__init__(f"no friction model for compound {compound!r}; known: {', '.join(KNOWN)}")
         self.compound = compound
 
@@ -94,9 +94,9 @@ def _checked(compound: str, model: str) -> None:
 class FrictionModel:
     """One compound's coefficient as a fast scalar function.
 
-    Both forms reduce to ``(heat exp(-beta (t - tm)^2) + base) (speed p^b1 v^b2 + a2)``, the v2 form with an
-    exponential of load in place of p^b1, applied to both terms: ``exp(load (p - 200))``, with ``load`` 0 in the
-    paper's.
+    Both forms reduce to ``(heat exp(-beta (t - tm)^2) + base) (speed p^b1 v^b2 + a2)``. In the v2 form an
+    exponential of load replaces p^b1 and multiplies both terms: ``exp(load (p - 200))``; ``load`` is 0 in the
+    paper's form.
     """
 
     def __init__(self, compound: str, model: str = "paper") -> None:
@@ -137,7 +137,7 @@ def coefficient(
 
 
 def in_range(temperature_c: float, load_n: float, slip_m_s: float) -> None:
-    """Raise ValueError unless a law can be asked for these (degC, N, m/s)."""
+    """Raise ValueError unless these values (degC, N, m/s) are valid for a law."""
     if not (math.isfinite(temperature_c) and math.isfinite(load_n) and math.isfinite(slip_m_s)):
         raise ValueError("temperature, load and slip speed must be finite")
     if load_n <= 0.0:

@@ -1,10 +1,10 @@
 """Laws of friction, found by name.
 
-A law is asked for the coefficient at a temperature (degC), a load (N) and a sliding speed (m/s). ``paper`` and ``v2``
-are those of ``sim.physics.friction``, which know their compounds; ``wlf_bell`` (``sim.physics.wlf``), ``power`` and
-``arrhenius`` (``sim.physics.simple``) are given their figures. ``persson`` and ``greta`` (modules of these names) are
-made of a rubber and a surface, which a ``LawSetting`` says where to find. A law from elsewhere is registered, or looked
-up where this module knows no law of a name.
+A law returns the coefficient at a temperature (degC), a load (N) and a sliding speed (m/s). ``paper`` and ``v2``
+are those of ``sim.physics.friction``, which contain their compounds. ``wlf_bell`` (``sim.physics.wlf``), ``power`` and
+``arrhenius`` (``sim.physics.simple``) need figures. ``persson`` and ``greta`` (modules of these names) are
+made of a rubber and a surface; a ``LawSetting`` gives the source of both. A law from elsewhere is registered, or a
+look-up finds it for a name that this module does not know.
 """
 
 from __future__ import annotations
@@ -45,21 +45,21 @@ class LawOfRange(FrictionLaw, Protocol):
     """A law that knows where it holds."""
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
-        """Yield why the coefficient of a condition is to be taken with care, a line each."""
+        """Yield the reasons for care with the coefficient of a condition, a line each."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class LawSetting:
-    """What a law of materials needs beside compound and figures."""
+    """Data for a law of materials besides compound and figures."""
 
     materials: Materials | None = None
     surface: str = ""
     """Name of the track."""
     area_mm2: float | None = None
-    """Nominal area of contact: it makes a pressure of the load."""
+    """Nominal area of contact: the load over it is the pressure."""
     tables: Path | None = None
-    """Folder in which tables of slow laws are kept; None: they are made anew."""
+    """Folder for the tables of slow laws; None: they are made anew."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,16 +67,16 @@ class OfMaterials:
     """Declares a law that is made of materials."""
 
     make: Callable[[Rubber, Surface, float, Mapping[str, float]], FrictionLaw]
-    """From a rubber, a surface, the nominal area of contact in mm2, and figures; raises ValueError for what it cannot
-    do with."""
+    """Makes the law from a rubber, a surface, the nominal area of contact in mm2, and figures; raises ValueError for
+    unsuitable ones."""
     slow: bool = False
-    """It takes so long that a simulated rig is given a table of it (``sim.physics.tabulated``)."""
+    """Whether it is so slow that a simulated rig uses a table of it (``sim.physics.tabulated``)."""
     version: int = 1
-    """Another one for other values out of the same materials: tables of the version before are not used any more."""
+    """Version of the law, to be changed with its values for the same materials: older tables are then not used."""
 
 
 PlainMaker = Callable[[str, Mapping[str, float]], FrictionLaw]
-"""From a compound's name and its figures (the law's parameters by name, in the units that the law states); raises
+"""Makes a law from a compound's name and its figures (the law's parameters by name, in the units of the law); raises
 UnknownCompoundError, or ValueError for figures that are missing, unknown or out of range."""
 
 LawMaker = PlainMaker | OfMaterials
@@ -86,11 +86,11 @@ NO_SETTING: Final = LawSetting()
 
 
 class UnknownLawError(ValueError):
-    """A law that is not registered; the message lists those that are."""
+    """A law that is not registered; the message lists the registered laws."""
 
 
 class NoPartsError(ValueError):
-    """A law that does not know its parts; the message names it."""
+    """A law without separate parts; the message names it."""
 
 
 def _of_the_paper(model: str, compound: str, figures: Mapping[str, float]) -> FrictionLaw:
@@ -100,7 +100,7 @@ def _of_the_paper(model: str, compound: str, figures: Mapping[str, float]) -> Fr
 
 
 def _persson(rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[str, float]) -> LawOfParts:
-    from sim.physics.persson import persson  # numpy takes a tenth of a second to come: not before a law needs it
+    from sim.physics.persson import persson  # numpy takes a tenth of a second to import: only when a law needs it
 
     return persson(rubber, surface, area_mm2, figures)
 
@@ -130,18 +130,18 @@ def register(name: str, maker: LawMaker) -> None:
 
 
 def look_up_with(finder: Callable[[str], LawMaker | None]) -> None:
-    """Ask ``finder`` for laws of names that are not known here; None: it has none either."""
+    """Set the function that looks up laws of unknown names; it returns None for a name that it does not know."""
     if finder not in _FINDERS:
         _FINDERS.append(finder)
 
 
 def names() -> tuple[str, ...]:
-    """Return the laws that are known by now."""
+    """Return the names of the laws known by now."""
     return tuple(_LAWS)
 
 
 def find(name: str) -> LawMaker:
-    """Return what makes a law. Raises UnknownLawError."""
+    """Return the maker of a law. Raises UnknownLawError."""
     if name not in _LAWS:
         for finder in _FINDERS:
             maker = finder(name)
@@ -158,8 +158,8 @@ def make(
 ) -> FrictionLaw:
     """Return the law of a name for a compound.
 
-    Raises UnknownLawError and what its maker raises; for a law of materials, UnknownMaterialError, and ValueError for a
-    setting in which something is missing.
+    Raises UnknownLawError and the maker's exceptions; for a law of materials, UnknownMaterialError, and ValueError for
+    an incomplete setting.
     """
     maker = find(name)
     if isinstance(maker, OfMaterials):
@@ -185,13 +185,13 @@ def _of_materials(
 
 
 def caveats_of(law: FrictionLaw, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
-    """Yield why the coefficient of a condition is to be taken with care; nothing of a law that knows no range."""
+    """Yield the reasons for care with the coefficient of a condition; none for a law without a known range."""
     if isinstance(law, LawOfRange):
         yield from law.caveats(temperature_c, load_n, slip_m_s)
 
 
 def with_parts(name: str, law: FrictionLaw) -> LawOfParts:
-    """Return the law itself, where it knows its parts. Raises NoPartsError."""
+    """Return the law itself if it knows its parts. Raises NoPartsError."""
     if isinstance(law, LawOfParts):
         return law
     raise NoPartsError(f"law {name!r} gives the coefficient alone: it does not know adhesion from hysteresis")

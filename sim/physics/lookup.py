@@ -1,8 +1,8 @@
-"""A law of friction as a table: a simulated rig looks it up in every step, within microseconds.
+"""A law of friction as a table, because a simulated rig needs its value in every step, within microseconds.
 
 ln mu, and adhesion's share of mu, are cubic B-splines over ln v, -1 / (T + 150 degC) and the root of the load, each in
-equal steps. The second is nearly straight in the logarithm of a rubber's shift of time by temperature; under light
-loads friction hardly depends on them.
+equal steps. A rubber's logarithmic shift of time by temperature is nearly linear in the second; under light
+loads friction hardly depends on the load.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from sim.physics.laws import LawOfParts
 
 BELOW_C = 150.0
-"""So far below 0 degC the scale of temperatures has its pole."""
+"""Pole of the scale of temperatures, K below 0 degC."""
 
 
 @dataclass(frozen=True, slots=True)
 class TableSpan:
-    """What a table reaches over, from least to most."""
+    """Range of a table, from least to most."""
 
     speeds_m_s: tuple[float, float]
     temperatures_c: tuple[float, float]
     loads_n: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Raise ValueError unless every span ascends, from above its pole on, and is finite."""
+        """Raise ValueError unless every span ascends, begins above its pole, and is finite."""
         for name, (low, high), least in (
             ("speeds_m_s", self.speeds_m_s, 0.0),
             ("temperatures_c", self.temperatures_c, -BELOW_C),
@@ -43,13 +43,13 @@ class SplineTable:
     """A cubic B-spline over three axes of equal steps 0, 1, 2 ..., from its coefficients.
 
     It sums over the third axis, then over the first, and keeps both sums for the next value at the same places: load
-    and speed stay the same for thousands of steps, in which the temperature drifts. All ways give the same bits.
+    and speed stay the same for thousands of steps while the temperature drifts. All ways give the same bits.
     """
 
     def __init__(self, rows: list[list[float]], between: int) -> None:
         """Take coefficients along the first axis, row by row: all of the second axis, for each of the third.
 
-        ``between``: coefficients along the second axis. Each axis has two more than it has points.
+        ``between``: number of coefficients along the second axis. Each axis has two more than points.
         """
         self._rows = rows
         self._between = between
@@ -75,7 +75,7 @@ class SplineTable:
         ) / 216.0
 
     def _move_to(self, x: float, j: int, z: float) -> None:
-        """Work out the four sums that a value needs, at places of the first and third axis."""
+        """Calculate the four sums for a value, at places of the first and third axis."""
         if z != self._z:
             self._turn_to(z)
             rows = self._summed(j, j + 4)
@@ -92,7 +92,7 @@ class SplineTable:
         self._x, self._j, self._four = x, j, (q0, q1, q2, q3)
 
     def _turn_to(self, z: float) -> None:
-        """Work out the weights of a place on the third axis."""
+        """Calculate the weights of a place on the third axis."""
         k = min(int(z), len(self._rows) // self._between - 4)
         t = z - k
         s = 1.0 - t
@@ -103,7 +103,7 @@ class SplineTable:
         self._plane = []
 
     def _summed(self, first: int, end: int) -> list[list[float]]:
-        """Return rows of the second axis, summed up over the third."""
+        """Return rows of the second axis, summed over the third."""
         rows, n = self._rows, self._between
         at, c0, c1, c2, c3 = self._weights
         return [
@@ -116,9 +116,9 @@ class SplineTable:
 
 
 class TabulatedLaw:
-    """The law; below its least speed and load it is that of these.
+    """The law as a table; below its least speed and load the values are those at the least speed and load.
 
-    Above its span, and outside its temperatures, the law that it stands for is asked, which ``outside`` counts.
+    Above its span, and outside its temperatures, the original law is called; ``outside`` counts these calls.
     """
 
     def __init__(
@@ -130,12 +130,12 @@ class TabulatedLaw:
         adhesion: SplineTable,
         error: float,
     ) -> None:
-        """Take ln mu and the share of adhesion, at so many points of every axis."""
+        """Take ln mu and the share of adhesion, with these numbers of points on the axes."""
         self._slow = slow
         self.span = span
         self.points = points
         self.error = error
-        """Greatest relative error of the coefficient that was found off the points when the table was made."""
+        """Greatest relative error of the coefficient between the points, as found when the table was made."""
         self.outside = 0
         self._total = total
         self._adhesion = adhesion
@@ -147,8 +147,8 @@ class TabulatedLaw:
         self._slip_m_s, self._speed = self._v[0], 0.0
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
-        """Return the coefficient; outside the table, raises what the law itself raises."""
-        # In every step of a simulated rig: what ``components`` does by steps is written out.
+        """Return the coefficient; outside the table, raises the law's own exceptions."""
+        # Called in every step of a simulated rig: the steps of ``components`` are written out here.
         low_c, high_c = self._t
         if not (low_c <= temperature_c <= high_c and load_n <= self._n[1] and slip_m_s <= self._v[1]):
             self.outside += 1
@@ -163,7 +163,7 @@ class TabulatedLaw:
         return exp(self._total.value(self._speed, (-1.0 / (temperature_c + BELOW_C) - y0) * y_per, self._load))
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
-        """Return adhesion and hysteresis; outside the table, raises what the law itself raises."""
+        """Return adhesion and hysteresis; outside the table, raises the law's own exceptions."""
         if self._beyond(temperature_c, load_n, slip_m_s):
             return self._slow.components(temperature_c, load_n, slip_m_s)
         x, y, z = self._place(temperature_c, load_n, slip_m_s)
@@ -194,7 +194,7 @@ class TabulatedLaw:
 
 
 def _axis(low: float, high: float, points: int) -> tuple[float, float]:
-    """Return where an axis begins, and points by its unit."""
+    """Return the begin of an axis, and its points per unit."""
     return low, (points - 1) / (high - low)
 
 

@@ -1,7 +1,7 @@
-"""Two materials as laws of friction need them: a rubber's complex modulus and the surface that it slides on.
+"""The two materials of a law of friction: a rubber's complex modulus, and the surface that it slides on.
 
-SI throughout. ``tester.inputs.materials`` reads the files of compounds and surfaces; this module holds what a
-calculation needs of them.
+SI units throughout. ``tester.inputs.materials`` reads the files of compounds and surfaces; this module holds their
+data for calculations.
 """
 
 from __future__ import annotations
@@ -24,46 +24,46 @@ class ShearModulus(Protocol):
     def complex_pa(self, rate_rad_s: Array, temperature_c: float) -> Complex:
         """Return G* in Pa at angular frequencies above 0 rad/s (any shape) and a temperature in degC.
 
-        Raises ``OutsideError`` where it is not known there.
+        Raises ``OutsideError`` if it is not known there.
         """
         ...
 
 
 class OutsideError(ValueError):
-    """A frequency or temperature at which a modulus is not known; the message says up to where it is."""
+    """A frequency or temperature at which a modulus is not known; the message states the known range."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shear:
-    """How a contact of clean rubber is sheared off (paper G, Eq 12): tau_s0 [1 + ratio / (1 + v_c / v)^n]."""
+    """Shear strength of a contact of clean rubber (paper G, Eq 12): tau_s0 [1 + ratio / (1 + v_c / v)^n]."""
 
     strength_pa: float
-    """tau_s0, of slowest sliding."""
+    """tau_s0, at the slowest sliding."""
     speed_m_s: float
     """v_c"""
     exponent: float
     """n"""
     ratio: float
-    """Modulus of the glass over that of the rubber, Einf / E0."""
+    """Ratio of the modulus of the glass to that of the rubber, Einf / E0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rubber:
-    """A compound as laws see it."""
+    """A compound for laws of friction."""
 
     name: str
     modulus: ShearModulus
     poisson: float = 0.5
     glass_c: float | None = None
-    """Glass transition, degC, where it is known."""
+    """Glass transition, degC, if known."""
     shear: Shear | None = None
-    """What its adhesion is made of, where it is known."""
+    """Shear strength for its adhesion, if known."""
     decade_k: float = 8.0
-    """Temperature that stands for a decade of frequency (paper G, Eq 9), K."""
+    """Kelvins equivalent to a decade of frequency (paper G, Eq 9)."""
 
 
 def below_glass(rubber: Rubber, temperature_c: float) -> Iterator[str]:
-    """Yield that a compound is a glass at a temperature, of which laws of rubber know nothing."""
+    """Yield a warning if a compound is a glass at a temperature: laws of rubber do not cover this."""
     if rubber.glass_c is not None and temperature_c < rubber.glass_c:
         yield f"{temperature_c:g} degC is below the glass transition of {rubber.name}, {rubber.glass_c:g} degC"
 
@@ -91,7 +91,7 @@ class Sinusoid:
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """A track as laws see it: a spectrum, two waves (coarse, fine), or both."""
+    """A track for laws of friction: a spectrum, two waves (coarse, fine), or both."""
 
     name: str
     spectrum: Spectrum | None = None
@@ -100,14 +100,14 @@ class Surface:
 
 
 class UnknownMaterialError(ValueError):
-    """A compound or a surface of a name that no file has; the message says where was looked."""
+    """A name of a compound or a surface without a file; the message names the places searched."""
 
 
 class Materials(Protocol):
-    """Where laws find what a recipe or a rig file names."""
+    """Source of the compounds and surfaces that a recipe or a rig file names."""
 
     def rubber(self, name: str) -> Rubber:
-        """Return a compound. Raises UnknownMaterialError, and ValueError where its file has no moduli."""
+        """Return a compound. Raises UnknownMaterialError, and ValueError if its file has no moduli."""
         ...
 
     def surface(self, name: str) -> Surface:
@@ -117,27 +117,27 @@ class Materials(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ReadOnce:
-    """Materials that ask others for each name once: a law, its table and the table's key see the same content."""
+    """Materials that read each name once from a source: a law, its table and the table's key see the same content."""
 
     source: Materials
     _rubbers: dict[str, Rubber] = field(default_factory=dict[str, Rubber])
     _surfaces: dict[str, Surface] = field(default_factory=dict[str, Surface])
 
     def rubber(self, name: str) -> Rubber:
-        """Return a compound. Raises what ``source`` raises."""
+        """Return a compound. Raises the exceptions of ``source``."""
         if name not in self._rubbers:
             self._rubbers[name] = self.source.rubber(name)
         return self._rubbers[name]
 
     def surface(self, name: str) -> Surface:
-        """Return a surface. Raises what ``source`` raises."""
+        """Return a surface. Raises the exceptions of ``source``."""
         if name not in self._surfaces:
             self._surfaces[name] = self.source.surface(name)
         return self._surfaces[name]
 
 
 class Components(NamedTuple):
-    """A coefficient of friction in its parts."""
+    """The two parts of a coefficient of friction."""
 
     adhesion: float
     hysteresis: float

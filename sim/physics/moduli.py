@@ -24,7 +24,7 @@ MERGED_DECADES: Final = 0.1
 
 @dataclass(frozen=True, slots=True)
 class ConstantModulus:
-    """G* = G0 (1 + i tan delta) at every frequency and temperature: no real rubber, but one with closed forms."""
+    """G* = G0 (1 + i tan delta) at every frequency and temperature: no real rubber, but it gives closed forms."""
 
     storage_pa: float
     """G0"""
@@ -93,12 +93,12 @@ class DmaRow(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class EvenShift:
-    """As many kelvin a decade at every temperature (paper G, Eq 9)."""
+    """The same shift in kelvin per decade at every temperature (paper G, Eq 9)."""
 
     decade_k: float
 
     def __call__(self, temperature_c: float) -> float:
-        """Return what a temperature adds to log10(f / Hz)."""
+        """Return the addition to log10(f / Hz) for a temperature."""
         return -temperature_c / self.decade_k
 
 
@@ -109,15 +109,15 @@ class WlfShift:
     t_ref_c: float
 
     def __call__(self, temperature_c: float) -> float:
-        """Return what a temperature adds to log10(f / Hz). Raises PoleError."""
+        """Return the addition to log10(f / Hz) for a temperature. Raises PoleError."""
         return log10_shift(temperature_c, self.t_ref_c)
 
 
 class TabulatedModulus:
     """A measured modulus: log E' and log E'' by a monotone cubic over one abscissa, in decades of frequency.
 
-    Made by ``of_sweep`` or ``of_grid``. Outside the measured range ``OutsideError`` is raised, or with ``hold_ends``
-    the end values hold on; ``beyond_decades`` is how far that went since the object was made.
+    Made by ``of_sweep`` or ``of_grid``. Outside the measured range ``OutsideError`` is raised; with ``hold_ends``
+    the end values continue instead, and ``beyond_decades`` is the greatest distance from the range so far.
     """
 
     def __init__(
@@ -128,7 +128,7 @@ class TabulatedModulus:
         decade_of: Callable[[float], float],
         hold_ends: bool = False,
     ) -> None:
-        """Take the rows with their abscissas, ascending; ``decade_of``: what a temperature adds to log10(f / Hz)."""
+        """Take the rows with their abscissas, ascending; ``decade_of``: addition to log10(f / Hz) for a temperature."""
         self._decade_of = decade_of
         self._rows = tuple(rows)
         self._to_shear = 0.5 / (1.0 + poisson)
@@ -137,10 +137,10 @@ class TabulatedModulus:
         self._log_loss = MonotoneCubic(decades, np.log10([row.loss_pa for row in rows]))
         self.hold_ends = hold_ends
         self.beyond_decades = 0.0
-        """Greatest distance from the measured range that was asked for, decades of frequency; 0: none yet."""
+        """Greatest distance from the measured range in a call so far, decades of frequency; 0: no call outside yet."""
 
     def __repr__(self) -> str:
-        """Return its content: two of the same text are the same modulus."""
+        """Return its content: two moduli of the same text are equal."""
         ends = f"{self._least!r} to {self._most!r}, {'held' if self.hold_ends else 'not held'}"
         return f"TabulatedModulus({self._decade_of!r}, {self._to_shear!r}, {ends}, {self._rows!r})"
 
@@ -150,7 +150,7 @@ class TabulatedModulus:
     ) -> TabulatedModulus:
         """Return the modulus of a sweep of temperature at one frequency f0 (paper G, Eq 9).
 
-        E(f, T) = E(f0, T - decade_k log10(f / f0)). Raises ValueError for rows of which none can be made.
+        E(f, T) = E(f0, T - decade_k log10(f / f0)). Raises ValueError for unsuitable rows.
         """
         ordered = sorted(_checked(rows, poisson), key=lambda row: -row.temperature_c)
         if not (math.isfinite(decade_k) and decade_k > 0.0):
@@ -170,8 +170,8 @@ class TabulatedModulus:
     ) -> TabulatedModulus:
         """Return the modulus of sweeps of frequency at several temperatures: one master curve by WLF, Ts = Tg + 50 K.
 
-        Points that fall within 0.1 decade are averaged (in logarithms). Raises ValueError for rows of which no curve
-        can be made, PoleError for a temperature without a shift.
+        Points within 0.1 decade are averaged (in logarithms). Raises ValueError for rows that give no curve,
+        PoleError for a temperature without a shift.
         """
         decade_of = WlfShift(glass_c + GLASS_TO_REFERENCE_K)
         bins: dict[int, list[tuple[float, DmaRow]]] = {}
@@ -204,7 +204,7 @@ class TabulatedModulus:
         return self._to_shear * (10.0 ** self._log_storage(x) + 1j * 10.0 ** self._log_loss(x))
 
     def limits_hz(self, temperature_c: float) -> tuple[float, float]:
-        """Return between which frequencies the modulus is known at a temperature, Hz. Raises PoleError."""
+        """Return the least and the greatest known frequency of the modulus at a temperature, Hz. Raises PoleError."""
         offset = self._decade_of(temperature_c)
         return 10.0 ** (self._least - offset), 10.0 ** (self._most - offset)
 
@@ -241,7 +241,7 @@ def _above_zero(group: ConstantModulus | FractionalZener, *names: str) -> None:
 
 
 class MonotoneCubic:
-    """A cubic through points that never overshoots them (Fritsch and Carlson's, slopes of Fritsch and Butland).
+    """A cubic through points without overshoot (Fritsch and Carlson's, slopes of Fritsch and Butland).
 
     y(x) is once differentiable; between two points it stays between their values. Outside it is not defined."""
 

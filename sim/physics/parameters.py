@@ -16,7 +16,7 @@ from typing import Annotated, Literal
 from sim.physics import laws
 
 PowerLoss = Literal["retract", "hold"]
-"""What the press does without power: its spring retracts it, or its screw holds it where it is."""
+"""Behaviour of the press without power: its spring retracts it, or its screw holds it in place."""
 
 _NOT_NEGATIVE = (
     "noise", "scatter", "running_in", "wear", "relaxation", "softening", "growth", "belt_conductance",
@@ -52,7 +52,7 @@ class WheelParameters:
 
 @dataclass(frozen=True, slots=True)
 class FrictionParameters:
-    """What the paper's formulas leave open: very small slip and load, and the first second of contact."""
+    """Behaviour that the paper's formulas leave open: very small slip and load, and the first second of contact."""
 
     creep: Annotated[float, "m/s"] = 0.008  # [A] slip added along x to find a direction at no slip
     reversal_width: Annotated[float, "m/s"] = 0.001  # [A] the force passes through zero over +- this slip
@@ -73,7 +73,7 @@ class ThermalParameters:
     """Heat in rubber, hub and belt, all [A].
 
     The rubber's share of friction heat and the belt's conductance in contact are keys of ``SimParameters``
-    themselves, because they decide how a test behaves.
+    itself, because they decide the behaviour of a test.
     """
 
     density: Annotated[float, "kg/m3"] = 1120.0  # rubber
@@ -105,7 +105,7 @@ class ThermalParameters:
 class ContactParameters:
     """Wheel against belt: F = k d^n, all [A]. 125/145/160/172 N/mm at 100/200/300/400 N within 1 %.
 
-    Sizes and stiffness are those at ambient temperature, the stiffness that of a load put on within a second.
+    Sizes and stiffness are those at ambient temperature. The stiffness is that of a load put on within a second.
     """
 
     gap: Annotated[float, "mm"] = 10.0  # press travel from fully lifted to touching a new wheel
@@ -176,10 +176,10 @@ class AbrasionParameters:
 
 @dataclass(frozen=True, slots=True)
 class CounterfaceParameters:
-    """What its travel under load does to the belt's grip, all [A]: its grains go blunt, hot rubber clogs them.
+    """Effect of travel under load on the belt's grip, all [A]: its grains go blunt, and hot rubber clogs them.
 
-    Blunting takes the same share of the grip in every metre. Above ``clogs_above`` a metre counts for more, by
-    ``clogging`` a kelvin of the rubber's surface; nothing wipes the belt clean again.
+    Blunting takes the same share of the grip in every metre. For a surface of the rubber above ``clogs_above``, a metre
+    counts for more, by ``clogging`` for each kelvin. Nothing wipes the belt clean again.
     """
 
     loss: Annotated[float, "1"] = 0.0  # share of the grip lost ...
@@ -194,7 +194,7 @@ class CounterfaceParameters:
             raise ValueError("CounterfaceParameters.loss is a share of the grip, below 1")
 
     def grip_kept(self, travel_m: float, surface_c: float) -> float:
-        """Return the share of its grip that a belt keeps over a travel under load, m, below rubber of a temperature."""
+        """Return the share of its grip that a belt keeps over a travel, m, below rubber of a temperature, degC."""
         hotter_k = max(surface_c - self.clogs_above, 0.0)
         counted_m = travel_m * (1.0 + self.clogging * hotter_k)
         return (1.0 - self.loss) ** (counted_m / self.loss_travel)
@@ -256,7 +256,7 @@ class SensorParameters:
 
 @dataclass(frozen=True, slots=True)
 class SimParameters:
-    """Everything the plant is made of. The plain fields are the keys users turn; the groups hold the rest."""
+    """All parameters of the plant. The plain fields are the keys for users; the groups hold the rest."""
 
     noise: Annotated[float, "1"] = 1.0  # scale of every sensor imperfection
     scatter: Annotated[float, "1"] = 1.0  # scale of run, wheel, condition and within-run scatter

@@ -64,7 +64,7 @@ class SelfAffine:
 
 
 class TabulatedSpectrum:
-    """Measured C(q): straight between its points in logarithms. Outside them it is not defined."""
+    """Measured C(q), straight between its points in logarithms, and undefined outside them."""
 
     def __init__(self, q_1_m: Array, power_m4: Array) -> None:
         """Take at least two points. Raises ValueError unless q ascends and all is finite and above 0."""
@@ -80,7 +80,7 @@ class TabulatedSpectrum:
         self._log_q, self._log_power = np.log(q), np.log(power)
 
     def __repr__(self) -> str:
-        """Return its content: two of the same text are the same spectrum."""
+        """Return its content: two spectra of the same text are equal."""
         return f"TabulatedSpectrum({self._log_q.tolist()}, {self._log_power.tolist()})"
 
     @property
@@ -115,8 +115,8 @@ class TabulatedSpectrum:
 
 
 def _root(q_1_m: float, ratio: float, power_m4: float, exponent: float, order: int) -> float:
-    """Return the root of 2 pi int q^order C dq over q to ratio q, with C = power (q / q_1_m)^exponent there."""
+    """Return the root of 2 pi int q^order C dq over q to ratio q, for C = power (q / q_1_m)^exponent there."""
     grows = order + exponent + 1.0
-    # expm1 stays right where the integrand is nearly 1 / q.
+    # expm1 keeps its precision where the integrand is nearly 1 / q.
     integral = math.log(ratio) if abs(grows) < 1e-12 else math.expm1(grows * math.log(ratio)) / grows
     return math.sqrt(2.0 * math.pi * power_m4 * q_1_m ** (order + 1) * integral)

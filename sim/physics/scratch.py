@@ -1,14 +1,14 @@
-"""Stress in rubber that slides over a wave of a track, and the energy that it takes: what hysteresis is made of.
+"""Stress in rubber that slides over a wave of a track, and the energy lost in it: the base of hysteresis.
 
 Paper G (Farroni and others, GrETA: adhesion and hysteresis of tread rubber), Eqs 20 to 22, plane strain across the
-wave. A wave of length l and amplitude Ra is met by rubber of modulus E under the mean pressure p. They touch over 2 N
-of each l (Eq 22, which is Westergaard's), under
+wave. A wave of length l and amplitude Ra is in contact with rubber of modulus E under the mean pressure p. They touch
+over 2 N of each l (Eq 22, which is Westergaard's), under
 
     p(x) = 2 p cos(pi x / l) / sin^2(pi N / l) sqrt(sin^2(pi N / l) - sin^2(pi x / l)),   sin^2(pi N / l) = p / p_full,
     p_full = pi E Ra / (l (1 - nu^2)):
 
-from there on they touch everywhere, and p(x) = p + p_full cos(2 pi x / l). A harmonic P cos(kx) of this pressure, with
-the shear K P cos(kx) that friction K lays on it, makes at depth z of a half space, with u = kz,
+above p_full they touch everywhere, and p(x) = p + p_full cos(2 pi x / l). A harmonic P cos(kx) of this pressure, with
+the shear K P cos(kx) of friction, causes at depth z of a half space, with u = kz,
 
     sz = -P (1 + u) e^-u cos(kx) + K P u e^-u sin(kx)
     sx = -P (1 - u) e^-u cos(kx) + K P (2 - u) e^-u sin(kx)
@@ -16,9 +16,9 @@ the shear K P cos(kx) that friction K lays on it, makes at depth z of a half spa
 
 sy is the stress along the crest. An asperity is as wide as it is long, so the pressure makes the same stress along it
 as across it; shear acts along x alone. Across the crest, from its middle at t = 0 to the next valley at t = +-1, all
-stresses fade as 1 - t^2, in square 8/15 in the mean. The mean pressure (k = 0) presses the rubber evenly at any depth,
-is not cycled, and dissipates nothing: it is left out. The paper prints neither its stresses nor the fade; these are
-this program's [A].
+stresses fade as 1 - t^2, whose mean square is 8/15. The mean pressure (k = 0) presses the rubber evenly at any depth.
+It does not alternate and dissipates nothing, so it is left out. The paper prints neither its stresses nor the fade;
+these are this program's [A].
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 FADE: Final = 8.0 / 15.0
 """Mean of (1 - t^2)^2 over -1 to 1."""
 HARMONICS: Final = 100
-"""Of the pressure over a wave length."""
+"""Number of harmonics of the pressure over a wave length."""
 DEPTHS: Final = 50
-"""Of the tread, by trapezia: the integral is 1.8 to 2.2 % above that of depths without number."""
+"""Number of depths of the tread, for trapezia: the integral is 1.8 to 2.2 % above its limit for infinitely many."""
 
 
 def normal_z(u: Array) -> Array:
@@ -62,8 +62,8 @@ def shear_z(u: Array) -> Array:
 def harmonics(share: float, count: int) -> Array:
     """Return the amplitudes of cos(2 pi n x / l), n = 1 to ``count``, of the pressure in shares of its mean.
 
-    ``share``: p / p_full, above 0; from 1 on rubber and wave touch everywhere. Below, with c = 1 - 2 share and the
-    polynomials P of Legendre (P of -1 is 1), the integral of Westergaard's pressure times a cosine is closed:
+    ``share``: p / p_full, above 0; from 1 on rubber and wave touch everywhere. Below 1, with c = 1 - 2 share and the
+    polynomials P of Legendre (P of -1 is 1), the integral of Westergaard's pressure times a cosine has a closed form:
 
         a_n = [(P_(n-1) - P_(n+1)) / (2n + 1) + (P_(n-2) - P_n) / (2n - 1)](c) / (1 - c)
     """
@@ -83,11 +83,11 @@ def harmonics(share: float, count: int) -> Array:
 
 
 class Scratch:
-    """Integrals of the squares of the stress under a wave of some length, down to some depth."""
+    """Integrals of the squared stress under a wave of some length, down to some depth."""
 
     def __init__(self, wavelength_m: float, depth_m: float, count: int = HARMONICS, depths: int = DEPTHS) -> None:
-        """Work out what does not depend on the pressure, for so many harmonics. Raises ValueError for values out of
-        range."""
+        """Calculate the parts that do not depend on the pressure, for these numbers. Raises ValueError for values out
+        of range."""
         if not (wavelength_m > 0.0 and depth_m > 0.0):
             raise ValueError(f"a wave length and a depth are above 0 m, not {wavelength_m!r} and {depth_m!r}")
         if count < 1 or depths < 2:
@@ -105,8 +105,8 @@ class Scratch:
     def parts_m(self, share: float) -> tuple[float, float]:
         """Return the mean over a square of l by l of int s1^2 dz, s1^2 = sx^2 + sy^2 + sz^2 in shares of p^2, in m.
 
-        In two parts, of pressure alone and what K^2 multiplies. ``share``: p / p_full, above 0. Products of cos and
-        sin are 0 in the mean, so that each harmonic adds by itself.
+        The result has two parts: of pressure alone, and the factor of K^2. ``share``: p / p_full, above 0. Products of
+        cos and sin are 0 in the mean, so each harmonic adds by itself.
         """
         squares = FADE * harmonics(share, self._count) ** 2
         return float(squares @ self._normal), float(squares @ self._shear)

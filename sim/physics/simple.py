@@ -3,9 +3,9 @@
     power:      mu = a (v / v0)^n (load / n0)^m
     arrhenius:  mu = mu_0 + (mu_max - mu_0) exp(-(x / width)^2),  x = log10(aT v / v_ref)
 
-log10 aT = Ea / (R ln 10) (1 / T - 1 / T_ref), with T in K. In ``arrhenius`` the bell moves to higher speeds as it gets
-warmer, by an activated process of one energy (Arrhenius), where ``wlf_bell`` has the free volume of a rubber above its
-glass transition.
+log10 aT = Ea / (R ln 10) (1 / T - 1 / T_ref), with T in K. In ``arrhenius`` the bell moves to higher speeds with
+rising temperature, by an activated process of one energy (Arrhenius); ``wlf_bell`` instead uses the free volume of a
+rubber above its glass transition.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sim.physics.wlf import heated
 GAS_J_MOL_K: Final = 8.314462618
 KELVIN: Final = 273.15
 SLOWEST_M_S: Final = 1e-6
-"""Slower sliding has the coefficient of this speed in ``power``, which has no end at 0 [A]."""
+"""In ``power``, slower sliding has the coefficient of this speed, m/s, because the law has no limit at 0 [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ class PowerLaw:
         self.parameters = parameters
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
-        """Yield that the temperature does not count, and speeds at which the law ends."""
+        """Yield that the temperature does not count, and a warning for speeds at the law's limit."""
         yield "the law power knows no temperature: it is of the one at which it was measured"
         if slip_m_s < SLOWEST_M_S:
             yield f"below {1e3 * SLOWEST_M_S:g} mm/s the coefficient is that of this speed"
@@ -85,7 +85,7 @@ class Arrhenius:
         self.parameters = parameters
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
-        """Yield speeds at which friction heats the contact, which the law does not know."""
+        """Yield a warning for speeds at which friction heats the contact: the law does not include this."""
         yield from heated(slip_m_s)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:

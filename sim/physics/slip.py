@@ -1,4 +1,4 @@
-"""Slip between wheel and belt as a vector in the wheel's frame, and what a sideslip angle does to friction.
+"""Slip between wheel and belt as a vector in the wheel's frame, and the effect of a sideslip angle on friction.
 
 Frame: x along the wheel's plane in the direction of its tread at the contact, y across it. The sideslip
 angle d is the yaw of the wheel against the belt's travel. Pure formulas. Cornering factors: fitted to the
@@ -18,17 +18,17 @@ CORNERING: Final[dict[str, float]] = {"1#": 0.58, "2#": 0.0, "3#": 0.0}
 """Extra friction per sin|d|. 1#: fitted to the paper's rows; 2#: vector slip alone explains them to 2.4 %."""
 
 SIDESLIP_DATA: Final[frozenset[str]] = frozenset({"1#", "2#"})
-"""Compounds with valid sideslip data: the paper's rows of 3# repeat those of 2#, so its factor is none."""
+"""Compounds with valid sideslip data: the paper's rows of 3# repeat those of 2#, so 3# has no factor."""
 
 CREEP_M_S: Final = 0.008
 """[A] Slip added along x to find the direction of friction when there is no slip (the plant's default)."""
 
-# Without Final: a compiled module does not find a constant that is a tuple of numbers.
+# Without Final: a compiled module does not find a constant tuple of numbers.
 LOAD_N = (100.0, 400.0)
 SLIP_M_S = (0.0, 0.4)
 TEMPERATURE_C = (25.0, 85.0)
 SIDESLIP_DEG = (0.0, 30.0)
-"""Where the paper's data lie (Table 2 and appendices)."""
+"""Range of the paper's data (Table 2 and appendices)."""
 
 REVERSAL_WIDTH_M_S: Final = 0.001
 """[A] The force passes through zero over this width of slip (the plant's default)."""
@@ -59,9 +59,9 @@ def traction_direction(
 ) -> tuple[float, float]:
     """Return the direction of friction on the belt as (cx, cy), of length 1 (less only within a reversal).
 
-    Along the slip vector; as slip vanishes along (vx + creep, vy), since a driven wheel that carries
+    It is along the slip vector; as slip vanishes, along (vx + creep, vy), because a driven wheel that transmits
     traction creeps. The creep fades with the square of slip and is 6 um/s at 0.3 m/s. Where the driven
-    wheel's slip changes sign the length goes through zero over the reversal width instead of jumping.
+    wheel's slip changes sign, the length goes through zero over the reversal width instead of jumping.
     """
     x = vx + creep_m_s / (1.0 + (vx * vx + vy * vy) / (creep_m_s * creep_m_s))
     length = math.sqrt(x * x + vy * vy)
@@ -95,7 +95,7 @@ def predict(
 def caveats(
     compound: str, slip_velocity_m_s: float, load_n: float, temperature_c: float, sideslip_deg: float
 ) -> Iterator[str]:
-    """Yield why a coefficient of the laws ``paper`` and ``v2`` is to be taken with care, a line each."""
+    """Yield the reasons for care with a coefficient of the laws ``paper`` and ``v2``, a line each."""
     sideslip = abs(sideslip_deg)
     for name, value, (low, high), unit, scale in (
         ("load", load_n, LOAD_N, "N", 1.0),

@@ -1,8 +1,8 @@
-"""Tables of slow laws (``sim.physics.lookup``): made once of a law's values, kept in a folder from run to run.
+"""Tables of slow laws (``sim.physics.lookup``): made once of a law's values, and kept in a folder from run to run.
 
-A table is made with 40 speeds, 20 temperatures and 5 loads. Where it is not right enough, the axis along which it is
-worst is given twice the points, up to a limit. A file has the name of what its table was made of: the law and its
-version, its figures, the materials' content, the span. Another content is another file; one that is damaged, or that
+A table begins with 40 speeds, 20 temperatures and 5 loads. If it is not accurate enough, the number of points on the
+worst axis is doubled, up to a limit. The file's name is made of the contents of its table: the law and its
+version, its figures, the materials' content, the span. Different content has another file; a file that is damaged, or
 cannot be read, is made anew.
 """
 
@@ -28,19 +28,19 @@ if TYPE_CHECKING:
 Points = tuple[int, int, int]
 
 POINTS: Final[Points] = (40, 20, 5)
-"""Speeds, temperatures, loads."""
+"""Points on the axes: speeds, temperatures, loads."""
 ALLOWED: Final = 0.005
-"""Greatest relative error that is asked of a table."""
+"""Greatest allowed relative error of a table."""
 ROUNDS: Final = 6
-"""So many times an axis is given twice the points, at most."""
+"""Greatest number of times that an axis is given twice the points."""
 FORMAT: Final = "table 4"
-"""Another one for another way to make or to write tables."""
+"""Version of the making and writing of tables."""
 _SAMPLES: Final = 200
-"""Places midway between points: what tells a coarse table, and its worst axis."""
+"""Number of places midway between points, which show a coarse table and its worst axis."""
 _EVERYWHERE: Final = 4000
-"""Places anywhere: where adhesion saturates a law has a bend, and few of the first fall on it."""
+"""Number of places anywhere: where adhesion saturates a law has a bend, and few midway places are on it."""
 _MARGIN: Final = 0.6
-"""Samples do not find the worst place: they are to find this share of what is allowed, or less."""
+"""Samples do not find the worst place: their error must be at most this share of the allowed error."""
 _LEAST_MU: Final = 1e-12
 
 
@@ -51,10 +51,10 @@ def tabulated(
     setting: laws.LawSetting,
     span: TableSpan,
 ) -> TabulatedLaw:
-    """Return the table of a law, out of the setting's folder where it is there, else made and put there.
+    """Return the table of a law from the setting's folder; a missing table is made and put there.
 
-    Raises what ``laws.make`` raises, NoPartsError for a law that does not know its parts, and what the law raises
-    where the span leads out of what it knows.
+    Raises the exceptions of ``laws.make``, NoPartsError for a law that does not know its parts, and the law's
+    exceptions if the span exceeds the law's range.
     """
     slow = laws.with_parts(name, laws.make(name, compound, figures, setting))
     file = None
@@ -86,7 +86,7 @@ def build(slow: LawOfParts, span: TableSpan, rounds: int = ROUNDS) -> tuple[Tabu
 
 
 def build_at(slow: LawOfParts, span: TableSpan, points: Points) -> tuple[TabulatedLaw, Array, Array]:
-    """Return a table of so many points, with its splines' coefficients as ``build``."""
+    """Return a table with these numbers of points, and its splines' coefficients as ``build``."""
     speeds, temperatures, loads = _axes(span, points)
     parts = np.array([[[slow.components(t, n, v) for v in speeds] for t in temperatures] for n in loads])
     mu = np.maximum(parts.sum(axis=-1), _LEAST_MU)
@@ -126,7 +126,7 @@ def _coefficients(values: Array) -> Array:
 def _along_first(values: Array) -> Array:
     """Return coefficients along the first axis, two more than values: through each, and one cubic over two end steps.
 
-    At a point the spline is (c[i-1] + 4 c[i] + c[i+1]) / 6; its third derivative stays the same where the fourth
+    At a point the spline is (c[i-1] + 4 c[i] + c[i+1]) / 6; its third derivative is continuous where the fourth
     difference of the coefficients is 0.
     """
     n = len(values)
@@ -141,8 +141,8 @@ def _along_first(values: Array) -> Array:
 
 
 def _error(law: TabulatedLaw, slow: LawOfParts, points: Points, across: tuple[int, ...]) -> float:
-    """Return the greatest relative error at random places, midway between two points along these axes and on points
-    along others."""
+    """Return the greatest relative error at random places: midway between two points along these axes, on points
+    along the others."""
     random = np.random.default_rng(1)
     low, high = (np.array(ends) for ends in zip(*_ends(law.span), strict=True))
     worst = 0.0
@@ -151,12 +151,12 @@ def _error(law: TabulatedLaw, slow: LawOfParts, points: Points, across: tuple[in
         steps[list(across)] += 0.5
         speed, place, load = low + (high - low) * steps / (np.array(points) - 1)
         worst = max(worst, _off(law, slow, float(-1.0 / place - BELOW_C), float(load**2), float(np.exp(speed))))
-    law.outside = 0  # rounding may have led out of the span
+    law.outside = 0  # rounding may have left the span
     return worst
 
 
 def _error_anywhere(law: TabulatedLaw, slow: LawOfParts) -> float:
-    """Return the greatest relative error at random places; those of loads and speeds even in their logarithms."""
+    """Return the greatest relative error at random places; loads and speeds are spread evenly in their logarithms."""
     random = np.random.default_rng(1)
     span = law.span
     (light, heavy), (slowest, fastest) = span.loads_n, span.speeds_m_s
@@ -184,7 +184,7 @@ def _ends(span: TableSpan) -> list[tuple[float, float]]:
 def _key(
     name: str, compound: str, figures: Mapping[str, float], setting: laws.LawSetting, span: TableSpan
 ) -> str | None:
-    """Return the name of a table's file: SHA-256 of all that enters; None where some of it has no content to tell."""
+    """Return the name of a table's file: SHA-256 of all its inputs; None if the content of an input is unknown."""
     assert setting.materials is not None  # the law was made of them
     maker = laws.find(name)
     version = maker.version if isinstance(maker, laws.OfMaterials) else 0
@@ -193,12 +193,12 @@ def _key(
         setting.materials.rubber(compound), setting.materials.surface(setting.surface),
     ))  # fmt: skip
     if " object at 0x" in content:
-        return None  # an address is no content
+        return None  # an address in memory is no content
     return hashlib.sha256(content.encode()).hexdigest()
 
 
 def _write(file: Path, law: TabulatedLaw, total: Array, adhesion: Array) -> None:
-    """Put a table into its file at once; where that cannot be done, the next run makes it again."""
+    """Write a table to its file in one step; if that fails, the next run makes it again."""
     body = np.concatenate([[*total.shape, law.error], total.ravel(), adhesion.ravel()]).astype("<f8").tobytes()
     with contextlib.suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -212,7 +212,7 @@ def _write(file: Path, law: TabulatedLaw, total: Array, adhesion: Array) -> None
 
 
 def _read(file: Path) -> tuple[float, Array, Array] | None:
-    """Return a table's error and coefficients from its file; None where there is none that is whole."""
+    """Return a table's error and coefficients from its file; None if there is no complete file."""
     try:
         content = file.read_bytes()
     except OSError:

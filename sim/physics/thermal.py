@@ -1,9 +1,9 @@
 """Heat in the wheel's rubber, its hub and the belt: radial finite volumes, explicit or (when calm) implicit in time.
 
 A lump of two or three nodes misses the square-root-of-time response of the surface in the first ten
-seconds, which is what decides a friction test; so the rubber is cut into cells that shrink outward and the
-surface is a node without mass. Pure: no noise, no clock, no state but the one passed in. An observer uses
-it with its own parameters. Temperatures in degC, powers in W, times in s, conductances in W/K.
+seconds, which decides a friction test. So the rubber is cut into cells that shrink outward, and the
+surface is a node without mass. Pure: no noise, no clock, no state except the argument. An observer uses
+the module with its own parameters. Temperatures in degC, powers in W, times in s, conductances in W/K.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import Final
 from sim.physics.parameters import ThermalParameters, WheelParameters
 
 MAX_STEP_S: Final = 0.05
-"""Longest explicit step; shorter where the cells need it (``ThermalModel.step_s``)."""
+"""Longest explicit step, s; the cells may need a shorter one (``ThermalModel.step_s``)."""
 
 CALM_STEP_S: Final = 0.2
-"""Length of an implicit step (``ThermalModel.calm_step``)."""
+"""Length of an implicit step, s (``ThermalModel.calm_step``)."""
 
 
 class ThermalState:
@@ -62,15 +62,16 @@ def cell_thicknesses(layer: float, cells: int, outer: float) -> list[float]:
 
 
 _Eliminated = tuple[tuple[float, ...], list[float], list[float], tuple[float, ...], list[float]]
-"""Of an implicit step's nodes: what one keeps of its own excess over ambient, takes of the node inside, hands on of
-the node outside, gains in K per W. The hub's; the cells'; surface's and belt's; what is handed on, outside first."""
+"""Coefficients of an implicit step: a node's share of its own excess over ambient, its share of the inner node, its
+part of the outer node, its gain in K per W. Order: the hub's; the cells'; surface's and belt's; the parts of the outer
+node, outside first."""
 
 
 class ThermalModel:
     """Heat capacities and conductances of one wheel, hub and belt; ``step`` moves a state on.
 
-    ``friction_heat_fraction`` is the rubber's share of the friction heat, ``belt_conductance_w_k`` links
-    tread and belt while they touch. Holds no temperature: one model serves any number of states.
+    ``friction_heat_fraction`` is the rubber's share of the friction heat; ``belt_conductance_w_k`` connects
+    tread and belt during contact. The model holds no temperature: it serves any number of states.
     """
 
     def __init__(
@@ -80,7 +81,7 @@ class ThermalModel:
         friction_heat_fraction: float,
         belt_conductance_w_k: float,
     ) -> None:
-        """Work out the network of conductances and the longest stable step."""
+        """Calculate the network of conductances and the longest stable step."""
         outer_m = 0.5e-3 * wheel.outer_diameter
         width_m = 1e-3 * wheel.width
         thick = cell_thicknesses(1e-3 * wheel.rubber_layer, thermal.cells, 1e-3 * thermal.outer_cell)
@@ -111,7 +112,7 @@ class ThermalModel:
         self._calm = [self._eliminate(touching, rotating) for touching in (False, True) for rotating in (False, True)]
 
     def _longest_stable_step(self) -> float:
-        """Return the step in s up to which no node overshoots its neighbours in an explicit step."""
+        """Return the greatest step in s in which no node of an explicit step overshoots its neighbours."""
         tread = max(self._tread_rotating, self._tread_stopped) + self._touching
         outward = 1.0 / (1.0 / self._outer_to_surface + 1.0 / tread) if tread > 0.0 else 0.0
         links = [*self._links[:-1], outward]
@@ -121,7 +122,7 @@ class ThermalModel:
         return min(limits)
 
     def _weigh(self, dt_s: float, ambient_c: float) -> None:
-        """Prepare the cells' weights of themselves, of their inner and outer neighbours, and the air's part."""
+        """Prepare the weights of each cell, of its inner and outer neighbours, and of the air."""
         self._weighed = (dt_s, ambient_c)
         inside = [a * dt_s / c for c, a in zip(self._cell_j_k, self._links, strict=False)]
         outside = [b * dt_s / c for c, b in zip(self._cell_j_k, self._links[1:], strict=True)]
@@ -130,7 +131,7 @@ class ThermalModel:
         self._weights = (own, inside, outside, [s * ambient_c for s in air])
 
     def _eliminate(self, touching: bool, rotating: bool) -> _Eliminated:
-        """Solve the equations of an implicit step from the hub outward, as far as they are the same in every step."""
+        """Solve the equations of an implicit step from the hub outward, for the part that is the same in every step."""
         tread = self._tread_rotating if rotating else self._tread_stopped
         links = [*self._links, self._touching if touching else 0.0, 0.0]
         losses = [self._hub_to_shaft, *self._sides, tread, self._belt_to_air]
@@ -164,9 +165,9 @@ class ThermalModel:
         return mean_c
 
     def surface_gains(self, ambient_c: float, contact: float, rotating: bool) -> tuple[float, float, float, float]:
-        """Return the tread's K per K of the outermost cell, per W of friction, per K of the belt, and degC of the air.
+        """Return the tread's K per K of the outermost cell, per W of friction, per K of the belt, and degC from the air.
 
-        ``contact`` is the share of the time, 0 to 1, that tread and belt touch.
+        ``contact`` is the share of the time, 0 to 1, in which tread and belt touch.
         """
         air = self._tread_rotating if rotating else self._tread_stopped
         belt = self._touching * contact
@@ -183,11 +184,11 @@ class ThermalModel:
         contact: float,
         rotating: bool,
     ) -> None:
-        """Move a state on by ``dt_s`` (any length; cut into equal steps of at most ``step_s``).
+        """Advance a state by ``dt_s`` (any length; cut into equal steps of at most ``step_s``).
 
-        ``heater_w`` into the hub, ``friction_w`` in the contact (mean over the time), ``contact`` the share
-        of the time, 0 to 1, that tread and belt touch, ``rotating`` whether the wheel turns. What goes in
-        equals what is stored plus lost, to rounding.
+        ``heater_w`` goes into the hub, ``friction_w`` into the contact (mean over the time). ``contact`` is the share
+        of the time, 0 to 1, in which tread and belt touch; ``rotating``: the wheel turns. Heat put in
+        equals heat stored plus lost, to rounding.
         """
         steps = 1 if dt_s <= self.step_s else math.ceil(dt_s / self.step_s - 1e-6)
         dt = dt_s / steps
@@ -221,10 +222,10 @@ class ThermalModel:
         touching: bool,
         rotating: bool,
     ) -> None:
-        """Move a state on by CALM_STEP_S at once: implicit, first order, for slow changes only.
+        """Advance a state by CALM_STEP_S at once: implicit, first order, for slow changes only.
 
-        Arguments as for ``step``. Heat put in equals heat stored and lost here too, to rounding; a sudden change shows
-        late and less sharp (0.02 K of the explicit steps two seconds after it).
+        Arguments as for ``step``. Here also, heat put in equals heat stored plus lost, to rounding. A sudden change
+        shows late and less sharp (two seconds after it, 0.02 K from the explicit steps).
         """
         hub, keep, take, surface_and_belt, hand = self._calm[2 * touching + rotating]
         hub_keep, hub_gain = hub

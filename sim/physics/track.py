@@ -26,14 +26,14 @@ RUBBERS: Final[Mapping[str, WlfBellParameters]] = MappingProxyType({
     "NR": WlfBellParameters(t_ref=-20.0),  # Tg = -70 degC [A]
     "NBR": WlfBellParameters(t_ref=25.0),  # Tg = -25 degC [A]
 })
-"""Rubbers by the names that a recipe uses; they differ in their glass transition alone [A]."""
+"""Rubbers by their names in recipes; they differ only in their glass transition [A]."""
 
 
 TABLE_M_S: Final = (1e-6, 10.0)
 TABLE_C: Final = (-50.0, 100.0)
 TABLE_N: Final = (2.0, 200.0)
-"""Of a slow law a simulated rig has a table between these. Slower, as while a track comes to a stand, and lighter, as
-while an arm is lowered, is as at the ends."""
+"""Ranges of a slow law's table for a simulated rig. Values below them, as for a track that comes to a stop or for an
+arm that is lowered, are those at the ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +57,10 @@ class TrackContact:
             raise ValueError("TrackContact.touch must be below lift_travel: raised, nothing touches")
 
     def through(self, law: laws.FrictionLaw, interface: Interface) -> laws.FrictionLaw:
-        """Return the law through what is between specimen and track.
+        """Return the law with the interface between specimen and track.
 
-        Of a law that knows its parts, water and talc take adhesion and leave hysteresis; of another, a share of all.
+        If the law knows its parts, water and talc take adhesion and leave hysteresis; otherwise they take a share of
+        all.
         """
         if interface == "dry":
             return law
@@ -81,14 +82,14 @@ class LessFriction:
 
 
 class LessAdhesion:
-    """A law's hysteresis, and a share of its adhesion."""
+    """A law's hysteresis, with a share of its adhesion."""
 
     def __init__(self, law: laws.LawOfParts, share: float) -> None:
         """Take the law of dry contact."""
         self._law, self._share = law, share
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
-        """Return what is left of the parts."""
+        """Return the remaining parts."""
         adhesion, hysteresis = self._law.components(temperature_c, load_n, slip_m_s)
         return Components(self._share * adhesion, hysteresis)
 
@@ -99,7 +100,7 @@ class LessAdhesion:
 
 @dataclass(frozen=True, slots=True)
 class TrackHeat:
-    """Chamber and specimen, each one lump, all [A]."""
+    """Chamber and specimen, one lump each, all [A]."""
 
     chamber_rate: Annotated[float, "K/s"] = 0.06  # of the air at full output: 3.6 K a minute
     chamber_time: Annotated[float, "s"] = 1800.0  # of the air back to ambient; full output ends 108 K from it
@@ -135,7 +136,7 @@ class TrackSensors:
 
 @dataclass(frozen=True, slots=True)
 class TrackParameters:
-    """Everything the plant is made of."""
+    """All parameters of the plant."""
 
     motion: Motion = "linear"
     travel: Annotated[float, "mm"] = 300.0  # of a linear track from stop to stop [A]; without meaning on a disc
@@ -176,7 +177,7 @@ class TrackParameters:
     def law_of(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> laws.FrictionLaw:
         """Return the law of a rubber itself.
 
-        Raises ValueError for one that ``rubbers``, or the setting's materials, lack where the law needs it.
+        Raises ValueError for a rubber that ``rubbers``, or the setting's materials, lack although the law needs it.
         """
         if self.law != "wlf_bell":
             return laws.make(self.law, compound, setting=self._own(setting))
@@ -185,21 +186,21 @@ class TrackParameters:
         return laws.make(self.law, compound, asdict(self.rubbers[compound]))
 
     def friction_of(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> laws.FrictionLaw:
-        """Return the law of a rubber as a rig rubs by it: a slow one as a table.
+        """Return the law of a rubber for the simulated rig: a slow law as a table.
 
-        Raises ValueError as ``law_of``, and where a slow law is not known over all that a rig can do.
+        Raises ValueError as ``law_of``, and if a slow law is not known over the whole range of the rig.
         """
         maker = laws.find(self.law)
         if not (isinstance(maker, laws.OfMaterials) and maker.slow):
             return self.law_of(compound, setting)
-        from sim.physics.tabulated import tabulated  # numpy takes a tenth of a second to come
+        from sim.physics.tabulated import tabulated  # numpy takes a tenth of a second to import
 
         own = self._own(setting)
         return tabulated(self.law, compound, laws.NO_FIGURES, own, table_span(own, compound))
 
     def known_everywhere(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> None:
-        """Raise ValueError where the law of a rubber cannot be made, OutsideError where it is not known over all that
-        a rig can do."""
+        """Raise ValueError if the law of a rubber cannot be made, OutsideError if it is not known over the whole range
+        of the rig."""
         law = self.law_of(compound, setting)
         maker = laws.find(self.law)
         if isinstance(maker, laws.OfMaterials) and maker.slow:
@@ -208,7 +209,7 @@ class TrackParameters:
                 law.mu(temperature_c, load_n, speed)
 
     def _own(self, setting: laws.LawSetting) -> laws.LawSetting:
-        """Return the setting with this rig's area, and its surface where it says one; raises ValueError for none."""
+        """Return the setting with this rig's area, and its surface if it states one; raises ValueError without one."""
         materials = ReadOnce(setting.materials) if setting.materials is not None else None
         own = laws.LawSetting(materials, self.surface or setting.surface, self.contact.area, setting.tables)
         if own.materials is not None and not own.surface:
@@ -221,7 +222,7 @@ class TrackParameters:
 
 
 def table_span(setting: laws.LawSetting, compound: str) -> TableSpan:
-    """Return over what a rig's table of a slow law reaches; below the glass transition the law itself is asked."""
+    """Return the range of a rig's table of a slow law; below the glass transition the law itself is called."""
     glass_c = setting.materials.rubber(compound).glass_c if setting.materials is not None else None
     low_c, high_c = TABLE_C
     return TableSpan(TABLE_M_S, (min(max(low_c, glass_c if glass_c is not None else low_c), 0.0), high_c), TABLE_N)

@@ -1,13 +1,13 @@
-"""A bell of friction over the reduced speed: rubber whose time and temperature are one (Williams, Landel, Ferry).
+"""A bell of friction over the reduced speed: rubber with equivalent time and temperature (Williams, Landel, Ferry).
 
 mu = mu_0 + (mu_max - mu_0) exp(-(x / width)^2), x = log10(aT v / v_ref), with v in m/s and the shift
 
     log10 aT = -C1 (T - T_ref) / (C2 + T - T_ref),  T in degC.
 
-Grosch, Proc. Roy. Soc. A 274 (1963) 21, found that friction of rubber over speeds and temperatures falls on one curve
-over aT v, with a maximum. With T_ref = Tg + 50 K the constants are nearly the same for all rubbers: C1 = 8.86,
+Grosch, Proc. Roy. Soc. A 274 (1963) 21, found that the friction of rubber at all speeds and temperatures falls on one
+curve over aT v, with a maximum. With T_ref = Tg + 50 K the constants are nearly the same for all rubbers: C1 = 8.86,
 C2 = 101.5 K (Williams, Landel, Ferry 1955), valid from Tg to Tg + 100 K. At T_ref - C2 the shift has a pole: at
-or below it there is no law, and ``PoleError`` is raised.
+or below it the law is not defined, and ``PoleError`` is raised.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ C2_K: Final = 101.5
 """Constants of the shift for T_ref = Tg + 50 K."""
 GLASS_TO_REFERENCE_K: Final = 50.0
 FITTED_K: Final = 100.0
-"""From the glass transition on, the constants hold over this span, K."""
+"""Span above the glass transition in which the constants hold, K."""
 
 
 HEATING_M_S: Final = 0.01
@@ -30,7 +30,7 @@ HEATING_M_S: Final = 0.01
 
 
 def heated(slip_m_s: float) -> Iterator[str]:
-    """Yield that friction heats the contact at a speed, of which a law without heat knows nothing."""
+    """Yield a warning if friction heats the contact at a speed: a law without heat does not include this."""
     if slip_m_s > HEATING_M_S:
         yield (
             f"above {1e3 * HEATING_M_S:g} mm/s friction heats the contact, and the law knows no heat: the temperature"
@@ -57,7 +57,7 @@ def log10_shift(temperature_c: float, t_ref_c: float, c1: float = C1, c2_k: floa
 class WlfBellParameters:
     """One rubber on one track. The defaults are an SBR-like rubber on an abrasive.
 
-    Its shift is that of a rubber with Tg = -53 degC [A]; the maximum stands at 0.0755 m/s at 20 degC: the grit's length
+    Its shift is that of a rubber with Tg = -53 degC [A]; the maximum is at 0.0755 m/s at 20 degC: the grit's length
     150 um (Grosch) times the rubber's loss frequency 3162 rad/s over 2 pi [A], which is 1.74e-3 m/s at T_ref. Heights
     and width are assumed.
     """
@@ -83,7 +83,7 @@ class WlfBellParameters:
 
     @property
     def fitted_c(self) -> tuple[float, float]:
-        """The temperatures between which the shift holds, degC: glass transition and 100 K above."""
+        """Least and greatest temperature at which the shift holds, degC: glass transition and 100 K above."""
         glass_c = self.t_ref - GLASS_TO_REFERENCE_K
         return glass_c, glass_c + FITTED_K
 
@@ -98,7 +98,7 @@ class WlfBell:
 
     @property
     def parameters(self) -> WlfBellParameters:
-        """What it was made of."""
+        """Its parameters."""
         return self._parameters
 
     def shift(self, temperature_c: float) -> float:
@@ -107,7 +107,7 @@ class WlfBell:
         return log10_shift(temperature_c, p.t_ref, p.c1, p.c2)
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
-        """Yield where the shift does not hold, and speeds at which friction heats the contact."""
+        """Yield warnings for temperatures outside the shift's range, and speeds at which friction heats the contact."""
         low_c, high_c = self._parameters.fitted_c
         if not low_c <= temperature_c <= high_c:
             yield (
