@@ -222,7 +222,7 @@ class AxisCommand(CanNode):
             if self.state is State.FAULT:
                 word |= cia402.FAULT_RESET
             else:
-                self._resetting = False      # the fault went without our reset
+                self._resetting = False      # the drive has left FAULT
         if goal is _ENABLED and self.state is _OPERATING:
             self._rpdo = self._compose_motion(word | cia402.HALT if self._halt else word)
             return

@@ -197,7 +197,7 @@ class _Planner:
                                   "its heartbeat is watched by 0x1016")
 
     def _torque(self) -> None:
-        """Refuse an axis without the press' torque limit, which caps the force whatever the load cell shows."""
+        """Refuse a press without a torque limit, because it caps the force whatever the load cell shows."""
         key = o.MAX_TORQUE, 0
         if self.lacks(o.RATED_TORQUE, 0):
             self.made.rated_torque = False

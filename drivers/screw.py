@@ -1,4 +1,4 @@
-"""A screw between a drive's torque and a force, with the friction that is known of it."""
+"""A screw between a drive's torque and a force, with bounds of its friction."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ from drivers.servo_talk import (
 )
 
 BOOT_TIMEOUT_S = 2.0        # a servo's restart of its communication takes well under a second [A]
-START_TIMEOUT_S = 1.0       # NMT start to the first heartbeat that says OPERATIONAL: 20 periods of 50 ms
+START_TIMEOUT_S = 1.0       # NMT start to the first OPERATIONAL heartbeat: 20 periods of 50 ms
 STOP_TIMEOUT_S = 10.0       # the slowest ramp from full speed [A]
 
 COB_ID_COMPARED = o.COB_INVALID | o.COB_ID_MASK     # devices may answer any bit 30

@@ -20,7 +20,7 @@ _COUNTED_BY: Final = DataType.U8
 
 
 class DataSheetError(ValueError):
-    """A file that is no data sheet; the message says what is wrong where."""
+    """A file that is no data sheet; the message names the error and its place."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ def consumer_entry(node_id: int, timeout_s: float) -> int:
 
 
 def state_of(data: bytes) -> int | None:
-    """Return the NMT state of a heartbeat frame, or None where it is not one byte long.
+    """Return the NMT state of a heartbeat frame, or None if it is not one byte long.
 
     Bit 7, the toggle of the obsolete node guarding, is masked.
     """

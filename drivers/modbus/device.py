@@ -117,7 +117,7 @@ class Device(ABC):
             self.link.enable(poll)
         self.resume()
 
-    # what a device adds ----------------------------------------------------------------------------------------
+    # hooks for subclasses --------------------------------------------------------------------------------------
 
     @abstractmethod
     def take(self, block: int, data: bytes, t: float) -> None:

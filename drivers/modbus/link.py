@@ -61,7 +61,7 @@ class ModbusLink(LineType):
         self._sent = b""
         self.ear = SerialEar(False if self.socket else None)
 
-    # what the drivers ask for ----------------------------------------------------------------------------------
+    # requests of the drivers -----------------------------------------------------------------------------------
 
     def station(self, unit_id: int, timing: Timing, owner: Owner) -> Station:
         """Add a slave. Raises ValueError for an address outside 1..247 or one already taken."""
@@ -100,7 +100,7 @@ class ModbusLink(LineType):
         self._schedule.retime(request, period_s)
         self._backlog_s = self.wants_s = -inf
 
-    # what the tick does ----------------------------------------------------------------------------------------
+    # work of a tick --------------------------------------------------------------------------------------------
 
     def feed(self, chunks: list[tuple[float, bytes]], now: float) -> None:
         """Process what arrived up to ``now``: (arrival of the last byte in s, bytes), oldest first."""
@@ -222,7 +222,7 @@ class ModbusLink(LineType):
         self.deadline = deadline
         self.wants_s = deadline - _TINY_S
 
-    # what becomes of a transaction -----------------------------------------------------------------------------
+    # end of a transaction --------------------------------------------------------------------------------------
 
     def _end(self, quiet_s: float) -> None:
         """End the transaction; nothing is sent before ``quiet_s``."""

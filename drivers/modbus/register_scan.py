@@ -40,7 +40,7 @@ class LineAnswer:
     at_s: float = inf
     """Arrival of its last byte, s."""
     delay_s: float = inf
-    """Time from the end of the request to the answer, less what the answer takes on the wire, s."""
+    """Time from the end of the request to the answer, less the answer's time on the wire, s."""
 
     @property
     def ok(self) -> bool:

@@ -185,7 +185,7 @@ class Timing:
     turnaround_s: float
     """Usual time from the end of a request to the start of the reply."""
     reply_max_s: float
-    """The longest such time; after a time-out the line must have been quiet for it."""
+    """Longest time of this kind; after a time-out the line must have been quiet for it."""
     retries: int = 1
     """Further attempts after one that failed."""
 

@@ -42,7 +42,7 @@ class LawOfParts(FrictionLaw, Protocol):
 
 @runtime_checkable
 class LawOfRange(FrictionLaw, Protocol):
-    """A law that knows where it holds."""
+    """A law that knows its range of validity."""
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
         """Yield the reasons for care with the coefficient of a condition, a line each."""

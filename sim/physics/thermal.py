@@ -165,7 +165,7 @@ class ThermalModel:
         return mean_c
 
     def surface_gains(self, ambient_c: float, contact: float, rotating: bool) -> tuple[float, float, float, float]:
-        """Return the tread's K per K of the outermost cell, per W of friction, per K of the belt, and degC from the air.
+        """Return the tread's K per K of the outermost cell, per W of friction, per K of the belt, and degC of the air.
 
         ``contact`` is the share of the time, 0 to 1, in which tread and belt touch.
         """

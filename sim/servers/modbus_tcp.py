@@ -29,7 +29,7 @@ _SHORTEST_REPLY = 5
 
 
 class ModbusSession:
-    """One client's connection: ``feed`` takes bytes, ``outgoing`` holds replies; ``ended`` says why it is over."""
+    """One client's connection: ``feed`` takes bytes, ``outgoing`` holds replies; ``ended``: reason for its end."""
 
     def __init__(self) -> None:
         """Wait for requests."""
