@@ -1,1 +1,1 @@
-"""From samples to coefficients: blocks, stability, repeats, conditions, uncertainty. Plain values throughout."""
+"""From samples to coefficients: blocks, stability, repeats, conditions, uncertainty. Works on plain values."""

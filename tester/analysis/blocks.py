@@ -143,7 +143,7 @@ class BlockCounter:
         return block
 
     def _keep(self, columns: list[tuple[float, ...]], begins: bool) -> None:
-        """Keep a block's samples; ``begins``: it is the first of its stretch."""
+        """Keep a block's samples. ``begins``: the block is the first of its stretch."""
         trace = self.trace
         if begins:
             trace.starts.append(len(trace.time_s))

@@ -2,11 +2,11 @@
 
 Within a repeat every block boundary is tried. Blocks before and after it have two levels, and the surface temperature
 has a sensitivity with the prior of the drift's fit (``tester.analysis.drift``). The boundary that leaves the smallest
-residual is where friction changed most. All blocks are examined, including those cut off as a transient, where a step
-hides.
+residual is where friction changed most. All blocks are examined, including the transient at the beginning, where a step
+can hide.
 
-From repeat to repeat every boundary is tried as well. The means before and after it are compared by the repeatability:
-its prior value, updated by the scatter of the repeats about those means.
+Between repeats every boundary is tried as well. The means before and after it are compared with the repeatability: its
+prior value, updated by the scatter of the repeats about those means.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def change_within(blocks: Sequence[Block]) -> float:
         later_c += c[k]
         tt = k * (n - k) / n
         determinant = tt * information - later_c * later_c
-        # A step here is collinear with the temperature: it cannot be separated from it.
+        # A step here is collinear with the temperature: the fit cannot separate the two.
         if determinant <= 1e-9 * tt * information:
             continue
         step = (later_y * information - cy * later_c) / determinant
@@ -66,9 +66,9 @@ def change_within(blocks: Sequence[Block]) -> float:
 
 
 def change_between(values: Sequence[float], repeatability: float) -> float:
-    """Return the greatest significant change between repeats, in order of time; 0 where none is significant.
+    """Return the greatest significant change between repeats, per cent of their mean; 0 where none is significant.
 
-    Per cent of their mean. ``repeatability``: prior standard deviation between repeats, a share.
+    ``values``: in order of time. ``repeatability``: prior standard deviation between repeats, a share.
     """
     n = len(values)
     if n < 2:

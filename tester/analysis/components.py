@@ -1,16 +1,15 @@
 """Adhesion and hysteresis of a specimen from its coefficients dry and with a film between the surfaces.
 
-With a film, of water or of powder, that takes all adhesion away, leaves all hysteresis and does nothing else, at one
-speed, load and temperature
+A film of water or powder is assumed to remove all adhesion and change nothing else. At one speed, load and temperature
 
   hysteresis = mu_film,  adhesion = mu_dry - mu_film,  share = mu_film / mu_dry  (of hysteresis).
 
 Both coefficients are of one specimen on one rig. Common errors (terms of the budget that belong to the rig or the
-piece, ``Contribution.common``) move both the same way, so only their effect on a component remains; independent errors
-add in squares. The contact is warmer dry than with a film. mu_film is taken to the temperature of the dry contact with
-the sensitivity c = d ln mu / dT, mu_film exp(c (T_dry - T_film)). The uncertainty of c acts over that difference, whose
-own uncertainty is at least ``RUBBER_K``. The expanded uncertainty is of 95 %, with Welch and Satterthwaite's degrees of
-freedom.
+piece, ``Contribution.common``) move both the same way, so only the combined effect on a component counts; independent
+errors add in squares. The contact is warmer dry than with a film. mu_film is corrected to the temperature of the dry
+contact with the sensitivity c = d ln mu / dT, mu_film exp(c (T_dry - T_film)). The uncertainty of c acts over that
+difference, whose own uncertainty is at least ``RUBBER_K``. The expanded uncertainty covers 95 %, with Welch and
+Satterthwaite's degrees of freedom.
 """
 
 from __future__ import annotations
@@ -37,9 +36,8 @@ thermometer sees the track as it leaves the contact, and the rubber is still war
 class PartValue:
     """A value with its uncertainty.
 
-    ``own``: standard uncertainties and degrees of freedom of errors that no other value shares. ``common``: by cause,
-    the error of the value, with its sign, when the cause is off by its standard uncertainty; and the degrees of
-    freedom.
+    ``own``: standard uncertainty and degrees of freedom of each error that no other value shares. ``common``: by cause,
+    the signed error of the value when the cause is off by its standard uncertainty, and the degrees of freedom.
     """
 
     value: float
@@ -76,7 +74,7 @@ class ByFilm:
 
 
 def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm:
-    """Return the components of a condition from its results on one specimen; ``slope``: of the film's coefficient.
+    """Return the components of a condition from its results on one specimen; ``slope``: of mu_film with temperature.
 
     Uncertainties are NaN where a result has no budget, or no repeats to derive its repeatability from.
     """

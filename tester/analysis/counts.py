@@ -1,7 +1,7 @@
 """How many of a condition's repeats were requested, made and valid, and which replace refused ones.
 
-Every count in the program comes from here. It counts whatever makes a value: repeats; pairs of repeats where both
-directions are measured; replicates for the row of their mean.
+Every count in the program comes from this module. The counted items are those that make a value: repeats; pairs of
+repeats where both directions are measured; replicates for the row of their mean.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ REPLICATES: Final = "replicates"
 class Counts:
     """Counts of a condition: ``made`` is always ``valid`` plus ``left_out``.
 
-    ``asked``: the least number that the recipe requests. ``valid``: those in the mean. ``make_ups`` are the places,
-    from 0, of those made in place of refused ones; they are among ``made``.
+    ``asked``: the least number that the recipe requests. ``valid``: those in the mean. ``make_ups``: places among
+    ``made``, from 0, of those that replace refused ones.
     """
 
     asked: int = 0
@@ -51,7 +51,7 @@ NO_COUNTS: Final = Counts()
 def make_ups_of(asked: int, made: int, refused: Collection[int]) -> tuple[int, ...]:
     """Return the places, from 0, of make-ups among ``made``: each replaces a refused one before it.
 
-    Extra ones beyond ``asked``, made while none is owed, serve precision or the test for drift: they are no make-ups.
+    Repeats beyond ``asked`` that replace none serve precision or the drift test: they are no make-ups.
     """
     owed, make_ups = 0, list[int]()
     for place in range(made):

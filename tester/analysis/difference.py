@@ -80,7 +80,7 @@ def difference(first: ConditionResult, second: ConditionResult, *, same_rig: boo
 
 
 def pieces_needed(percent: float, between_percent: float, repeats_percent: float) -> int:
-    """Return how many pieces of each of two compounds resolve a difference of so many per cent, measured on one rig.
+    """Return how many pieces of each of two compounds resolve a difference of ``percent``, measured on one rig.
 
     ``between_percent``: standard deviation from piece to piece, ``repeats_percent`` that of a piece's mean. The
     difference is detected with a probability of 90 %, by a test at 5 %, both deviations taken as known.

@@ -15,13 +15,14 @@ over revolutions of length h are ARMA(1,1): with x = h / tau and phi = exp(-x) t
 
 so rho_1, pooled over neighbours within bursts, gives phi, and with it how many blocks carry the information of one
 independent block: ``inflation``, the mean over bursts of m blocks of 1 + 2 sum_k (1 - k/m) rho_k. (An AR(1) law for the
-blocks themselves, phi = rho_1, takes 2.95 for 2.43 at 0.35 s and 0.3 s.) Bursts are apart by seconds and independent;
-with sideslip each is a contact of its own. The residual degrees of freedom are N / inflation - (repeats + 2).
+blocks themselves, phi = rho_1, gives 2.95 instead of 2.43 for h = 0.35 s and tau = 0.3 s.) Bursts are seconds apart and
+independent; with sideslip each is a contact of its own. The residual degrees of freedom are N / inflation - repeats -
+2.
 
 The condition is stable when abs(d) + t(0.9875) se(d) <= 2 %, an equivalence test that is repeated with every further
 repeat: each of four looks has a quarter of the level of 5 %. A repeat is refused only where it drifts significantly by
 itself (abs(d_r) > 2 %, abs(d_r) - t(0.95) se_r > 0), or differs from three or more siblings (F test, 0.1 %); after a
-refusal the fit is done again without it.
+refusal the fit is repeated without it.
 
 Plain Python: it runs once a repeat, in at most 2 ms.
 """
@@ -85,7 +86,8 @@ class Drift:
 class OneDrift:
     """The drift of one repeat with the condition's sensitivity to temperature; per cent, per window.
 
-    ``excess`` > 0: standard errors by which it exceeds what is allowed; ``reason`` gives it in words.
+    ``excess``: standard errors of the drift, or of its difference from the others, where that refuses the repeat; else
+    0. ``reason``: the same in words.
     """
 
     drift_percent: float
@@ -100,7 +102,7 @@ NOTHING = Drift(NAN, NAN, NAN, NAN, 0.0, 1.0)
 
 @dataclass(slots=True)
 class _Series:
-    """One repeat, centred: share of its mean y, windows t, kelvin c; sums of products."""
+    """One repeat, centred: y as a share of its mean, time t in windows, temperature c in kelvin; sums of products."""
 
     y: list[float]
     t: list[float]
@@ -259,8 +261,8 @@ def _fit(series: Sequence[_Series]) -> _Fit:
 def _singles(series: Sequence[_Series], fit: _Fit) -> tuple[OneDrift, ...]:
     """Return the drift of each repeat, with a sensitivity pooled over them.
 
-    The sensitivity is fitted together with a slope for each repeat, so the drift of a single one passes neither for an
-    effect of temperature nor for noise.
+    The sensitivity is fitted together with a slope for each repeat, so a single repeat's drift is mistaken neither for
+    an effect of temperature nor for noise.
     """
     information = sum(s.cc - s.tc * s.tc / s.tt for s in series) + fit.noise.variance / (0.01 * PER_KELVIN_PERCENT) ** 2
     per_kelvin = sum(s.cy - s.tc * s.ty / s.tt for s in series) / information if information > 0.0 else 0.0
@@ -293,10 +295,10 @@ def _singles(series: Sequence[_Series], fit: _Fit) -> tuple[OneDrift, ...]:
 def fit_drift(
     repeats: Sequence[Sequence[Block]], window: Window = ANY_LENGTH, confidence: float = CONFIDENCE
 ) -> Drift:
-    """Return the drift of repeats, each given by its valid blocks, per window (of any length: that of each repeat).
+    """Return the drift per window of repeats, each given by its valid blocks; ANY_LENGTH: per length of each repeat.
 
-    ``confidence``: of the bound, one-sided. Repeats of fewer than six blocks or without a coefficient
-    are ignored; ``repeats`` of the result then has NaN for them.
+    ``confidence``: that of the one-sided bound. Repeats of fewer than six blocks or without a coefficient are ignored;
+    ``repeats`` of the result then has NaN for them.
     """
     usable = [
         len(blocks) >= MIN_BLOCKS and all(isfinite(b.mu) for b in blocks) and sum(b.mu for b in blocks) > 0.0
@@ -321,9 +323,9 @@ def fit_drift(
 
 
 def refusals(repeats: Sequence[Sequence[Block]], window: Window) -> tuple[Drift, dict[int, OneDrift]]:
-    """Return the drift of the repeats that remain, and those refused, by position: the worst first, one at a time.
+    """Return the drift of the remaining repeats, and the refused ones by position: the worst first, one at a time.
 
-    ``repeats`` of the drift lists those that remain, in order.
+    ``repeats`` of the drift lists the remaining ones in order.
     """
     left = list(range(len(repeats)))
     refused: dict[int, OneDrift] = {}

@@ -1,7 +1,7 @@
 """The flags of a repeat or a condition: word, meaning, remedy, and whether a flag is a doubt.
 
 Records store the words; the end of a run, ``tester show``, the tables, the report, the screens and the glossary take
-sentence and remedy from this list. A new flag is an entry here.
+meaning and remedy from this list. A new flag is an entry here.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ CLOSEST_TWO: Final = "closest two of three"
 FLAGS: Final[Mapping[str, Flag]] = {
     flag.word: flag
     for flag in (
-        # In order of remedies: of several doubts the first is mended first.
+        # In order of remedies: the remedy of the first of several doubts is shown.
         Flag(
             CARRY_OVER,
             "The coefficient was still settling from repeat to repeat: the rubber was running in.",

@@ -1,11 +1,11 @@
 """A condition's repeats judged together: refusals, steadiness of the coefficient, carry-over.
 
-Make-up repeats must not launder a run-in: a coefficient that settles during the measurement loses its first repeats to
-the drift test, and the rest look steady at a value that depends on when it was measured. Such a condition carries
-``carry-over``: when two or more repeats were refused for drift of the same sign, or the first, where a run-in is at its
-worst; when the means fall or rise with the sliding distance, or the drift itself dies away along it (both at 1 %); or
-when the remaining repeats drift in the direction of the refused ones (5 %). The tests of the trend use all repeats,
-including refused ones.
+Make-up repeats must not hide a run-in: a coefficient that settles during the measurement loses its first repeats to the
+drift test, and the rest look steady at a value that depends on when it was measured. The condition is flagged
+``carry-over`` in three cases: two or more repeats were refused for drift of the same sign, or the first repeat was,
+where a run-in is strongest; the means fall or rise with the sliding distance, or the drift itself decays along it (both
+at 1 %); or the remaining repeats drift in the direction of the refused ones (5 %). The tests of the trend use all
+repeats, including refused ones.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ def judge(
 ) -> tuple[list[RepeatResult], Judgement]:
     """Return a condition's repeats as judged, and the judgement on all of them.
 
-    ``results`` are its committed repeats in order, ``blocks`` the valid blocks of each (not needed of a repeat that is
-    not valid). The recipe requests ``planned`` repeats, each of one ``window`` or more.
-    Valid repeats are judged; their drift and bound are then those of the common fit.
+    ``results`` are its committed repeats in order, ``blocks`` the valid blocks of each (not needed for an invalid
+    repeat). The recipe requests ``planned`` repeats, each of one ``window`` or more. Valid repeats are judged; their
+    drift and bound are then those of the common fit.
     """
     judged = list(results)
     valid = [i for i, result in enumerate(results) if result.valid]
@@ -110,7 +110,7 @@ def _judgement(
 def _go_the_same_way(results: Sequence[RepeatResult], drift: Drift) -> bool:
     """Return whether the refused repeats indicate a run-in: the first is among them, or the others drift as well.
 
-    A run-in is at its worst in the first repeat; where only later ones were refused, the drift of the others must be
+    A run-in is strongest in the first repeat; where only later ones were refused, the drift of the others must be
     significant and of the same sign.
     """
     if (first := next((r for r in results if r.valid or r.drifts), None)) is not None and first.drifts:
@@ -124,7 +124,7 @@ def _left_with_refused(
     blocks: Sequence[Sequence[Block]],
     window: Window,
 ) -> Judgement:
-    """Return the judgement where no repeat is left: the drift of all that were refused for it."""
+    """Return the judgement where no repeat is left: that of all repeats refused for drift."""
     drifting = [i for i, result in enumerate(results) if result.drifts and blocks[i]]
     if not drifting:
         return NOT_JUDGED

@@ -55,16 +55,17 @@ class KnownSlope:
 
     @property
     def slope(self) -> Slope:
-        """Return it as a slope."""
+        """Return this sensitivity as a slope."""
         return Slope(0.01 * self.per_kelvin_percent, 0.01 * self.u_per_kelvin_percent, self.source)
 
 
 def slope_of_pairs(at_c: float, points: Sequence[tuple[float, float]]) -> Slope | None:
     """Return the sensitivity at a temperature from conditions that differ in temperature alone; None without a pair.
 
-    ``points``: temperature in degC and coefficient (> 0) of each, including the condition itself. The slope at ``at_c``
-    of a parabola through the three nearest temperatures, of two the chord. Its uncertainty: the scatter of conditions,
-    and for curvature the difference between parabola and chord (of a chord, half of it).
+    ``points``: temperature in degC and coefficient (> 0) of each, including the condition itself. The sensitivity is
+    the slope at ``at_c`` of a parabola through the three nearest temperatures, or of the chord through two. Its
+    uncertainty: the scatter of conditions, and for curvature the difference between parabola and chord (half the slope
+    of a mere chord).
     """
     apart: list[tuple[float, float]] = []
     for point in sorted(points, key=lambda candidate: abs(candidate[0] - at_c)):
@@ -103,7 +104,7 @@ class SurfaceWarmth:
     slope: Slope = UNKNOWN
 
     def offset_k(self, terms: Sequence[Term]) -> float:
-        """Return the surface's temperature less the nominal one, K, the thermometer's lag included; 0 if unknown."""
+        """Return the surface's temperature less the nominal one, K, including the thermometer's lag; 0 if unknown."""
         lag_s = sum(term.factor for term in terms if term.acts is Acts.LAG)
         offset = self.shown_c + lag_s * self.rate_k_s - self.nominal_c
         return offset if isfinite(offset) else 0.0

@@ -6,10 +6,10 @@ its siblings' median and of more than 1 %. A value far from the others is flagge
 disagree makes any machine look precise (the closest two of three show a third of the true scatter). Repeats that a
 person leaves out, with the reason on record, are flagged ``excluded``.
 
-The paper's mean of the closest two of three repeats is used only by request (``combine: paper``): Polymers 2024, 16(5),
-596, doi 10.3390/polym16050596 (CC BY 4.0), 2.2.2. It looks more precise and is less: it scatters 1.38 times as much as
-the mean of all, and those two differ by a third of the true scatter. So the deviation between repeats stays that of all
-three, and the uncertainty of the mean is that of this mean.
+The paper's mean of the closest two of three repeats is used only on request (``combine: paper``): Polymers 2024, 16(5),
+596, doi 10.3390/polym16050596 (CC BY 4.0), 2.2.2. It looks more precise but is less precise: it scatters 1.38 times as
+much as the mean of all, and those two differ by a third of the true scatter. So the deviation between repeats stays
+that of all three, and the uncertainty of the mean is that of this mean.
 """
 
 from __future__ import annotations

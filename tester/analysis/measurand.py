@@ -6,8 +6,8 @@ it: its uncertainty has the difference from piece to piece as well, by the stand
 stated, and the change of the counterface by the reference conditions.
 
 The repeatability is pooled over the conditions of the run (ISO 5725-2, 7.4.4): a standard deviation from three values
-has a coverage factor of 4.3, and is half or twice the true one by luck. A condition that scatters by more than the pool
-(F test, 1 %) has its own.
+has a coverage factor of 4.3, and may be half or twice the true one by chance. A condition that scatters by more than
+the pool (F test, 1 %) keeps its own.
 """
 
 from __future__ import annotations
@@ -74,8 +74,8 @@ def pooled(results: Sequence[ConditionResult]) -> Pool:
 
 
 def repeatability(result: ConditionResult, pool: Pool) -> Contribution:
-    """Return the contribution of repeatability: s pooled over the run, or the condition's own where it scatters by
-    more."""
+    """Return the contribution of repeatability: s pooled over the run, or the condition's own where that is
+    significantly greater."""
     mu, n = result.mu_resultant, result.n_valid
     share = result.type_a / result.s if result.s > 0.0 else 1.0 / sqrt(n)  # more where the mean leaves some out
     own_s = result.s / mu if mu > 0.0 else 0.0

@@ -64,7 +64,7 @@ def t_upper_tail(t: float, df: float) -> float:
 
 
 def _t_expansion(p: float, df: float) -> float:
-    """Return the t quantile nearly, p > 0.5: Cornish-Fisher expansion in 1/df (A&S 26.7.5)."""
+    """Return an approximate t quantile, p > 0.5: Cornish-Fisher expansion in 1/df (A&S 26.7.5)."""
     z = _NORMAL.inv_cdf(p)
     z2 = z * z
     return z * (
@@ -79,8 +79,8 @@ def _t_expansion(p: float, df: float) -> float:
 def t_quantile(p: float, df: float) -> float:
     """Return the quantile of Student's t at probability ``p``.
 
-    ``p`` in (0, 1); ``df`` >= 0.5, may be fractional (an effective number of degrees of freedom is) or inf. Raises
-    ValueError outside. Costs about 50 us, nothing on a repeated call.
+    ``p`` in (0, 1); ``df`` >= 0.5, may be fractional (as effective degrees of freedom are) or inf. Raises ValueError
+    outside. Costs about 50 us, nothing on a repeated call.
     """
     if not (0.0 < p < 1.0 and df >= 0.5):
         raise ValueError(f"t quantile: p {p} must lie within 0..1 and df {df} be >= 0.5")

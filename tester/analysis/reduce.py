@@ -87,10 +87,10 @@ def reduce_repeat(
 ) -> RepeatResult:
     """Return a repeat's result from its blocks, in order of time.
 
-    ``rolling`` marks a condition of 0 mm/s, whose drift is not judged: its coefficient is rolling resistance, next to
-    nothing. ``alone``: no siblings to be judged with, so a drift that is not shown to be small is flagged here.
-    ``swing``: the swing of friction within a revolution; None where it was not analysed. Status: VALID, TOO_FEW when
-    the window is not full, REFUSED without a coefficient; the latter two keep their figures.
+    ``rolling`` marks a condition of 0 mm/s. Its drift is not judged: the coefficient is rolling resistance, close to 0.
+    ``alone``: the repeat has no siblings for a judgement, so a drift not shown to be small is flagged here. ``swing``:
+    the swing of friction within a revolution; None where it was not analysed. Status: VALID, TOO_FEW when the window is
+    not full, REFUSED without a coefficient; the last two keep their figures.
     """
     if not blocks:
         return without_value(RepeatStatus.TOO_FEW, "not one whole accepted revolution")
@@ -148,7 +148,7 @@ def _swing_flags(swing: Swing) -> list[str]:
 
 
 def _uncertainty(used: Sequence[Block], batches: Sequence[float], drift: Drift) -> float:
-    """Return the larger standard error of two: of the batch means, and of the blocks with their correlation."""
+    """Return the larger of two standard errors: of the batch means, and of the blocks with their correlation."""
     of_batches = standard_deviation(batches) / sqrt(len(batches))
     effective = len(used) / drift.inflation
     if effective < 1.0:
@@ -179,7 +179,7 @@ def _flags(blocks: Sequence[Block], used: Sequence[Block], window: Window) -> li
 def collected(counter: BlockCounter, window: Window, *, alone: bool) -> bool:
     """Return whether a repeat is complete.
 
-    ``alone``: it has no siblings to be judged with, so it is extended until its drift is shown to be small, at most to
+    ``alone``: it has no siblings for a judgement, so it is extended until its drift is shown to be small, at most to
     ``window.extend_to``.
     """
     blocks = counter.blocks

@@ -6,8 +6,8 @@ The same condition is measured again and again. The logarithm of its coefficient
 
 x metres of counterface that travelled under load since the run began, z metres that the piece has slid, a(piece) normal
 with the standard deviation from piece to piece. b is the counterface's change per metre, w a piece's. On one piece x
-and z grow together, and b and w cannot be separated. They can where the piece was changed CHANGES times or more, for z
-begins anew with each, or where a piece is reserved for references, which hardly slides meanwhile.
+and z grow together, and b and w cannot be separated. They can be separated where the piece was changed CHANGES times or
+more, since z restarts with each piece, or where a piece is reserved for references, which hardly slides meanwhile.
 
 Solved by generalised least squares (Aitken's estimator). w has a small prior (``PIECE_PER_M``); the deviation from
 piece to piece combines the stated one and that of the residuals between pieces, weighed by their degrees of freedom, as
@@ -73,7 +73,7 @@ class Reference:
 
     @property
     def usable(self) -> bool:
-        """Return whether it has a value and all its figures."""
+        """Return whether the value and all its figures are known."""
         values = (self.u_share, self.counterface_m, self.piece_m)
         return self.mu > 0.0 and isfinite(self.mu) and all(isfinite(value) for value in values)
 
@@ -91,7 +91,7 @@ class KnownScatter:
 @dataclass(frozen=True, slots=True)
 class CounterfaceDrift:
     """The counterface's change of the coefficient per metre of its travel under load: d ln mu / dm and its standard
-    uncertainty, 1/m. ``apart`` False: it includes an unknown part of the piece."""
+    uncertainty, 1/m. ``apart`` False: it includes an unknown part of the piece's change."""
 
     per_m: float
     standard: float
@@ -142,7 +142,7 @@ class CounterfaceDrift:
 
 
 def counterface_drift(references: Sequence[Reference], known: KnownScatter) -> CounterfaceDrift | None:
-    """Return the counterface's change from references; None with fewer than two of them, or without travel between."""
+    """Return the counterface's change from references; None with fewer than two of them, or no travel."""
     used = [reference for reference in references if reference.usable]
     travelled = [reference.counterface_m for reference in used]
     if len(used) < 2 or max(travelled) - min(travelled) <= 0.0:
@@ -169,7 +169,7 @@ def _between(
     import numpy as np
 
     stated, df = known.between**2, len(pieces) - len(compounds) - 1
-    # Too few pieces for an estimate: the stated deviation counts alone.
+    # Too few pieces for an estimate: only the stated deviation counts.
     if df < 1:
         return known.between, float(STATED_DF)
     groups = [[reference for reference in used if reference.piece == piece] for piece in pieces]

@@ -7,16 +7,16 @@ x_i with the covariance
 
 e_ik the standard uncertainty in measurement i of cause k, with its sign. Independent causes (repeatability, drift, the
 cell's zero) appear in the diagonal alone. Errors of a piece (its own factor, its diameter, its estimated wear) are
-common to the measurements on it, each by its size at that time. Errors of the rig are common to all, and drop out of
-differences except for the difference of their effects. The sensitivity to temperature is the same for all: its error
-counts as far as their temperatures differ.
+common to the measurements on it, with their size at the time of each. Errors of the rig are common to all; in a
+difference only that of their effects remains. The sensitivity to temperature is the same for all: its error counts as
+far as their temperatures differ.
 
 One test judges the whole setting. With the generalised mean m (Aitken), chi2 = (x - m)' C^-1 (x - m) of k measurements
 has k - 1 degrees of freedom. Where repeatability comes from few repeats, chi2 / (k - 1) is compared with Fisher's F.
 Its degrees of freedom are those of the repeatability over the root of its greatest share in the variance of any
-contrast. Welch and Satterthwaite divide by the square, which so far out in the tail gives up to 0.7 % of false alarms
-with 4 degrees of freedom, and 2 % with 2 (Monte Carlo); with the root, and with fewer than 4 without it, no more than
-0.2 %.
+contrast. Welch and Satterthwaite divide by the square. So far out in the tail that gives up to 0.7 % of false alarms
+with 4 degrees of freedom, and 2 % with 2 (Monte Carlo). The root, or below 4 degrees of freedom no division, gives at
+most 0.2 %.
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def _part(contribution: Contribution, condition: int, common: str, by: Surroundi
 
 
 def _of_sensitivity(mu: float, warmth: SurfaceWarmth, terms: Sequence[Term]) -> ErrorPart:
-    """Return the error of the sensitivity to temperature; with the thermometer's bias it moves all alike."""
+    """Return the error of the sensitivity to temperature; common to all measurements, as is the thermometer's bias."""
     return ErrorPart(TEMPERATURE_SENSITIVITY, mu * warmth.slope.u_per_kelvin * warmth.offset_k(terms), RIG)
 
 
@@ -169,8 +169,8 @@ class SettingAgreement:
 
     @property
     def outstanding(self) -> int | None:
-        """Return the position of the most deviant measurement, from 0; None for two, where each differs from the other
-        alike."""
+        """Return the position of the most deviant measurement, from 0; None for two, which differ equally from each
+        other."""
         if self.df < 2:
             return None
         return max(range(len(self.off)), key=lambda i: abs(self.off[i]) / self.off_standard[i])

@@ -43,14 +43,14 @@ class ConditionResult:
 
     ``mu`` is the coefficient at the nominal temperature, as are its components ``longitudinal`` and ``lateral`` and
     both budgets. ``mu_resultant``, ``mu_longitudinal`` and ``mu_lateral`` are as measured, at the mean measured
-    temperature; ``correction`` leads from these to those.
+    temperature; ``correction`` converts the latter to the former.
 
     ``interval`` is half the 95 % t interval of the mean, ``type_a`` s / sqrt(n). ``budget`` is that of the mounted
     piece in this condition, ``compound_budget`` that of the compound (module ``measurand`` makes both).
 
     Drift and its bound (one-sided, 98.75 %; of repeats judged alone 95 %) are per window, the trend over the repeats,
-    all per cent of the coefficient (``Judgement``); ``unsteady`` is their addition to the budget. ``change_percent`` is
-    the greatest sudden change of level, within a repeat or from one to the next, ``swing_percent`` and ``swing_hz``
+    all per cent of the coefficient (``Judgement``); ``unsteady``: their contribution to the budget. ``change_percent``
+    is the greatest sudden change of level, within a repeat or from one to the next, ``swing_percent`` and ``swing_hz``
     those of the repeat that swings most (``RepeatResult``). ``measured`` has the means over the valid repeats of the
     averaged channels. ``mu_without_flagged`` leaves out flagged outliers.
     """
@@ -135,13 +135,13 @@ def combine_repeats(
 ) -> ConditionResult:
     """Return a condition's result from its repeats (one result per repeat: its last attempt; none void).
 
-    The recipe requests ``planned`` repeats: where in the end fewer count, the value is flagged ``short``. Valid ones
-    that a person left out are not missed, as long as ``min_valid`` remain, the least for a value without that flag.
-    Where all repeats were refused for their drift, the value is theirs, flagged. ``ended`` and ``reason`` are the
-    status with which the run left the condition (None: it has not), ``judged`` the judgement of its drift. ``by_hand``:
-    positions that a person has left out, each with the reason. ``combining``: the mean of all that count, or the
-    paper's way. ``changed_percent``: the greatest sudden change, where it is not that between ``results`` (pairs of
-    repeats). ``counted``: the unit of ``results``, of ``tester.analysis.counts``.
+    The recipe requests ``planned`` repeats: if fewer count at the end, the value is flagged ``short``. Valid repeats
+    that a person left out cause no flag while at least ``min_valid`` remain. Where all repeats were refused for their
+    drift, their value is used and flagged. ``ended`` and ``reason`` are the status with which the run left the
+    condition (None: it has not left it), ``judged`` the judgement of its drift. ``by_hand``: positions that a person
+    has left out, each with the reason. ``combining``: the mean of all that count, or the paper's way.
+    ``changed_percent``: the greatest sudden change, where it is not computed from ``results`` (pairs of repeats).
+    ``counted``: the unit of ``results``, from ``tester.analysis.counts``.
     """
     kept, excluded = _kept(results, by_hand)
     counts = _counts(results, planned, counted)

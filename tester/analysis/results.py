@@ -20,7 +20,7 @@ NO_MEANS: Final = Means()
 
 
 class RepeatStatus(StrEnum):
-    """How a repeat ended. Only VALID ones enter a mean; a VOID one is done again under its own number.
+    """How a repeat ended. Only VALID repeats enter a mean; a VOID one is repeated under the same number.
 
     A repeat that was committed VALID may become REFUSED when its condition is judged; a make-up repeat replaces it.
     """
@@ -52,9 +52,9 @@ class ConditionStatus(StrEnum):
 class Swing:
     """Swing of friction within a revolution, apart from the wheel's orders (``tester.analysis.swing``).
 
-    ``percent``: amplitude in per cent of the mean, 0 where there is none; at ``hz``; ``skewness`` of the differences
-    between neighbouring samples. NaN where unknown. ``seen_percent``: least amplitude, of a swing that is too fast for
-    the samples to have a proper one.
+    ``percent``: amplitude in per cent of the mean, 0 where there is none; ``hz``: frequency; ``skewness``: of the
+    differences between neighbouring samples. NaN where unknown. ``seen_percent``: lower limit of the amplitude of a
+    swing too fast for the samples to show all of it.
     """
 
     percent: float = NAN
@@ -113,7 +113,7 @@ class RepeatResult:
 
     @property
     def drifts(self) -> bool:
-        """Return whether it was refused for its drift; it has a coefficient then."""
+        """Return whether the repeat was refused for its drift; it then has a coefficient."""
         return self.status is RepeatStatus.REFUSED and isfinite(self.drift_percent) and self.mu_resultant > 0.0
 
 

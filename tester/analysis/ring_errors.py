@@ -1,7 +1,7 @@
 """Whether the errors of a line through a slip ring gather at an angle of the wheel, and at which.
 
-The angle comes from the wheel's speed, whose scale is off by up to a per cent: over a thousand turns it runs through
-the whole circle. So the search varies the scale and maximises the length R of the mean of the unit vectors at the
+The angle comes from the wheel's speed, whose scale is off by up to a per cent: over a thousand turns the angle's error
+exceeds a whole circle. So the search varies the scale and maximises the length R of the mean of the unit vectors at the
 errors' angles (the vector strength, 1 = all at one angle). For n errors spread evenly the chance of a length of R or
 more is exp(-n R^2) (Rayleigh's test), times the number of scales tried.
 """

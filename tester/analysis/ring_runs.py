@@ -1,5 +1,5 @@
-"""Statistics of a slip ring with a device's line to a turning part, from the records of runs, and the trend between
-runs."""
+"""Statistics of a slip ring that carries a device's line to a turning part, from the records of runs, and the trend
+between runs."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ class RingTrend:
 
     @property
     def words(self) -> str:
-        """Return it in words, "" where unknown."""
+        """Return the trend in words, "" where unknown."""
         if not isfinite(self.per_thousand_turns):
             return ""
         grows = "grows" if self.grows else "falls" if self.z <= -GROWS_Z else "no trend beyond chance"

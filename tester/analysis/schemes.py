@@ -131,7 +131,7 @@ def _changed(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> flo
 
 
 def _why(results: Sequence[RepeatResult], place: int, of_pair: str, by_hand: Mapping[int, str]) -> str:
-    """Return why a repeat of a pair that does not count is not in the mean."""
+    """Return why a repeat of an excluded pair is not in the mean."""
     if place in by_hand:
         return f"{BY_HAND}: {by_hand[place]}"
     repeat = results[place]

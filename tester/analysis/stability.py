@@ -1,13 +1,14 @@
 """The valid part of a repeat: its length, and the revolutions at its beginning that are left out as transient.
 
 A repeat collects 1.5 windows (45 revolutions for a window of 30) after its transient and is never reopened. Steadiness
-is judged for the condition, over all its repeats (module ``drift``): one repeat alone cannot tell 2 % from chance.
+is judged for the condition, over all its repeats (module ``drift``): one repeat alone cannot distinguish a drift of 2 %
+from chance.
 
 MSER (marginal standard error rule, White 1997) finds the transient in the first 1.5 windows: leave out the first d
 blocks for which the squared standard error of the rest, sum((y - mean)^2) / (n - d)^2, is least, d up to half of them.
-A least value at the end of that range is a slope and no transient: nothing is left out, and the drift is judged with
-all of it. A truncation that moves the mean by less than 0.5 % is not made. In a repeat of several bursts MSER uses the
-values after the part that follows the surface temperature is removed.
+A least value at the end of that range means a slope, not a transient: nothing is left out, and all blocks enter the
+judgement of the drift. A truncation that moves the mean by less than 0.5 % is not made. In a repeat of several bursts
+MSER uses the values after the part that follows the surface temperature is removed.
 """
 
 from __future__ import annotations

@@ -2,14 +2,14 @@
 
 The coefficient of every accepted sample is taken as a share of the mean. The part in step with the wheel's rotation
 (its orders, a sine and a cosine of each) and a slow trend of each contact are fitted and removed. The remainder has a
-spectrum, averaged over stretches of up to ``LONGEST_S``. Where it exceeds its level within an octave ``PROMINENCE``
-times, between ``LOWEST_HZ`` and a tenth of the sampling rate, friction swings: with the frequency of the highest of
-these peaks, and an amplitude of sqrt(2) times the root mean square of that peak and its multiples. So a sine reads
+spectrum, averaged over stretches of up to ``LONGEST_S``. Friction swings where the spectrum exceeds its level within an
+octave ``PROMINENCE`` times, between ``LOWEST_HZ`` and a tenth of the sampling rate. The frequency is that of the
+highest of these peaks, the amplitude sqrt(2) times the root mean square of that peak and its multiples. So a sine reads
 true, and a saw-tooth 18 % low. A faster swing, up to the highest frequency that the sampling rate resolves, has a
-frequency and no amplitude: only a lower limit of it.
+frequency but only a lower limit of its amplitude.
 
-The skewness of the differences between neighbouring samples tells the kinds of swing apart: friction that rises slowly
-and falls fast has a skewness far below 0, a vibration none.
+The skewness of the differences between neighbouring samples distinguishes the kinds of swing: friction that rises
+slowly and falls fast has a skewness far below 0, a vibration none.
 
 An unknown swing is NaN and never 0: no contact is long enough, or the part in step with the wheel is so large that it
 may be stick-slip beside an order.

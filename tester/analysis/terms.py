@@ -5,8 +5,8 @@ into contributions to the uncertainty of one coefficient. An error reaches mu in
 formula of the coefficient and the channels measured with it.
 
 In a coefficient from both directions of sliding (``tester.analysis.directions``) errors that do not reverse with the
-sliding drop out. Of a rotation theta its square remains: mu (1 + mu^2) theta^2; of crosstalk the same. A speed that
-adds to the sliding one way reduces it the other way: its channel counts with half the difference of the directions. The
+sliding drop out. A rotation theta leaves its square, mu (1 + mu^2) theta^2, and so does crosstalk. A speed that adds to
+the sliding one way reduces it the other way: its channel counts with half the difference of the directions. The
 variance of independent errors is halved. The rest acts the same both ways, and stays.
 """
 
@@ -139,14 +139,14 @@ class BudgetPoint:
     """Of a coefficient from both directions: half the difference of the channels' means between them."""
 
     def speed(self, channel: str) -> float:
-        """Return the part of a speed's mean in the sliding speed, m/s."""
+        """Return the part of a speed channel's mean that contributes to the sliding speed, m/s."""
         return abs((self.means if self.turning is None else self.turning).get(channel, NAN))
 
 
 def with_settings(terms: Iterable[Term], settings: Mapping[str, str] = _NO_SETTINGS) -> tuple[Term, ...]:
     """Return terms with the bounds and factors that ``settings`` replaces as ``uncertainty.<name>``.
 
-    Raises ValueError for a value that is no finite number >= 0; names of no term are ignored.
+    Raises ValueError for a value that is no finite number >= 0; names that match no term are ignored.
     """
     return tuple(
         replace(

@@ -22,8 +22,8 @@ class Contribution:
     """One cause: its standard uncertainty in mu and its degrees of freedom (inf: taken as known).
 
     ``input_u`` is the standard uncertainty of the cause, in ``unit``, ``sensitivity`` the change of mu per unit of it:
-    ``standard`` is the product of their sizes. ``common``: the measurements with the same error ("" none): conditions
-    in it are off together, and a difference between them is not.
+    ``standard`` is the product of their sizes. ``common``: the measurements that share the error ("": none). It moves
+    them together, and not a difference between them.
     """
 
     name: str

@@ -120,7 +120,7 @@ def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
     fitted = spread @ design.T @ weights @ volumes
     off = volumes - design @ fitted
     rate, variance = float(fitted[-1]), float(spread[-1, -1])
-    # Birge ratio: scatter beyond the stated uncertainties widens the result, and less never narrows it.
+    # Birge ratio: scatter beyond the stated uncertainties widens the result, and smaller scatter never narrows it.
     if count > unknown:
         variance *= max(float(off @ weights @ off) / (count - unknown), 1.0)
     relative = 0.01 * max(check.u_rate_percent for check in used)
@@ -156,7 +156,7 @@ def condition_wear(checks: Sequence[WearCheck], condition: int) -> ConditionWear
 def _volumes(
     checks: Sequence[WearCheck], first: dict[float, WearCheck]
 ) -> tuple[Array, Array]:
-    """Return the volume that each has lost since the first of its series, mm3, and the covariance of them all."""
+    """Return the volume lost by each check since the first of its series, mm3, and the covariance of all."""
     import numpy as np
 
     lost: list[float] = []

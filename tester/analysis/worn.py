@@ -2,8 +2,8 @@
 
 Speeds are computed with an assumed diameter: that of the last check, less the wear since then at the rig file's rate. A
 check before the condition and one after it show the error of that assumption in between, in proportion to the distance
-slid. Without the one after, the rate from the piece's checks yields it, and without such a rate, the whole assumed wear
-is uncertain. A series of roll checks has no zero of its own: all of them share the error of the first.
+slid. Without a check after it, the wear rate from the piece's checks gives that error; without that rate, the whole
+assumed wear is uncertain. A series of roll checks has no zero of its own: all of them share the error of the first.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Worn:
     checks: tuple[WearCheck, ...] = ()
 
     def size(self, at_m: float) -> Size:
-        """Return the diameter after ``at_m`` metres of sliding, and its uncertainty by checks; NaN: at the end."""
+        """Return the diameter after ``at_m`` metres of sliding, and its uncertainty by checks. NaN: at the end."""
         at_m = at_m if isfinite(at_m) else self.last_m
         used = [check for check in self.checks if check.used]
         before = next((check for check in reversed(used) if check.sliding_m <= at_m), None)

@@ -101,7 +101,7 @@ class Setpoint(NamedTuple):
         return {axis.name: self.number(axis.name) for axis in self.axes if not axis.choices}
 
     def key(self, without: str = "") -> tuple[str, tuple[AxisValue, ...]]:
-        """Return the compound and the values of the axes, as shown to people, except that of an axis ``without``."""
+        """Return the compound and the values of the axes, as shown to people, except the axis ``without``."""
         return self.compound, tuple(axis.of(self) for axis in self.axes if axis.name != without)
 
     def but(self, compound: str | None = None, /, **values: AxisValue) -> Setpoint:
@@ -247,8 +247,8 @@ def plain(value: AxisValue) -> str:
 def condition_words(held: Setpoint, axes: Sequence[Axis] | None = None, *, compound: bool = True) -> str:
     """Return a condition in words: ``1#, 300 mm/s, 200 N, sideslip 10 deg, 40 degC``.
 
-    An axis at its default is left out. In a list of conditions ``axes`` are those to name for each, at their default or
-    not: those that differ within the list.
+    An axis at its default is left out. ``axes``: those that differ within a list of conditions, named for each even at
+    their default.
     """
     named = [axis for axis in held.axes if not axis.at_default(held)] if axes is None else axes
     return ", ".join([*([held.compound] if compound else []), *(axis.words(held) for axis in named)])

@@ -1,4 +1,4 @@
-"""The only place that reads a clock or sleeps, and the pace of a run by it. All other code receives its time."""
+"""The only module that reads a clock or sleeps, and the pace of a run. All other code receives its time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def monotonic() -> float:
 
 
 def sleep_until(deadline_s: float) -> float:
-    """Sleep until the monotonic ``deadline_s``; return how late it woke, in s (0 when the deadline had passed by less).
+    """Sleep until the monotonic ``deadline_s``; return the lateness on waking, in s, at least 0.
 
     An absolute deadline does not accumulate the lateness of earlier waits.
     """
@@ -43,7 +43,7 @@ LATE_S = 0.005
 
 
 class Pace:
-    """A clock that starts now, and waits by it."""
+    """A clock that starts at its creation, with waits until a time on it."""
 
     def __init__(self) -> None:
         """Start at 0."""
@@ -72,7 +72,7 @@ class UrgentPace(Pace):
     def wait_until(self, due_s: float) -> bool:
         """Return at ``due_s`` (s), or with True as soon as an urgent event has arrived since the last wait began.
 
-        After a late wait the receiving threads get a moment first: otherwise the scan would take data for stale that
+        After a late wait the receiving threads get a moment first: otherwise the scan would treat data as stale that
         has already arrived.
         """
         delay = due_s - self.now()

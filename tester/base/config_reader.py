@@ -1,12 +1,11 @@
 """A configuration file to frozen dataclasses and back.
 
-The dataclass is the one description of a section: its field names, types, defaults, units and ranges. From it this
-module builds the validation (pydantic models, made once per class), so a misspelt key, a wrong unit or a value out
-of range is a problem with a position in the file, like in a recipe.
+The dataclass is the only description of a section: its field names, types, defaults, units and ranges. From it this
+module builds the validation (pydantic models, made once per class), so a misspelt key, a wrong unit or a value out of
+range is a problem with a position in the file, as in a recipe.
 
-A quantity is ``Annotated[float, "m/s"]``, optionally with a ``Range``. Its key in the file is the field's name
-without the suffix that its own unit spells: ``wheel_speed_m_s`` is ``wheel_speed``. A bare number counts in the
-field's unit.
+A quantity is ``Annotated[float, "m/s"]``, optionally with a ``Range``. Its key in the file is the field's name without
+its unit's suffix: ``wheel_speed_m_s`` is ``wheel_speed``. A bare number counts in the field's unit.
 """
 
 from __future__ import annotations
@@ -125,7 +124,7 @@ def _key(name: str, hint: object) -> str:
 
 @cache
 def _base(*, further: bool) -> type[BaseModel]:
-    """Return the base of every model: a text is no number, true is not 1, an unknown key is an error or a number."""
+    """Return every model's base: text and true are no numbers; unknown keys are errors, or numbers if ``further``."""
     from pydantic import BaseModel, ConfigDict
 
     strict = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, protected_namespaces=())

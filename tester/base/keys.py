@@ -44,7 +44,7 @@ def pieces_of(typed: str) -> list[tuple[str, Meaning | None]]:
 
 
 def commands_of(typed: str) -> list[str]:
-    """Return the commands in a terminal's input; other keys mean nothing, whatever they send."""
+    """Return the commands in a terminal's input; other keys are ignored, whatever they send."""
     return [meaning.command for _, meaning in pieces_of(typed) if meaning is not None]
 
 

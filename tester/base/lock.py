@@ -64,7 +64,7 @@ class ExclusiveUse:
         self._held: list[tuple[FileLock, Path | None]] = []
 
     def lock(self, resources: Sequence[str], run: str) -> None:
-        """Lock the buses of a rig (texts such as ``can socketcan:can0``); raises RigInUseError at once, OSError.
+        """Lock the buses of a rig (texts such as ``can socketcan:can0``); never waits; raises RigInUseError, OSError.
 
         ``run`` is shown to processes that are refused.
         """

@@ -1,4 +1,4 @@
-"""Processes of ours: starting one, its real-time priority, the signals that ask it to end, its exit codes.
+"""Processes of this program: starting one, its real-time priority, the signals that ask it to end, its exit codes.
 
 The signals are INT, TERM, and HUP where the system has it (not Windows). A process started with HUP ignored (nohup, a
 service) keeps ignoring it: it must outlive its terminal.
@@ -39,7 +39,7 @@ def asking_to_end() -> list[int]:
 def caught(
     handler: Handler | signal.Handlers, numbers: Iterable[int], ignored: Iterable[int] = ()
 ) -> Generator[None]:
-    """Call a handler for signals, by number (0: none), and ignore others, within the block.
+    """Within the block, call a handler for some signals and ignore others, by number (0 is skipped).
 
     Only the main thread receives signals: in another one the block runs without a handler.
     """
@@ -113,8 +113,8 @@ LEVEL = 10
 
 
 class RealTimePriority:
-    """Real-time priority of this process; ``refused`` is why it was not granted, "" where it was. ``close`` returns
-    it."""
+    """Real-time priority of this process; ``refused`` is why it was not granted, "" where it was. ``close`` gives it
+    up."""
 
     def __init__(self) -> None:
         """Request it for every running thread: a thread without it would keep the others waiting for the

@@ -33,7 +33,7 @@ before the last three."""
 class Figure:
     """A number for a screen: ``scale`` times a key of the rig file, plus ``offset``; without a key the offset alone.
 
-    ``key`` is dotted (``limits.load_n``), a number in it is a position in a list. ``otherwise`` replaces a key that the
+    ``key`` is dotted (``limits.load_n``); a number in it is a position in a list. ``otherwise`` replaces a key that the
     rig file leaves empty.
     """
 

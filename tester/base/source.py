@@ -189,7 +189,7 @@ def _place(event: ev.Event) -> tuple[int, int]:
 
 
 class _Builder:
-    """Events to a Tree. Collects every problem that leaves the structure readable."""
+    """Turns events into a Tree, and collects every problem that leaves the structure readable."""
 
     def __init__(self, tree: Tree) -> None:
         self.tree = tree

@@ -174,10 +174,10 @@ def _meant(key: str, model: type[BaseModel] | None, at: Location, tree: Tree) ->
 
 
 def _nearest(key: str, free: Mapping[str, FieldInfo]) -> list[str]:
-    """Return the keys of ``free`` that are most similar to one; required ones come first.
+    """Return the keys of ``free`` most similar to an unknown key; required ones come first.
 
-    A key with nearly the same spelling; else those whose name, or whose quantity's, has all of its words:
-    ``slip_speed`` is a slip velocity, which is a speed, and ``angle`` the sideslip or the camber; else a key with a
+    First choice is a key with nearly the same spelling; then keys with all its words in their name or their quantity's:
+    ``slip_speed`` is a slip velocity, which is a speed, and ``angle`` the sideslip or the camber; last, a key with a
     somewhat similar spelling.
     """
     due = {name: info for name, info in free.items() if info.is_required()}
@@ -192,7 +192,7 @@ def _spelt(key: str, fields: Mapping[str, FieldInfo], cutoff: float) -> list[str
 
 
 def _of_the_words(key: str, fields: Mapping[str, FieldInfo]) -> list[str]:
-    """Return the keys that have all words of one, or their beginnings, in their name or their quantity's."""
+    """Return the keys that have all words of an unknown key, or their beginnings, in their name or their quantity's."""
     words = tuple(word for word in _tidy(key).split("_") if word)
     if not words or any(len(word) < SHORTEST for word in words):
         return []

@@ -1,4 +1,4 @@
-"""The budget of every condition: the parts of its uncertainty, in full and yet on few pages.
+"""The budget of every condition: the parts of its uncertainty, in full but on few pages.
 
 A term's source and distribution are the same in most conditions, so a table of numbered terms lists them once; the
 budgets refer to them by number.

@@ -280,7 +280,7 @@ def _window(repeat: RepeatResult) -> Mark:
 
 
 def control_chart(charts: Sequence[ControlChart]) -> Chart:
-    """Return the charts of the references, one for each compound, over their turn; those out of limits are crosses."""
+    """Return the charts of the references, one for each compound, over their order; those out of limits are crosses."""
     panels = tuple(ChartPanel(chart.compound if len(charts) > 1 else "", _series(chart)) for chart in charts)
     return Chart(
         "control",

@@ -139,7 +139,7 @@ def listed(title: str, lines: Iterable[str], tone: Tone = "") -> list[Part]:
 def rendered(
     table: Table[R], caption: str, note: str = "", *, tone: Callable[[R], Tone] | None = None, cards: bool = False
 ) -> ReportTable:
-    """Return a table of results as a report sets it; ``tone``: how a row is set."""
+    """Return a table of results in a report's form; ``tone`` gives the tone of a row."""
     titles = tuple(ReportHead(column.head, number=column.numeric) for column in table.columns)
     rows = [
         ReportRow(cells, tone(row) if tone is not None else "")

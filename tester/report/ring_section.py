@@ -1,4 +1,4 @@
-"""The slip ring with a device's line to a turning part: errors by angle and speed in a run, trend over runs."""
+"""The slip ring that carries a device's line to a turning part: errors by angle and speed in a run, trend over runs."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def trend_chart(rung: Sequence[Rung], ages: Sequence[float]) -> Chart:
 
 
 def _half(ring: RingRun) -> float:
-    """Return half the length of the bar of a run's share, errors of 1000."""
+    """Return half the length of the bar of a run's share, errors in 1000 requests."""
     share = ring.errors / ring.requests
     half = 1e3 * COVERAGE * sqrt(share * (1.0 - share) / ring.requests)
     return half if isfinite(half) else 0.0

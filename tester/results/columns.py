@@ -41,8 +41,8 @@ class Output(StrEnum):
 class Column(Generic[R]):
     """One column. ``key`` is its name in CSV files and JSON, ``heading`` the text for people, with ``unit``.
 
-    ``value`` reads it off a row, in full. For people, numbers have ``decimals`` decimals; None: as setpoints and
-    counts.
+    ``value`` reads it from a row, unrounded. For people, numbers have ``decimals`` decimals; None: the form of
+    setpoints and counts.
     """
 
     key: str
@@ -111,7 +111,7 @@ class Column(Generic[R]):
 
 
 def axis_column(axis: Axis, info: Callable[[R], ConditionInfo]) -> Column[R]:
-    """Return the column of an axis of conditions; ``info`` reads a row's setpoints off it."""
+    """Return the column of an axis of conditions; ``info`` returns a row's setpoints."""
     return Column(
         axis.column, axis.name.replace("_", " "), lambda row: axis.of(info(row).setpoint), unit_of(axis),
         narrow=axis.title,
@@ -141,7 +141,7 @@ def piece_key(worn: str) -> str:
 
 
 def mean_column(channel: Channel, means: Callable[[R], Means], views: frozenset[Output] = frozenset()) -> Column[R]:
-    """Return the column of a channel's mean; ``means`` reads a row's means off it."""
+    """Return the column of a channel's mean; ``means`` returns a row's means."""
     return Column(
         channel.measured_column, channel.label.lower(), lambda row: channel.scaled(means(row).get(channel.name)),
         channel.read_as, channel.decimals, views,
@@ -172,7 +172,7 @@ class Table(Generic[R]):
         return replace(self, rows=tuple(rows))
 
     def view(self, output: Output, first: Iterable[str] = ()) -> Table[R]:
-        """Return the table with the columns of an output, behind those of the keys ``first``; raises KeyError."""
+        """Return the table with the columns of an output, after those of the keys ``first``; raises KeyError."""
         leading = tuple(self[key] for key in first)
         return replace(self, columns=leading + tuple(column for column in self.columns if output in column.views))
 

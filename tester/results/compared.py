@@ -51,7 +51,7 @@ class Pair(NamedTuple):
 def same_rig(stored_run: StoredRun, other: StoredRun) -> bool:
     """Return whether two runs share the errors of the measuring chain.
 
-    They do with the same calibration of the same rig; a simulated rig has other imperfections for every seed.
+    They share them with the same calibration of the same rig; a simulated rig has other imperfections for every seed.
     """
     first, second = stored_run.info, other.info
     return (stored_run.calibration_sha256, first.simulated, first.seed) == (
@@ -81,7 +81,7 @@ def pairs(first: RunResults, second: RunResults, compounds: tuple[str, str] | No
 
 def comparison(first: RunResults, second: RunResults, compounds: tuple[str, str] | None = None) -> Table[Pair]:
     """Return the table of ``pairs``: coefficients, their difference, its standard uncertainty u, z and the coverage
-    factor k of chance."""
+    factor k (95 %)."""
     axes = [axis_column(axis, _info) for axis in first.axes]
     return Table((*_WHICH, *axes, *_FOUND), tuple(pairs(first, second, compounds)))
 

@@ -1,6 +1,6 @@
 """The table of conditions: every column of it, once.
 
-``mu`` is the coefficient at the nominal temperature (``tester.analysis.repeats``), as are U and all other figures of it
+``mu`` is the coefficient at the nominal temperature (``tester.analysis.repeats``), as are U and all its other figures
 except ``mu_as_measured`` and the scatter between repeats, ``s``. Counts are those of ``tester.analysis.counts``. A new
 column is an entry here; its ``views`` name the outputs that show it to people.
 """

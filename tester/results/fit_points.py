@@ -41,7 +41,7 @@ def _no_heat(measured: Measured) -> float:
 
 @dataclass(frozen=True, slots=True)
 class ConditionReader:
-    """What a kind reads off a condition for a fit; values of variables are in a law's own units."""
+    """A kind's reader of conditions for a fit; values of variables are in a law's own units."""
 
     temperature: int
     """Place of the temperature among the variables."""
@@ -154,8 +154,7 @@ def _repeatability(measured: Measured, metadata: Mapping[str, str]) -> Scatter:
 
 def _rest(measured: Measured, apart: Set[str], *, own: bool) -> float:
     """Return the budget without the names in ``apart``, as a share of the coefficient; ``own``: the condition's
-    independent part, else the part that conditions share.
-    """
+    independent part; otherwise the part that conditions share."""
     result = measured.result
     parts = [part for part in result.budget.contributions if part.name not in apart and own is not bool(part.common)]
     squares = sum(part.standard**2 for part in parts)
@@ -168,5 +167,5 @@ def _apart(terms: Iterable[Term]) -> Set[str]:
 
 
 def _piece(measured: Measured) -> int:
-    """Return the piece on which a condition was measured, of several the last."""
+    """Return the piece on which a condition was measured, the last of several."""
     return max((repeat.piece for repeat in measured.repeats if repeat.result.valid), default=0)

@@ -66,8 +66,8 @@ class Format:
 def _csv(
     rows: Callable[[Record], Iterator[tuple[Cell, ...]]], *, bom: bool = False, risk: bool = True
 ) -> Callable[[Record, BinaryIO], None]:
-    """Return the writer of a table: UTF-8, with ``bom`` behind a byte order mark; ``risk``: with a last column for
-    it."""
+    """Return the writer of a table in UTF-8. ``bom``: after a byte order mark; ``risk``: with the risk as last column.
+    """
 
     def write(record: Record, file: BinaryIO) -> None:
         made = rows(record)

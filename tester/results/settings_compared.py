@@ -58,7 +58,7 @@ class RepeatedSetting:
         return self.found.measurements[0] if self.found is not None else self.measurements[0]
 
     def differences(self) -> Iterator[tuple[SettingMeasurement, SettingMeasurement, Difference]]:
-        """Yield the first usable measurement and each later one, with the later less the first."""
+        """Yield the first usable measurement and each later one, with the difference, later less first."""
         for later in self.found.measurements[1:] if self.found is not None else ():
             yield self.first, later, difference_of(self.first, later)
 

@@ -25,7 +25,7 @@ class SettingRow:
 
     @property
     def one_piece(self) -> bool:
-        """Return whether it was made on the piece of the setting's first."""
+        """Return whether it was made on the piece of the setting's first measurement."""
         return self.measurement.piece == self.setting.first.piece
 
     @property

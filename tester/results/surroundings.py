@@ -92,7 +92,7 @@ class SurroundingsOf:
         )
 
     def known(self, reserved: bool) -> KnownScatter:
-        """Return the known scatter beside references."""
+        """Return the known scatter for the evaluation of references."""
         between = sum(term.standard for term in self.terms if term.acts is Acts.PIECE)
         return KnownScatter(float(self._pool.df) if self._pool.df else inf, between, reserved)
 
@@ -104,7 +104,7 @@ class SurroundingsOf:
         return 0.01 * self._pool.s_percent if self._pool.df else REPEATABILITY
 
     def _travel(self, repeats: Sequence[StoredRepeat]) -> Travel:
-        """Return how far counterface and piece had come at the mean of the repeats that count."""
+        """Return the travel of counterface and piece, the mean over the repeats that count."""
         travels = [
             self._travels[repeat.key] for repeat in repeats if repeat.result.valid and repeat.key in self._travels
         ]
@@ -136,7 +136,7 @@ class SurroundingsOf:
         return UNKNOWN
 
     def _size(self, repeats: Sequence[StoredRepeat]) -> Size:
-        """Return the diameter of the measured pieces, of several the least certain."""
+        """Return the diameter of the measured pieces, the least certain of several."""
         pieces = dict.fromkeys(repeat.piece for repeat in repeats)
         sizes = [self._worn[piece].size(self._slid(piece, repeats)) for piece in pieces if piece in self._worn]
         return max(sizes, key=lambda size: (not size.checked, size.checked_u_mm, size.loss_mm), default=NO_SIZE)

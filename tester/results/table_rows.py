@@ -61,7 +61,7 @@ class TableRow:
 
     @property
     def tried(self) -> bool:
-        """Return whether the run came to this row: a repeat is on record, or why there is none."""
+        """Return whether the run reached this row: a repeat, or the reason for its absence, is on record."""
         return self.result.status is not ConditionStatus.PENDING or any(m.repeats for m in self.replicates)
 
     def describe(self) -> str:

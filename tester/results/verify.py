@@ -84,7 +84,7 @@ def verify(folder: Path, kept: str = "") -> Verification:
 
 
 def _chain(chain: ChainFound, kept: str) -> list[str]:
-    """Return the contradictions to the chain, and whether it ends in the head that a person has kept."""
+    """Return the contradictions to the chain, and whether it ends in the head that a person kept."""
     problems = [f"run.db: {problem}" for problem in chain.problems]
     if not kept or kept.lower() == chain.head:
         return problems

@@ -24,7 +24,7 @@ def errors(figures: Errors | None) -> Json:
 
 
 def group(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> dict[str, Json]:
-    """Return the fit of a group; ``force``: with intervals that are not reliable."""
+    """Return the fit of a group; ``force``: include unreliable intervals."""
     law = fit.law
     table: Json = dict(law.table(fit.parameters)) if law.table is not None else None
     return {

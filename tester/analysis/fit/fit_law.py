@@ -96,7 +96,7 @@ class Common:
     """An error that conditions of a source share: its name and standard uncertainty.
 
     ``variable``: place of the variable that it shifts (in the law's unit); None: it multiplies the coefficient, and
-    ``standard`` is relative. ``piece``: the mounting whose conditions share it, 0: all of the source.
+    ``standard`` is relative. ``piece``: the mounting whose conditions share it, 0: all conditions of the source.
     """
 
     name: str
@@ -124,7 +124,7 @@ class FitPoint:
 
     ``nominal`` values of the variables sort conditions into cells, ``measured`` ones are fitted. ``value``: the
     coefficient, above 0. ``type_a``: its standard uncertainty from repeats as a share of it, from an estimate with
-    ``df`` degrees of freedom (infinite: declared); NaN where nothing is known of repeats. ``own``: standard
+    ``df`` degrees of freedom (infinite: declared); NaN where the scatter of repeats is unknown. ``own``: standard
     uncertainty, as a share, of further terms that differ between conditions. ``between``: standard deviation by which a
     condition misses any smooth law, as a share; 0 where none is declared. ``piece``: number of the mounted piece.
     ``own_heat_k``: estimated warming of the contact by friction above the measured temperature, by the rig file.
@@ -157,7 +157,7 @@ class FitError(TroubleError, ValueError):
 
 
 def by_group(points: Iterable[FitPoint]) -> dict[str, list[FitPoint]]:
-    """Return the points of each group, groups in order of their names, points in their own."""
+    """Return the points of each group: groups in order of their names, points in their given order."""
     groups: dict[str, list[FitPoint]] = {}
     for point in sorted(points, key=lambda point: point.group):
         groups.setdefault(point.group, []).append(point)

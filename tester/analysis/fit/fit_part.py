@@ -37,8 +37,8 @@ class Claim:
 class PublishedTable:
     """A publication's claims compared with its own data.
 
-    ``compared``: lines that include rows which are no evidence, by the treatment of these rows; nothing is required of
-    them.
+    ``compared``: lines that include rows without value as evidence, by the treatment of these rows. They have no
+    required result.
     """
 
     title: str
@@ -76,8 +76,8 @@ class FitPart:
     def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
         """Return a law as it applies to a group; raises FitError.
 
-        A law based on moduli becomes that of the group's compound on ``surface`` ("": that of the run), with
-        ``figures`` that are not fitted, by name. Others are returned unchanged, and take no figures.
+        A law based on moduli becomes the law of the group's compound on ``surface`` ("": that of the run). ``figures``:
+        values that are not fitted, by name. Other laws are returned unchanged and accept neither.
         """
         if surface or figures:
             raise FitError(f"the law {law.name} takes no surface and no figures")
@@ -92,7 +92,7 @@ class FitPart:
         return ()
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
-        """Return a law with published parameters over setpoints; raises KeyError for no such law."""
+        """Return a law with published parameters as a function of setpoints; raises KeyError for an unknown law."""
         raise KeyError(name)
 
     def checked(self, sources: Sequence[str], validation: Sequence[str]) -> bool:
@@ -100,5 +100,5 @@ class FitPart:
         return False
 
     def published_table(self) -> PublishedTable:
-        """Return the publication's table, fitted anew; raises FitError for none, MissingExtraError."""
+        """Return the publication's table, fitted anew; raises FitError where there is none, MissingExtraError."""
         raise FitError("nothing is published of this kind of rig")

@@ -75,9 +75,8 @@ def _independent(denominator: Denominator) -> str:
 
 
 def group_lines(fit: GroupFit, validation: Errors | None, *, force: bool = False) -> Iterator[str]:
-    """Yield the fit of a group; ``validation``: its errors on other conditions; ``force``: with intervals that are not
-    reliable.
-    """
+    """Yield the fit of a group; ``validation``: its errors on other conditions; ``force``: include unreliable
+    intervals."""
     sources = ", ".join(dict.fromkeys(point.source.name for point in fit.points))
     yield f"{fit.group}: {len(fit.points)} conditions of {sources}, mu as measured"
     yield from _parameter_lines(fit, force)
@@ -115,7 +114,7 @@ def _cell_words(fit: GroupFit) -> str:
 
 
 def trend_lines(fits: Sequence[GroupFit], *, force: bool = False) -> Iterator[str]:
-    """Yield peaks, exponents and signs of the trends of all groups; ``force``: even of a law that does not describe."""
+    """Yield peaks, exponents and signs of the trends of all groups; ``force``: even where the law does not fit."""
     for fit in fits:
         at = ", ".join(v.words(x) for v, x in zip(fit.law.variables, fit.trends.at, strict=True))
         if fit.lack.shown and not force:

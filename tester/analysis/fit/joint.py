@@ -87,7 +87,7 @@ class GroupFit:
 
     @property
     def left_out(self) -> Errors:
-        """Return errors of conditions in fits without their cell."""
+        """Return the errors of conditions, each predicted by a fit without its cell."""
         return _errors(self.left_out_pairs)
 
     def predict(self, points: Sequence[FitPoint]) -> list[float]:
@@ -101,7 +101,7 @@ class GroupFit:
 
 @dataclass(frozen=True, slots=True)
 class Overall:
-    """Errors over all groups: of fitted conditions, of those left out with their cell, of others (None: none)."""
+    """Errors over all groups: of conditions fitted, left out with their cell, and not used (None: there are none)."""
 
     fitted: Errors
     left_out: Errors

@@ -1,9 +1,9 @@
 """Whether a law describes conditions: the size of its residuals against independent scatter, and their order.
 
-An F test compares the residuals with the repeatability and the scatter between conditions. Runs tests look, for each
-variable, along every line of conditions that differ in it alone: residuals of a law of the wrong form keep their sign.
-All tests are judged together, at ``LEVEL`` in all (Holm, Scand. J. Statist. 6 (1979) 65). Their distributions are
-simulated: errors of the right law, less the part that the fit absorbs.
+An F test compares the residuals with the repeatability and the scatter between conditions. For each variable, runs
+tests examine every line of conditions that differ in it alone: residuals of a law of the wrong form keep their sign
+along it. All tests are judged together, at ``LEVEL`` in total (Holm, Scand. J. Statist. 6 (1979) 65). Their
+distributions are simulated: errors of the right law, less the part that the fit absorbs.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class LackTest:
 class Lack:
     """Whether a law describes the conditions. ``residual``: standard deviation of the residuals of ln mu.
 
-    ``visible``: root mean square of a departure of ln mu, beyond what the parameters absorb, that the F test detects in
+    ``visible``: root mean square of a departure of ln mu that the parameters do not absorb and the F test detects in
     ``SEEN`` of cases.
     """
 
@@ -168,7 +168,7 @@ class Chance:
         return errors - (errors @ self._taken) @ self._taken.T
 
     def _figures(self, residuals: Array, scale: Array) -> tuple[Array, dict[str, Array]]:
-        """Return F and, by variable, how often neighbours differ in sign, of each row."""
+        """Return, for each row, F and how often neighbours along each variable differ in sign."""
         f = np.sum(residuals**2, axis=-1) / self._df / scale
         signs = np.sign(residuals[:, : self._n]) * (np.abs(residuals[:, : self._n]) > self._negligible)
         return f, {

@@ -65,11 +65,11 @@ class FitProblem:
 
     @property
     def priors(self) -> int:
-        """Return how many errors common to a source are unknowns."""
+        """Return how many errors common to a source are unknowns of the fit."""
         return len(self._shared)
 
     def inward(self, natural: Sequence[float]) -> Array:
-        """Return the search vector of a law's parameters; errors in common at 0."""
+        """Return the search vector of a law's parameters, with the common errors at 0."""
         values = [log(natural[i]) if self._positive[i] else natural[i] for i in self.free]
         return np.array([*values, *(0.0 for _ in self._shared)])
 
@@ -82,7 +82,7 @@ class FitProblem:
         return parameters
 
     def logarithms(self, z: Array) -> Array:
-        """Return ln mu of the law for the conditions, with the errors in common, shape (..., n)."""
+        """Return ln mu of the law for the conditions, with the common errors, shape (..., n)."""
         x, gain = self.x, np.zeros(())
         for j, one in enumerate(self._shared):
             error = one.standard * z[..., len(self.free) + j, None] * one.rows
@@ -116,7 +116,7 @@ class FitProblem:
 def _sigmas(points: Sequence[FitPoint]) -> Array:
     """Return the standard deviation of each condition's ln mu.
 
-    Conditions without repeats get the mean of those with some. Without any, all count 1.
+    Conditions without repeats get the mean variance of those with repeats. Without any repeats all get 1.
     """
     known = [point.type_a**2 for point in points if point.type_a == point.type_a]
     if not known:
@@ -140,5 +140,5 @@ def _shared(points: Sequence[FitPoint]) -> tuple[_Shared, ...]:
 
 
 def _rows(points: Sequence[FitPoint], source: Source, piece: int) -> Array:
-    """Return 1 for each condition of a source and, unless that is 0, of a piece, else 0."""
+    """Return 1 for each condition of a source and a piece (0: any piece), and 0 for the others."""
     return np.array([float(point.source == source and piece in (0, point.piece)) for point in points])

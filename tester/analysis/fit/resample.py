@@ -43,9 +43,9 @@ class Resamples:
 def resample(problem: FitProblem, fitted: Array, count: int = RESAMPLES, seed: int = SEED) -> Resamples:
     """Return fits to conditions drawn anew from the fit: each with an error of its own, and errors in common.
 
-    Own errors are normal, in proportion to ``problem.sigma`` and of the size of the residuals. The uncertainty of that
-    size from so few residuals is drawn as well, which turns percentiles into what Student's t makes of standard
-    deviations. Resamples whose search does not converge are left out.
+    Own errors are normal, in proportion to ``problem.sigma`` and as large as the residuals. The uncertainty of that
+    size from so few residuals is drawn as well. It widens percentiles as Student's t widens standard deviations.
+    Resamples whose search does not converge are left out.
     """
     random = np.random.default_rng(seed)
     n, free = len(problem.points), len(problem.free)
@@ -61,8 +61,8 @@ def resample(problem: FitProblem, fitted: Array, count: int = RESAMPLES, seed: i
 def without_cells(problem: FitProblem, fitted: Array, cells: Sequence[int]) -> tuple[list[tuple[int, float]], int]:
     """Return place and predicted coefficient of each condition from a fit without its cell, and how many cells stay in.
 
-    A cell: the conditions with equal nominal values of the variables ``cells``. It stays in where the others do not
-    determine the parameters.
+    A cell is the set of conditions with equal nominal values of the variables ``cells``. It stays in where the other
+    conditions do not determine the parameters.
     """
     of = [tuple(point.nominal[i] for i in cells) for point in problem.points]
     keys = sorted(set(of))

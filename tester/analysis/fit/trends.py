@@ -34,10 +34,11 @@ Interval = tuple[float, float]
 class Trend:
     """Trend of the coefficient with one variable, others as in ``Trends.at``.
 
-    ``peak`` is where it is largest, NaN where that is at an end of the range; ``inside``: share of resamples with a
-    peak inside. ``exponent``: d ln mu / d ln x there, or d ln mu / dx for a variable without a true zero. ``change``:
-    ln of the coefficient at the upper end over the lower, ``agree``: share of resamples in which it has that sign.
-    ``own_heat``: why the change cannot be separated from an effect of the contact's own heat, "" where it can.
+    ``peak``: value of the variable at the largest coefficient, NaN at an end of the range; ``inside``: share of
+    resamples with a peak inside. ``exponent``: d ln mu / d ln x at ``Trends.at``, or d ln mu / dx for a variable
+    without a true zero. ``change``: ln of the coefficient at the upper end over the lower, ``agree``: share of
+    resamples in which it has that sign. ``own_heat``: why the change cannot be separated from an effect of the
+    contact's own heat, "" where it can.
     """
 
     variable: Variable

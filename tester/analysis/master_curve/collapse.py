@@ -60,9 +60,8 @@ class Curve:
 
 
 class Drawn(NamedTuple):
-    """Sets drawn anew from a curve: ``y`` is ln mu, followed by the prior of the factors, shape (n + factors, B),
-    ``ts_c`` the Ts of each set, ``thermometer_k`` the error of its thermometer, both (B,).
-    """
+    """Sets resampled from a curve: ``y`` is ln mu, followed by the prior of the factors, shape (n + factors, B),
+    ``ts_c`` the Ts of each set, ``thermometer_k`` the error of its thermometer, both (B,)."""
 
     y: Array
     ts_c: Array
@@ -113,7 +112,7 @@ class Collapse:
         return sqrt(float(np.mean((mu - mu * np.exp(-self.residual)) ** 2)))
 
     def design(self) -> Array:
-        """Return the columns of the curve and of the sources' factors, in rows as those of ``padded`` values."""
+        """Return the columns of the curve and of the sources' factors; the rows match ``padded`` values."""
         return _columns(self.of, self.x, self.interior)
 
     def moved_by_ts(self) -> Array:
@@ -198,7 +197,7 @@ def _criterion(left: float, n: int, interior: int) -> float:
 
 
 def _golden(value: Callable[[float], float], low: float, high: float) -> float:
-    """Return where a function has its minimum between two places, within 1 mK."""
+    """Return the place of a function's minimum between two temperatures, within 1 mK."""
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_a, at_b = value(a), value(b)
     while high - low > 1e-3:

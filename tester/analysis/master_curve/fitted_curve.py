@@ -18,7 +18,7 @@ from tester.analysis.master_curve.verdict import MasterJudgement, judge
 
 @dataclass(frozen=True, slots=True)
 class MasterRow:
-    """A row of the table: x = log10(aT v / 1 m/s) at the reference temperature, degC, m/s; ``off`` of ln mu."""
+    """A row of the table: x = log10(aT v / 1 m/s) at the reference temperature, degC, m/s; ``off``: in ln mu."""
 
     x: float
     mu: float

@@ -32,7 +32,8 @@ class TemperaturePair:
     """Two neighbouring temperatures, degC; shifts of the warmer against the colder, decades.
 
     ``overlap``: decades of x that both cover at the shift by WLF; ``rows``: conditions within it, of the temperature
-    with fewer. ``free`` and its standard uncertainty ``u``: NaN and infinite where no cubic goes through either.
+    with fewer. ``free`` and its standard uncertainty ``u``: NaN and infinite where either lacks a cubic or spans too
+    few decades.
     """
 
     colder_c: float

@@ -69,9 +69,8 @@ def peaks_of(collapse: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], 
     """Return the maxima of a master curve that are not due to its scatter, from slow to fast, and the number of the
     others; raises PoleError for the reference temperature.
 
-    A maximum counts where ``SURE`` of the sets drawn anew have one there. Its interval reaches to its place on a curve
-    of ``FINER`` more knots: a spline moves a maximum by the detail that it smooths away, which resampling does not
-    show.
+    A maximum counts where a share ``SURE`` of the resampled sets has one as well. Its interval includes its place on a
+    curve of ``FINER`` more knots: a spline that smooths detail away moves a maximum, and resampling does not show that.
     """
     back = _back(collapse.ts_c, reference_c)
     maxima = [(x - back, mu) for x, mu in _maxima(collapse.curve, collapse.x)]
@@ -161,7 +160,7 @@ def _known(modulus: ShearModulus, celsius: float) -> tuple[Array, Array, Array]:
 
 
 def _maximum(omega: Array, values: Array) -> float:
-    """Return where values are greatest, by a parabola over log omega; NaN where that is an end of the known range."""
+    """Return the place of the maximum, by a parabola over log omega; NaN where that is an end of the known range."""
     if values.size < 3:
         return nan
     i = int(np.argmax(values))

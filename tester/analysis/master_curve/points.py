@@ -20,8 +20,8 @@ class MasterError(TroubleError, ValueError):
 class MasterSource:
     """A run, with the errors that its conditions share.
 
-    ``gain``: standard uncertainty of a factor of all its coefficients, a share; ``thermometer_k``: of an error of all
-    its temperatures.
+    ``gain``: relative standard uncertainty of a factor common to all its coefficients; ``thermometer_k``: standard
+    uncertainty of an error common to all its temperatures.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Cubic splines by least squares: their basis, and the part of measured values outside a set of columns."""
+"""Cubic splines by least squares: their basis, and the part of measured values outside the span of a set of columns."""
 
 from __future__ import annotations
 

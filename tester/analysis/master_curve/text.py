@@ -104,7 +104,7 @@ def _pair_lines(master: Master) -> Iterator[str]:
 
 
 def plain(master: Master) -> dict[str, Json]:
-    """Return a master curve as data: SI units but degC, shifts in decades, NaN and infinity as None."""
+    """Return a master curve as data: SI units except degC, shifts in decades, NaN and infinity as None."""
     c, judged = master.collapse, master.judged
     rows: list[Json] = [
         {

@@ -4,8 +4,8 @@ Each test adds columns to the curve and compares, by Fisher's F, the reduction o
 each temperature; a shift of its own for each; a shape that changes with temperature. Chance is the residual of the
 wider model, and at least ``FLOOR``: a set that is 0.1 % off everywhere lies on one curve for any practical use.
 
-A check comes first: whether the conditions can decide at all. A curve without a bend can be moved along as well as up:
-then a shift is a factor by another name, and any law of aT fits.
+First comes a check whether the conditions can decide at all. On a straight curve a shift along x equals a factor on mu,
+so any law of aT fits.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ CLEAR: Final = 0.02
 class Signs:
     """Cells of two neighbouring speeds and temperatures in which mu changes clearly with both.
 
-    ``same``: cells in which it changes the same way with both, which no master curve allows.
+    ``same``: cells in which mu changes the same way with both. No master curve allows that.
     """
 
     cells: int

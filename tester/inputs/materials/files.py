@@ -118,7 +118,7 @@ class Findings:
         raise InvalidSource(self.problems)
 
     def take(self, other: Findings) -> None:
-        """Take the doubts and notes of a file that this one refers to."""
+        """Add the doubts and notes of a file that this one refers to."""
         self.doubts += other.doubts
         self.notes += other.notes
 

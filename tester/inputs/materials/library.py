@@ -1,7 +1,7 @@
 """Compounds and surfaces by their names: beside the recipe, then in the laboratory's folder, then as packaged.
 
-Of a name in two places, the nearer has precedence. A name that occurs twice in one folder is refused as ambiguous. This
-module alone turns a file into the input of friction laws.
+If two places hold a name, the nearer takes precedence. A name that occurs twice in one folder is refused as ambiguous.
+This module alone turns a file into the input of friction laws.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Library:
 
     def surface_file(self, name: str) -> LoadedSurface:
         """Return a surface's file. Raises UnknownMaterialError, InvalidSource."""
-        from tester.inputs.materials.surface_file import load_surface  # needs numpy; a plan reads compounds alone
+        from tester.inputs.materials.surface_file import load_surface  # needs numpy; a plan reads only compounds
 
         return load_surface(self._found("surface", name))
 
@@ -177,7 +177,7 @@ def surface_of(loaded: LoadedSurface) -> Surface:
 
 
 def _named(folder: Path) -> Iterator[tuple[Path, str]]:
-    """Yield the YAML files of a folder with their names, read from that line alone, to keep lists fast."""
+    """Yield the YAML files of a folder with their names. Only the line of the name is read: lists stay fast."""
     for path in _files(folder):
         try:
             line = _NAME.search(path.read_text(encoding="utf-8", errors="replace"))

@@ -70,7 +70,7 @@ class ModuliTable:
 
 
 def judge(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
-    """Add to ``findings`` the faults of points, and the doubts."""
+    """Add the faults of points, and the doubts, to ``findings``."""
     if not rows:
         findings.refuse(place(0), f"no points (expected {LEAST_ROWS} or more)")
         return
@@ -138,7 +138,7 @@ def _doubts(rows: Sequence[ModuliRow], above: Sequence[int], place: Place, findi
 
 
 def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
-    """Doubt temperatures that go in decades beside frequencies that go in even steps."""
+    """Add a doubt for temperatures spaced in decades with frequencies in even steps: they may be swapped."""
     temperatures = sorted({row.temperature_c for row in rows})
     frequencies = sorted({row.frequency_hz for row in rows})
     if len(temperatures) < 3 or len(frequencies) < 3 or temperatures[0] <= 0.0:
@@ -153,7 +153,7 @@ def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) 
 
 
 def _order_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
-    """Doubt a grid that goes up and down again: temperatures at a frequency, as of heating and then cooling."""
+    """Add a doubt where temperatures at one frequency rise and fall again, as in heating and then cooling."""
     sweeps: dict[int, list[int]] = {}
     for number, row in enumerate(rows):
         sweeps.setdefault(round(log10(row.frequency_hz) / log10(ALIKE)), []).append(number)
@@ -181,8 +181,8 @@ def _turn(temperatures_c: Sequence[float]) -> int | None:
 def shift_doubts(table: ModuliTable, glass_c: float | None, decade_k: float | None) -> Iterator[str]:
     """Yield doubts on the extrapolation of a table to frequencies that were not measured.
 
-    At one frequency a temperature is equivalent to others by ``decade_k`` (paper G, Eq 9); at several the WLF shift of
-    Tg + 50 K puts them on one curve.
+    ``decade_k`` converts temperatures at one frequency to decades of frequency (paper G, Eq 9). The WLF shift of Tg +
+    50 K puts several frequencies on one curve.
     """
     low, high = table.temperatures_c
     frequencies = table.frequencies_hz

@@ -28,7 +28,7 @@ class RadialSpectrum:
 
     @property
     def rms_height_m(self) -> float:
-        """Return the root of 2 pi int q C dq over the table, straight in logarithms between its points, m."""
+        """Return the root of 2 pi int q C dq over the table, m; linear in logarithms between points."""
         return self._root(1)
 
     @property
@@ -41,7 +41,7 @@ class RadialSpectrum:
         y = (order + 1) * x + np.log(self.power_m4)
         steps, rises = np.diff(x), np.diff(y)
         flat = np.abs(rises) < 1e-9
-        # int exp(y) dx of a straight y; where it does not rise, its value times the step.
+        # The integral of exp(y) over a step with straight y; where y is constant, the value times the step.
         share = np.where(flat, 1.0, np.expm1(rises) / np.where(flat, 1.0, rises))
         return float(np.sqrt(2.0 * np.pi * np.sum(np.exp(y[:-1]) * share * steps)))
 
@@ -106,7 +106,7 @@ def _hann(points: int) -> Array:
 
 
 def _edges(step_1_m: float, last_1_m: float) -> Array:
-    """Return the edges of the rings, from half a step on: one step wide, and further out even in logarithms."""
+    """Return the edges of the rings from half a step on: one step apart, further out evenly spaced in logarithms."""
     edges = [0.5 * step_1_m]
     while edges[-1] < last_1_m:
         edges.append(max(edges[-1] + step_1_m, edges[-1] * 10.0 ** (1.0 / PER_DECADE)))

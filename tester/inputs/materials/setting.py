@@ -14,7 +14,7 @@ VARIABLE = "TESTER_CACHE_DIR"
 
 def law_setting(surface: str, recipe: Path | None = None) -> LawSetting:
     """Return the setting on a surface of this name, with materials beside a recipe first."""
-    from tester.inputs.materials.library import Library  # pydantic takes its time: not where no law needs it
+    from tester.inputs.materials.library import Library  # pydantic is slow to load: only where a law needs it
 
     return LawSetting(Library.beside(recipe), surface, tables=cache_folder() / "laws")
 

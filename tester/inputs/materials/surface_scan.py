@@ -105,7 +105,7 @@ def spectrum_of(scan: HeightMap, detrend: Detrend, findings: Findings) -> Radial
 
 
 def _matrix(text: str, findings: Findings) -> Array:
-    """Return the heights of a text; holes are nan. Refuses lines of another length, and cells that are no number."""
+    """Return the heights of a text; holes are nan. Refuses lines of unequal length, and cells that are no number."""
     lines = [
         (number, line)
         for number, line in enumerate(text.splitlines(), start=1)

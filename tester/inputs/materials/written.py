@@ -1,4 +1,4 @@
-"""Imports as our own files: the data of an instrument's file, with its origin.
+"""Writes an instrument's data as a file of our own, with its origin.
 
 The numbers are in the file itself, so that it is complete without its source; the hash identifies the source.
 """

@@ -1,4 +1,4 @@
-"""Grids to conditions: the setpoints of a specimen, their order, and the metadata of the experiment.
+"""From grids to conditions: the setpoints of a specimen, their order, and the metadata of the experiment.
 
 A condition that several grids share is measured once, unless a grid has ``measure_again``. Blocks of one temperature
 ascend, because cooling takes far longer than heating.
@@ -60,7 +60,7 @@ def conditions_of(
 
 
 class MergedConditions(NamedTuple):
-    """Conditions of a grid that an earlier one, ``measured_in``, has as well: they are measured only there."""
+    """Conditions of a grid that also occur in an earlier one, ``measured_in``, and are measured only there."""
 
     grid: str
     measured_in: str

@@ -1,4 +1,4 @@
-"""Predicts the uncertainty of a plan's conditions, its largest source, and the changes that would halve that.
+"""Predicts the uncertainty of a plan's conditions, its largest source, and the changes that would halve this source.
 
 It uses the budget of the results: the machine's terms at the expected coefficient, the repeatability of the recipe's
 repeats, and the plan's own knowledge of the sensitivity to temperature and of the diameter. Drift is left out, as it is
@@ -59,7 +59,7 @@ class Foreseen:
 
 @dataclass(frozen=True, slots=True)
 class Halved:
-    """A change of a recipe or a rig that halves a contribution at least, and the result, expanded, per cent of the
+    """A change of a recipe or a rig that at least halves a contribution, and the result, expanded, per cent of the
     coefficient."""
 
     words: str
@@ -71,7 +71,7 @@ def foreseen(
 ) -> list[Foreseen]:
     """Return the predictions for a plan's sliding conditions; ``steps``: their estimates, ``known``: slopes from files.
 
-    Of a plan with more than ``MOST`` conditions that many, evenly chosen.
+    A plan with more than ``MOST`` conditions is represented by that many, evenly chosen.
     """
     outlooks = [*zip(plan.conditions(), estimator.outlooks(plan, steps), strict=True)]
     chosen = outlooks[:: max(1, ceil(len(outlooks) / MOST))]
@@ -141,7 +141,7 @@ class _Slopes:
                     self._points.setdefault(setting, {})[step.setpoint.number(self._axis)] = mu
 
     def of(self, step: ConditionStep) -> Slope:
-        """Return the sensitivity that will be known."""
+        """Return the sensitivity to temperature that the results will know for a condition."""
         if not self._axis:
             return UNKNOWN
         at_c = step.setpoint.number(self._axis)
@@ -161,8 +161,8 @@ def _held(step: ConditionStep, axes: Axes | None) -> _Held:
 
 
 def foreseen_lines(predictions: Sequence[Foreseen], estimator: Estimator, terms: Sequence[Term]) -> Iterator[str]:
-    """Yield the predicted uncertainty, for people: the range, the most, its largest term, and the change that halves
-    that."""
+    """Yield the predicted uncertainty, for people: the range, the condition with the most, its largest term, and the
+    change that halves this term."""
     if not predictions:
         return
     worst, least = max(predictions, key=_percent), min(predictions, key=_percent)

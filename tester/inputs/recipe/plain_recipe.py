@@ -41,7 +41,7 @@ class PlainEstimator(Estimator):
     """Durations of the steps of a plain machine."""
 
     def __init__(self, part: PlainPart, rig: Rig, repeatability: Mapping[str, float] | None = None) -> None:
-        """``part``: of the rig's kind; ``repeatability``: as of every estimator."""
+        """``part``: of the rig's kind; ``repeatability``: as in every estimator."""
         super().__init__(repeatability)
         self.part = part
         self.person_s = 0.0 if rig.simulated else part.person_s

@@ -1,8 +1,8 @@
 """The plan: the steps of a recipe before anything moves. Data only.
 
-A plan is a flat tuple of frozen steps. Describing it, estimating it, checking it against a rig, executing it and
-resuming it are five readers of this structure. Repeats and bursts are counts in a condition and no nodes of their own,
-so a plan of 100,000 conditions stays small.
+A plan is a flat tuple of frozen steps. Five readers use this structure: they describe, estimate, check against a rig,
+execute and resume a plan. Repeats and bursts are counts in a condition and no nodes of their own, so a plan of 100,000
+conditions stays small.
 
 Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature difference in K), _s, _deg.
 """

@@ -75,8 +75,8 @@ def with_precision(recipe: AnyRecipe, percent: float) -> AnyRecipe:
 def precision_lines(
     plan: Plan, estimate: Estimate, estimator: Estimator, pools: Mapping[str, Pool], predictions: Sequence[Foreseen]
 ) -> Iterator[str]:
-    """Yield the cost of the requested precision: repeats, the origin of s, the instruments' part. Nothing without a
-    request.
+    """Yield the cost of the requested precision: repeats, the origin of s, the instruments' part. Yields nothing
+    without a request.
 
     ``predictions``: those for the plan's conditions.
     """

@@ -24,8 +24,8 @@ from tester.inputs.rig import Rig
 class RecipePart(ABC):
     """A kind's part of the recipe reader. One object a kind, without state.
 
-    A kind subclasses it, sets ``kind`` and ``axes``, and answers the abstract methods. All else has a default, so that
-    a kind that only holds its axes one condition after the other needs no more::
+    A kind subclasses it, sets ``kind`` and ``axes``, and implements the abstract methods. All else has a default: a
+    kind that only keeps its axes at their setpoints, one condition after the other, needs no more::
 
         class SledgeRecipe(Recipe, frozen=True):
             run_in: RunInModel | None = None            # a section of its own, a pydantic model
@@ -43,11 +43,11 @@ class RecipePart(ABC):
             def estimator(self, rig, repeatability): ... # an Estimator: a StepEstimate for every step
             def words(self, step, one): ...              # "slide 2 m at 10 mm/s"
 
-    A section is a field of the kind's ``Recipe`` subclass; what a grid or ``measure`` may say beyond repeats,
-    precision, windows, bands and soak is a field of its ``GridModel`` and ``MeasureModel`` subclasses, and goes into
-    conditions by a ``Settings`` subclass. A grid's axes are added to its model from ``axes``; one that is
-    ``in_measure`` has to be a field of the kind's ``MeasureModel`` too. A rig comes as ``tester.inputs.rig.Rig``; the
-    kind's own ``RigConfig.of(rig)`` narrows it. Two objects of one class are equal: a part is its class.
+    A section is a field of the kind's ``Recipe`` subclass. Keys of a grid or ``measure`` beyond repeats, precision,
+    windows, bands and soak are fields of its ``GridModel`` and ``MeasureModel`` subclasses, and reach conditions by a
+    ``Settings`` subclass. A grid's axes are added to its model from ``axes``; an axis that is ``in_measure`` must also
+    be a field of the kind's ``MeasureModel``. A rig comes as ``tester.inputs.rig.Rig``; the kind's own
+    ``RigConfig.of(rig)`` narrows it. Two objects of one class are equal: a part is its class.
     """
 
     kind: ClassVar[str]
@@ -99,7 +99,7 @@ class RecipePart(ABC):
         return not rig.simulated
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield parts that a rig could do and a specimen would not outlast, of an otherwise valid recipe."""
+        """Yield parts of an otherwise valid recipe that a rig could do but a specimen would not survive."""
         yield from ()
 
     def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:

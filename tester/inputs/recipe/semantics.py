@@ -54,7 +54,7 @@ def semantic_problems(recipe: Recipe | None, tree: Tree, part: RecipePart) -> li
 
 
 def _salvaged(tree: Tree, part: RecipePart) -> Parts:
-    """Return the parts of an invalid recipe that are valid but for unknown keys."""
+    """Return the parts of an invalid recipe that are valid apart from unknown keys."""
     top = tree.data if isinstance(tree.data, dict) else {}
     listed = top.get("grids")
     model = grid_model(part.axes, part.grid)
@@ -147,7 +147,7 @@ def _measure(measure: MeasureModel, grid: GridModel | None, at: Location, tree: 
 
 
 def _combined(measure: MeasureModel, grids: list[tuple[int, GridModel]], tree: Tree) -> Iterator[Problem]:
-    """Refuse the closest two of three unless three repeats must count."""
+    """Refuse ``combine: paper``, the closest two of three, unless three repeats must count."""
     if measure.combine != "paper":
         return
     used = {(grid.repeats or measure.repeats).at_least for _, grid in grids}

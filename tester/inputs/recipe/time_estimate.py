@@ -58,9 +58,9 @@ NEW: Final = Outlook()
 
 
 class Estimator:
-    """A kind's estimates of the time that steps take on one rig. It implements ``walk`` and ``shut_down_s``.
+    """A kind's estimates of the time that steps take on one rig. Subclasses implement ``walk`` and ``shut_down_s``.
 
-    The defaults of the others suit a kind that expects no coefficient and wears nothing off.
+    The defaults of the other methods suit a kind that expects no coefficient and wears nothing off.
     """
 
     spread: ClassVar[float] = 0.2

@@ -74,7 +74,7 @@ def _measures(rig: Rig, name: str, own: OwnDevice, profiles: Mapping[str, Device
 def transmitters_of(rig: Rig, links: Mapping[str, ModbusLink]) -> dict[str, Transmitter]:
     """Return the drivers of a load cell's transmitters by their keys; none where it is one device.
 
-    Raises ProfileError, and ValueError for a profile that is none of a transmitter.
+    Raises ProfileError, and ValueError for a profile of no transmitter.
     """
     from drivers.joined_cell import Transmitter
 

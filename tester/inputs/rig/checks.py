@@ -212,8 +212,8 @@ def _simulation(rig: Rig) -> _Found:
 def other_settings(rig: Rig) -> list[str]:
     """Return the lines whose settings differ from the profiles of their devices, each with the remedy.
 
-    Most devices accept other values than their profile's, which are the maker's or our advice: so this refuses nothing.
-    A line over TCP has the settings of its gateway.
+    Nothing is refused: most devices accept other values than their profile's, which are the maker's or our advice. A
+    line over TCP has the settings of its gateway.
     """
     differing: list[str] = []
     for key, line in rig.lines.items():

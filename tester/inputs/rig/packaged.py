@@ -56,7 +56,7 @@ def new_tree(kind: type[Rig], like: str = "") -> Tree:
 
 
 def lacking(kind: type[Rig], tree: Tree) -> tuple[Place, ...]:
-    """Return the missing keys that a file may lack, in the packaged file's order; a missing section as its keys."""
+    """Return the missing keys that a file may lack, in the packaged file's order; of a missing section, its keys."""
     return tuple(_lacking(kind, _packaged(kind, tree), _section(tree.data), ()))
 
 
@@ -93,7 +93,7 @@ def like(tree: Tree) -> str:
 
 
 def _packaged(kind: type[Rig], tree: Tree) -> dict[str, Value]:
-    """Return the packaged file that a file is like; not to be changed."""
+    """Return the packaged file that a file is like; the caller must not change it."""
     return _section(packaged_tree(kind, like(tree)).data)
 
 

@@ -86,7 +86,7 @@ def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> On
 
 
 def checked(kind: type[OneRig], tree: Tree) -> OneRig:
-    """Return a tree as a rig whose sections fit together, risks or not; changes the tree. Raises InvalidSource."""
+    """Return a tree as a rig with consistent sections, risks or not; changes the tree. Raises InvalidSource."""
     unstated = complete(kind, tree)
     _resolve(kind, tree)
     unstated_keys = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated]

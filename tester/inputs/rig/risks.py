@@ -52,7 +52,7 @@ class Risk:
 def counts_as_simulated(rig: Rig) -> bool:
     """Return whether a rig is harmless: it is simulated in this process, or behind a door.
 
-    A rig behind a door has drives that all must report the simulator's identity (0x1018). It is compared at every
+    All drives of a rig behind a door must report the simulator's identity (0x1018). The identity is compared at every
     connect, before anything moves: with other drives on the wire the run does not begin.
     """
     ids = {(drive.vendor_id, drive.product_code) for drive in rig.drives().values()}

@@ -59,7 +59,8 @@ def _with_keys(text: str, tree: Tree, packaged: Tree, missing: Sequence[Place]) 
         new += [indent + line if line else "" for line in _lines(packaged, place, section, missing)]
     last = len(lines)
     ends = {section: _end_of_section(tree, section)[0] if section else last for section in added}
-    # From the end of the file, so that earlier places stay valid; of two at one place the inner is written last, above.
+    # From the end of the file, so that earlier places stay valid; where two share a place, the inner is written last,
+    # above.
     for section in sorted(
         added, key=lambda place_of_section: (ends[place_of_section], -len(place_of_section)), reverse=True
     ):
