@@ -86,8 +86,8 @@ class Drift:
 class OneDrift:
     """The drift of one repeat with the condition's sensitivity to temperature; per cent, per window.
 
-    ``excess``: standard errors of the drift, or of its difference from the others, where that refuses the repeat; else
-    0. ``reason``: the same in words.
+    ``excess``: standard errors of the drift, or of its difference from the others, where that is reason to
+    refuse the repeat; else 0. ``reason``: the same in words.
     """
 
     drift_percent: float

@@ -274,7 +274,7 @@ def control_charts(references: Sequence[Reference], known: KnownScatter) -> tupl
         listed = [reference for reference in references if reference.compound == compound]
         used = [reference for reference in listed if reference.mu > 0.0 and isfinite(reference.u_share)]
         if not used:
-            continue
+            continue  # a chart needs a first value as its centre
         pieces = len({reference.piece for reference in used})
         sigma = hypot(median(reference.u_share for reference in used), known.between if pieces > 1 else 0.0)
         half, centre = SIGMAS * sqrt(2.0) * sigma, used[0].mu

@@ -186,7 +186,7 @@ def _panel(material: Material, values: Sequence[ChartValue], along: Axis, across
     for style, level in enumerate(levels):
         here = [point for point in values if across is None or across.number(point.held) == level]
         if len({along.number(point.held) for point in here}) < 2:
-            continue
+            continue  # a single place shows no trend
         label = f"{plain(level)} {unit_of(across)}" if across is not None else "measured"
         series.append(_points(label, here, along, "measured", style))
         shown = [value for value in published if across is None or across.number(value.held) == level]

@@ -188,7 +188,7 @@ def _impossible(
     for i, (parameter, value) in enumerate(zip(law.parameters, parameters, strict=True)):
         band = f"{parameter.band.low:.4g} to {parameter.band.high:.4g} {parameter.unit}".rstrip()
         if parameter.name in held:
-            continue
+            continue  # its value was given, not fitted
         if not parameter.band.holds(value):
             reasons[parameter.name] = f"outside {band} ({parameter.band.source})"
         elif intervals and not all(map(parameter.band.holds, intervals[i])):

@@ -142,7 +142,7 @@ class PlainPart(SpecimenPart):
                     try:
                         asked = Quantity(axis.recipe_unit).read(value)
                     except UnitError:
-                        continue
+                        continue  # validation reports it
                     if most is not None and abs(asked) > most:
                         at = ("grids", index, axis.name, *([place] if isinstance(listed, list) else []))
                         source = f'(limit {show(most, axis.recipe_unit)}: {axis.limit} of rig "{rig.name}")'

@@ -38,7 +38,7 @@ def find_beside(tree: Tree, folder: Path) -> None:
     Any other path stays unchanged: it is relative to the working folder.
     """
     if not isinstance(tree.data, dict):
-        return
+        return  # the reader of the rig file reports it
     for key in ("devices", "axes"):
         section = tree.data.get(key)
         for part in section.values() if isinstance(section, dict) else ():

@@ -133,7 +133,7 @@ def _override(tree: Tree, text: str, number: int) -> list[Problem]:
 def _resolve(kind: type[Rig], tree: Tree) -> None:
     """Write the file's common values into every axis: its name and the heartbeats; ``manual`` becomes None."""
     if not isinstance(tree.data, dict):
-        return
+        return  # the reader reports it
     axes, can = tree.data.get("axes"), tree.data.get("can")
     if not isinstance(axes, dict) or not isinstance(can, dict):
         return
