@@ -24,8 +24,8 @@ from tester.analysis.stability import MIN_BLOCKS, centred
 from tester.base.quantities import temperatures
 
 LIMIT_PERCENT: Final = 5.0
-"""Friction that changes by more than this at once carries a doubt, per cent of the coefficient [A]: two and a half
-times the repeatability, and what the largest allowed drift adds up to in two and a half windows."""
+"""Friction that changes by more than this at once carries a doubt, per cent of the coefficient [A]: 2.5 times the
+repeatability, and the largest allowed drift summed over 2.5 windows."""
 LEVEL: Final = 0.001
 """Level of the test for a change from repeat to repeat, over all boundaries of a condition together."""
 HISTORY_DF: Final = 8.0

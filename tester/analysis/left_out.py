@@ -31,7 +31,7 @@ EXCESS_FACTOR = 3.0
 """A repeat fluctuates in excess if it varies by more than this times its siblings' median [A] ..."""
 
 EXCESS_PERCENT = 1.0
-"""... and by more than this, per cent: on a quiet rig three times next to nothing is nothing [A]."""
+"""... and by more than this, per cent: on a quiet rig three times a negligible variation is negligible [A]."""
 
 BY_HAND = "excluded by hand"
 """Begins the reason of a person's exclusion."""

@@ -39,14 +39,14 @@ counterface [A]."""
 LEAST: Final = 3
 """Least number of references on a reserved piece for a result."""
 PIECE_PER_M: Final = 2e-4
-"""Prior standard deviation of a piece's change of the coefficient per metre of sliding, 1/m [A].
-A wheel of 90 mm that wears at 0.24 mm3/(N m) with a rig file that assumes 0.08 slides at 200 N and 300 mm/s 0.5 %
-slower in each 30 m than computed: twice this is the effect of that with an exponent of 0.8."""
+"""Prior standard deviation of a piece's change of the coefficient per metre of sliding, 1/m [A]. A wheel of 90 mm that
+wears at 0.24 mm3/(N m), where the rig file assumes 0.08, slides at 200 N and 300 mm/s 0.5 % slower in each 30 m than
+computed. With an exponent of 0.8 the effect is twice this prior."""
 STATED_DF: Final = 8
 """Weight of the stated deviation from piece to piece beside that of the residuals, degrees of freedom [A]."""
 SIGMAS: Final = 3.0
 """Half the width of the chart of a mean of n with known s: A = 3 / sqrt(n) times s (ISO 7870-2, standard values known).
-The centre is a mean of as many itself: sqrt(2) times that."""
+The centre is itself a mean of n: the limits are sqrt(2) times as wide."""
 COUNTERFACE: Final = "counterface"
 """Name of the counterface's term in a compound's budget."""
 

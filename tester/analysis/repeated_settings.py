@@ -41,7 +41,7 @@ LEVEL: Final = 0.002
 PIECE: Final = "piece"
 """Marks errors common to all measurements on a mounted piece (``Contribution.common``)."""
 _FEW_DF: Final = 4.0
-"""With fewer degrees of freedom than these, prior knowledge beside an estimate does not count."""
+"""An estimate with fewer degrees of freedom counts as the whole variance of a contrast."""
 _MANY_DF: Final = 1e5
 """Degrees of freedom of a standard uncertainty taken as known: for a quantile as good as infinite."""
 
@@ -155,7 +155,7 @@ class SettingAgreement:
     off: tuple[float, ...]
     """Difference of each measurement from its prediction by all others together."""
     off_standard: tuple[float, ...]
-    """Standard uncertainty of each."""
+    """Standard uncertainty of each difference."""
 
     @property
     def kept(self) -> bool:

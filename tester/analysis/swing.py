@@ -32,8 +32,8 @@ PER_PERIOD: Final = 10.0
 """Samples in a period of the fastest swing that has an amplitude: 10 Hz of 100 Hz. Load cell and polling attenuate a
 faster one by an unknown amount [A]."""
 SHORTEST_S: Final = 2.5
-"""A shorter contact has less than two periods of the slowest swing, and cannot be told from an order of the wheel 0.3
-Hz away [A]."""
+"""A shorter contact has less than two periods of the slowest swing, which then cannot be distinguished from an order
+of the wheel 0.3 Hz away [A]."""
 LONGEST_S: Final = 8.0
 """Length of the stretches over which spectra are averaged, s [A]: their frequencies are 0.25 Hz apart."""
 MOST_STRETCHES: Final = 40
@@ -42,7 +42,7 @@ PROMINENCE: Final = 12.0
 """Power of a peak over the median of the power within an octave of it [A]. In a single stretch of noise one frequency
 in 4,000 has that much (exp(-12 ln 2)); in the mean of two, one in 100,000."""
 LEAST_PERCENT: Final = 1.0
-"""A smaller swing is noise for any reader [A]."""
+"""A smaller swing counts as noise [A]."""
 LIMIT_PERCENT: Final = 5.0
 """Friction that swings by more than this to either side carries a doubt [A]."""
 MOST_HZ: Final = 15.0

@@ -28,8 +28,8 @@ SLOWEST_M_S: Final = 0.1
 SPREADS: Final[Mapping[str, float]] = MappingProxyType(
     {"rectangular": 1.0 / sqrt(3.0), "U-shaped": 1.0 / sqrt(2.0), "normal": 1.0}
 )
-"""Standard uncertainty of a bound of 1, by distribution: anywhere within +-1 (GUM 4.3.7); rather at +-1 than at 0 (of
-either sign, GUM H.1.3.4 for its case); of a normal one the bound is the standard uncertainty itself."""
+"""Standard uncertainty of a bound of 1, by distribution: anywhere within +-1 (GUM 4.3.7); more often near +-1 than near
+0 (GUM H.1.3.4 for its case); for a normal one the bound is the standard uncertainty itself."""
 
 _NO_SETTINGS: Mapping[str, str] = MappingProxyType({})
 PREFIX: Final = "uncertainty."
@@ -60,8 +60,8 @@ class Acts(StrEnum):
     COEFFICIENT = "coefficient"
     """Share of mu itself: mu."""
     PIECE = "piece"
-    """Share of mu by which mounted pieces of the same compound differ: mu. It is no error of this piece's coefficient,
-    but one of the compound's."""
+    """Share of mu by which mounted pieces of the same compound differ: mu. It is an error of the compound's
+    coefficient, not of this piece's."""
 
 
 @dataclass(frozen=True, slots=True)

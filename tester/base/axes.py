@@ -39,7 +39,7 @@ class Axis:
     default: AxisValue | None
     paper: bool
     plotted: int = 0
-    """Its turn on the abscissa of plots, lowest first; 0: never."""
+    """Its rank for the abscissa of plots, lowest first; 0: never."""
     ge: float | None = None
     gt: float | None = None
     le: float | None = None

@@ -160,5 +160,4 @@ EXIT_TRIPPED = 5
 EXIT_INCOMPLETE = 6
 EXIT_INTERRUPTED = 130
 EXIT_READER_GONE = 141
-"""The reader of the output is gone (`tester runs
-head -1`): a shell's code for the end by SIGPIPE."""
+"""The reader of the output is gone (`tester runs | head -1`): a shell's code for the end by SIGPIPE."""

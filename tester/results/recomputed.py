@@ -21,12 +21,11 @@ from tester.store.records import ConditionInfo, StoredRepeat
 from tester.store.run_reader import RunReader
 
 TOLERANCE = 1e-9
-"""Relative. Doubles are stored bit by bit; a mean over a revolution is summed in another order, and merged parts have
-their times put back on a grid of a microsecond."""
+"""Relative. Doubles are stored exactly, but a mean over a revolution is summed in another order, and times of merged
+parts are put back on a grid of a microsecond."""
 
 LOOSER = 1e-3
-"""Relative, of figures that depend on the samples' times: those of merged parts, on their grid, move them this
-little."""
+"""Relative, for figures that depend on the samples' times: the grid of merged parts moves them by less than this."""
 _LOOKED_AT = ("change_percent", "swing_percent", "swing_hz", "swing_skewness")
 _FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral")
 

@@ -74,7 +74,7 @@ class RunResults:
     references: tuple[TableRow, ...] = ()
     """Reference conditions, in the order of the plan; they are not among the recipe's own conditions."""
     watch: ReferenceWatch | None = None
-    """Their result; None without any."""
+    """Result of the references; None without any."""
     settings: tuple[RepeatedSetting, ...] = ()
     """Settings measured several times, references included."""
     record_head: str = ""

@@ -26,7 +26,7 @@ from tester.store.run_reader import RunReader
 from tester.store.sql import calibration_sha256, text_sha256
 
 LISTED = 5
-"""Most of the rows newer than a kept head that are named."""
+"""Most rows newer than a kept head that are listed."""
 
 
 @dataclass(frozen=True, slots=True)

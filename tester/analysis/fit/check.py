@@ -10,7 +10,7 @@ from typing import Final
 from tester.analysis.fit.fit_law import NAN, FitError, FitPoint, Law, LawParameter, Variable
 
 SPARE: Final = 3
-"""Conditions beyond the number of parameters without which residuals carry no information [A]."""
+"""Conditions needed beyond the number of parameters: without them residuals carry no information [A]."""
 NEAR, FAR = 0.05, 0.10
 """Relative errors within which rows are counted: the paper claims the first."""
 

@@ -19,7 +19,7 @@ from tester.analysis.fit.trends import Interval, Trends, trends_of
 from tester.base.arrays import Array
 
 OPEN: Final = 1e6
-"""Condition number above which the data leave a combination of parameters open [A]: they carry six digits."""
+"""Condition number above which the data leave a combination of parameters open [A]: data carry six digits."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,8 +16,7 @@ ROBUST: Final = 0.05
 """Residual in ln mu above which a condition counts less than its square (soft L1): 5 % [A]."""
 _LEAST_MU: Final = 1e-9
 _MOST_MU: Final = 1e9
-"""Limits of a law's value: a value that is no coefficient, 0 or less or infinite, is clipped, which drives the search
-away."""
+"""Limits of a law's value: an impossible coefficient, 0 or less or infinite, is clipped, so the search avoids it."""
 _STEP: Final = 1e-6
 """Step of the differences for derivatives, in steps of the search."""
 _WIDEST: Final = 50.0

@@ -25,14 +25,14 @@ from tester.base.arrays import Array, Places
 BELOW_K: Final = 100.0
 """Lower end of the search for Ts, K below the lowest temperature [A]; the constants are stated to hold to Ts + 50 K."""
 POLE_K: Final = 1.0
-"""Upper end: this far from where the lowest temperature is at the pole of the shift, K."""
+"""Upper end: distance from the Ts that puts the lowest temperature at the pole of the shift, K."""
 GRID_K: Final = 4.0
 MOST_KNOTS: Final = 12
 """Interior knots: two peaks over twelve decades take about ten."""
 ROWS_A_KNOT: Final = 6
 """Least number of conditions for each knot [A]."""
 _LEAST_LN: Final = 1e-4
-"""A residual of ln mu below which a further knot brings nothing."""
+"""A residual of ln mu below which a further knot improves nothing."""
 PILOT: Final = 0.02
 """Scatter of ln mu that weighs the factors of several runs against their uncertainty [A]."""
 RESAMPLES: Final = 400

@@ -29,14 +29,14 @@ PROMINENT: Final = 0.02
 """A maximum of the curve counts where ln mu falls by more than this on both sides [A]."""
 PLACES: Final = 1000
 DRAWN: Final = 200
-"""Sets drawn anew in which each maximum is searched again."""
+"""Resampled sets in which each maximum is searched again."""
 FINER: Final = 4
 """Additional knots of the finer spline that shows how far smoothing moves a maximum [A]."""
 SURE: Final = 0.95
-"""Share of the drawn sets that must have the maximum."""
+"""Share of the resampled sets that must have the maximum."""
 REACH_DECADES: Final = 1.0
-"""Distance within which a maximum counts as the same, for a curve's only maximum [A]; of several, half their
-distance."""
+"""Distance within which a maximum counts as the same, for a curve's only maximum [A]; for several, half their distance.
+"""
 
 
 @dataclass(frozen=True, slots=True)

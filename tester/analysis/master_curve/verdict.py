@@ -33,11 +33,11 @@ FLOOR: Final = 0.01
 """Standard deviation of ln mu too small to count as a failure: 1 % [A]."""
 LEAST_TEMPERATURES: Final = 3
 LEAST_SPEEDS: Final = 3
-"""Of each temperature, on average: with fewer no temperature has a shape."""
+"""Least speeds per temperature, on average: with fewer, no temperature shows the curve's shape."""
 OPEN_K: Final = 10.0
 """Standard uncertainty of Ts, with a factor of its own for every temperature, above which Ts is open [A]."""
 WIDE_K: Final = 40.0
-"""Length of the interval of Ts above which nothing is known of it [A]: it spans rubbers from NR to NBR."""
+"""Length of the interval of Ts above which Ts is unknown [A]: it spans rubbers from NR to NBR."""
 
 
 class Verdict(StrEnum):

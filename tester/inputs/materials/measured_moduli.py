@@ -18,7 +18,7 @@ FEW_ROWS = 12
 """A table with fewer points is doubted [A]."""
 COLDEST_C, HOTTEST_C = -150.0, 400.0
 SLOWEST_HZ, FASTEST_HZ = 1e-4, 1e4
-"""Range of instruments themselves [A]: beyond, a frequency is another quantity or was shifted already."""
+"""Frequency range of instruments [A]: a value beyond it is another quantity, or was shifted already."""
 SOFTEST_PA, STIFFEST_PA = 1e4, 2e10
 """Range of storage moduli of rubber and its glass [A]."""
 NOISE_K = 1.0

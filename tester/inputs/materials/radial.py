@@ -14,7 +14,7 @@ from tester.base.arrays import Array
 
 Detrend = Literal["mean", "plane"]
 PER_DECADE = 20
-"""Rings for the points of the table: this many in a decade of q, but none thinner than the map resolves [A]."""
+"""Rings of the table in a decade of q [A]; none is thinner than the map resolves."""
 LEAST_POINTS = 16
 """Least number of points along each side of a map [A]: with fewer there are no decades of waves."""
 

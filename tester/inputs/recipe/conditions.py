@@ -65,7 +65,7 @@ class MergedConditions(NamedTuple):
     grid: str
     measured_in: str
     conditions: tuple[Setpoint, ...]
-    """Without a compound."""
+    """Setpoints without a compound."""
 
     def sentence(self) -> str:
         """Return the merged conditions, and the key that measures them again, for people."""

@@ -25,7 +25,7 @@ class Ceiling:
 
     key: str
     unit: str
-    """"" for a switch. The bare numbers of an axis count in its own unit: they have none of their own either."""
+    """"" for a switch, and for the bare numbers of an axis, which count in the axis's unit."""
     direction: Direction
     """The tighter direction; for a switch, true is the higher value."""
     hardest: str
