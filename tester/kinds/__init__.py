@@ -1,7 +1,7 @@
 """The kinds of rigs, found by name: packaged ones, and those that an installed package declares.
 
-Only ``tester.run`` and ``tester.cli`` look a kind up; everybody else is handed a kind, or a rig. A rig file says its
-kind in the key ``kind``.
+Only ``tester.run`` and ``tester.cli`` look a kind up; all other modules receive a kind, or a rig. A rig file names
+its kind in the key ``kind``.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ if TYPE_CHECKING:
     from tester.inputs.rig import Rig
 
 DEFAULT: Final = "wheel_on_belt"
-"""Kind of a rig file that does not say one."""
+"""Kind of a rig file without the key ``kind``."""
 PACKAGED: Final = (DEFAULT, "specimen_on_track")
 """Kinds that ship with the program: packages beside this module."""
 SIMULATED: Final = "sim"
-"""Name of the packaged rig that counts where none is named."""
+"""Name of the packaged rig that is the default."""
 
 
 class UnknownKindError(TroubleError, LookupError):
-    """There is no such kind of rig; the message names those there are."""
+    """No kind of rig has this name; the message lists the kinds."""
 
 
 def find(name: str) -> Kind:
     """Return a kind; raises UnknownKindError.
 
-    ``name``: of a packaged kind, or an extension's of the group ``kinds`` (tester.base.plugins), whose object is a
-    ``Kind``. A packaged name cannot be taken by an extension.
+    ``name``: of a packaged kind, or of an extension in the group ``kinds`` (tester.base.plugins). The extension's
+    object is a ``Kind``. An extension cannot take a packaged name.
     """
     if name in PACKAGED:
         return _packaged(name)
@@ -51,7 +51,7 @@ def find(name: str) -> Kind:
         raise UnknownKindError(f"there is no kind of rig {name}{meant} (expected {known}); {error}") from error
     if not isinstance(found, Kind):
         raise UnknownKindError(f"the extension {name} is no kind of rig (expected a tester.kinds.kind.Kind)")
-    # Control evaluates the rig class's table: a row of the sheet that it lacks would be shown and never trip.
+    # Control evaluates the rig class's table: a row that is only in the sheet would be shown and never trip.
     table = getattr(found.rig(), "table", None)
     unseen = [row.name for row in found.interlocks().rows if table is not None and row not in table.rows]
     if unseen:
@@ -67,9 +67,10 @@ def packaged_rigs() -> dict[str, Kind]:
 
 
 def shipping(rig: str) -> Kind | None:
-    """Return the kind that a rig of this name ships with, None where there is none: a packaged kind, else an extension.
+    """Return the kind that ships a rig of this name: a packaged kind, else an extension; None for an unknown name.
 
-    Extensions are loaded only for a name that neither a packaged kind nor a file has; of two the first by name counts.
+    Extensions are loaded only for a name that is neither a packaged rig nor a file. Of two extensions with the name,
+    the first in alphabetical order counts.
     """
     kind = packaged_rigs().get(rig)
     if kind is not None or Path(rig).exists():
@@ -103,7 +104,7 @@ def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), acce
 def load_rig_text(text: str | Path, name: str | None = None) -> Rig:
     """Return the rig of a text or a file that a run has stored; raises InvalidSource with every problem.
 
-    Its risks were accepted when the run began, or are asked for where it goes on (tester.run.session).
+    Its risks were accepted when the run began; a resumed run asks for them (tester.run.session).
     """
     from tester.base.source import load_tree
     from tester.inputs.rig.rig_files import checked
@@ -113,9 +114,10 @@ def load_rig_text(text: str | Path, name: str | None = None) -> Rig:
 
 
 def packaged_keys(source: str | Path, overrides: Sequence[str] = ()) -> tuple[str, ...]:
-    """Return the keys for which a rig takes the packaged value because its file and ``overrides`` do not have them.
+    """Return the keys that have packaged values because neither a rig's file nor ``overrides`` has them.
 
-    As ``interlocks.pushed``, in the order of the packaged file. Raises InvalidSource for a file that cannot be read.
+    Keys are written as ``interlocks.pushed``, in the order of the packaged file. Raises InvalidSource for an
+    unreadable file.
     """
     from tester.inputs.rig.packaged import lacking
 
@@ -126,14 +128,14 @@ def packaged_keys(source: str | Path, overrides: Sequence[str] = ()) -> tuple[st
 
 
 def packaged_text(name: str = SIMULATED) -> str:
-    """Return a packaged rig file as it is shipped; raises KeyError for a name that is none."""
+    """Return a packaged rig file as it is shipped; raises KeyError for an unknown name."""
     from tester.inputs.rig import packaged
 
     return packaged.packaged_text(packaged_rigs()[name].rig(), name)
 
 
 def hardware_text(kind: str = DEFAULT, like: str = "") -> str:
-    """Return the commented file for a real machine, from one of the kind's packaged rigs, its first for "".
+    """Return a commented file for a real machine, made from one of the kind's packaged rigs; "": its first.
 
     Raises UnknownKindError, KeyError where the kind has no such rig.
     """
@@ -175,7 +177,7 @@ def _opened(source: str | Path) -> tuple[Kind, Tree]:
 
 
 def _kind_of(tree: Tree) -> Kind:
-    """Return the kind that a rig file says, and write it into the tree where it does not; raises InvalidSource."""
+    """Return the kind of a rig file, and add a missing key ``kind`` to the tree; raises InvalidSource."""
     from tester.base.source import InvalidSource
 
     if not isinstance(tree.data, dict):

@@ -1,6 +1,6 @@
-"""The classes of a kind that is another one with a laboratory's own interlock rows or axes (``Kind.extended``).
+"""The classes of a kind that extends another kind by a laboratory's own interlock rows or axes (``Kind.extended``).
 
-They are made once for each kind; their objects are pickled by its name, which leads other processes to the kind.
+They are made once for each kind. Their objects are pickled with the kind's name, so that other processes find it.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ Rows = tuple[Interlock[Any], ...]
 
 
 def sheet_with(sheet: InterlockSheet, rows: Rows) -> InterlockSheet:
-    """Return a sheet with rows ahead of its own."""
+    """Return a sheet with further rows ahead of its own."""
     return replace(sheet, rows=(*rows, *sheet.rows))
 
 
 @cache
 def rig_with(name: str, base: Any, rows: Rows) -> type[Rig]:
-    """Return a rig class with rows ahead of its table's and their keys in its section ``interlocks``.
+    """Return a rig class with further rows ahead of its table's, and their keys in its section ``interlocks``.
 
-    ``name``: of the kind. Raises TypeError where the rig class has no table (``Rig.table``) that is evaluated.
+    ``name``: of the kind. Raises TypeError for a rig class without a table to evaluate (``Rig.table``).
     """
     if not isinstance(getattr(base, "table", None), InterlockTable):
         raise TypeError(f"{name}: {base.__name__} has no interlock table that rows could join")
@@ -72,7 +72,7 @@ def _rig_again(name: str, values: dict[str, Any], interlocks: dict[str, float]) 
 
 @cache
 def recipe_with(name: str, part: RecipePart, further: tuple[Axis, ...]) -> RecipePart:
-    """Return a part for recipes with axes ahead of its own."""
+    """Return a part for recipes with further axes ahead of its own."""
     axes = Axes((*further, *part.axes), blocks=part.axes.blocks)
 
     def reduced(_: RecipePart) -> tuple[Any, ...]:
@@ -84,7 +84,7 @@ def recipe_with(name: str, part: RecipePart, further: tuple[Axis, ...]) -> Recip
 
 def _recipe_again(name: str) -> RecipePart:
     part = find(name).recipe
-    assert part is not None  # it was asked for the part that is pickled
+    assert part is not None  # the pickled part came from this kind
     return part()
 
 

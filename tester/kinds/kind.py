@@ -1,8 +1,8 @@
-"""What a kind of rig brings: the list of everything that the rest of the program asks a kind for.
+"""The parts of a kind of rig: everything that the rest of the program asks a kind for.
 
 A kind is a package: ``tester.kinds.<name>``, or a laboratory's own. Its ``KIND`` is found by name in one place
 (tester.kinds.find), and ``tester.run.kind_lookup`` asks it for the rest of the program. Making a ``KIND`` imports
-nothing: what is large is named by its place and imported when it is asked for::
+nothing: a large object is named by its place and imported when it is needed::
 
     KIND = Kind(name="sledge", ..., rig=found_at("lab_sledge.rig:SledgeRig"), runs=found_at("lab_sledge.runs:RUNS"))
 """
@@ -43,45 +43,45 @@ def _object(module: str, name: str) -> object:
 class Kind:
     """One kind of rig.
 
-    A kind of which no recipe can be run has a rig file and interlocks to look at; the rest it may leave out.
+    A kind that runs no recipe needs only its rig file and interlocks.
     """
 
     name: str
-    """As the key ``kind`` of a rig file says it."""
+    """Its name in the key ``kind`` of a rig file."""
     title: str
-    """What people call it, in a few words."""
+    """Its name for people, in a few words."""
     measurand: str = ""
-    """What its coefficient is, for people, in words that follow "measured was"; "" where nothing is to be said."""
+    """Meaning of its coefficient for people, in words that follow "measured was"; "" for none."""
     rigs: Mapping[str, str]
-    """Rig files that ship with it, by the names that ``--rig`` takes: ``package:file``, the first for a start."""
+    """Rig files that ship with it, as ``package:file`` by the names that ``--rig`` takes; the first is the default."""
     rig: Callable[[], type[Rig]]
-    """How its rig file is read: its sections, the keys that a file may lack, safety keys, checks, and the table of
-    its channels (tester.inputs.rig.Rig)."""
+    """The rules for reading its rig file: sections, optional keys, safety keys, checks, and the table of its channels
+    (tester.inputs.rig.Rig)."""
     interlocks: Callable[[], InterlockSheet]
     """The rows of its interlock table, as its page and its rig files show them."""
     page: str
     """Its page of interlocks and safety keys, whose tables ``python docs/interlocks.py`` writes."""
     runs: Callable[[], KindRun] | None = None
-    """How its runs are built, and what goes with them."""
+    """The builder of its runs, and their other parts."""
     served: Callable[[], ServedKind] | None = None
-    """What it answers a service."""
+    """Its answers to a service."""
     recipe: Callable[[], RecipePart] | None = None
-    """What it says about recipes; None: none can be read for it."""
+    """Its part of the recipe reader; None: it has no recipes."""
     fits: Callable[[], FitPart] | None = None
-    """Which laws can be fitted to its conditions; None: none."""
+    """The laws that can be fitted to its conditions; None: none."""
     papers: Callable[[], tuple[Paper, ...]] | None = None
-    """Papers that its machine or its laws come from, each item with a verdict; None: none."""
+    """Papers behind its machine or its laws, each item with a verdict; None: none."""
     masters: Callable[[], MasterPart] | None = None
-    """How its conditions stand on a master curve, and when not; None: they have no speed and temperature."""
+    """Its conditions for a master curve, or reasons against one; None: they have no speed and temperature."""
     commissions: Callable[[], CommissionPart] | None = None
-    """How a rig of it is commissioned; None: nobody is guided."""
+    """The guided commissioning of its rigs; None: there is none."""
     ring: Callable[[], RingPart] | None = None
-    """The ring over which a device on a turning part is reached; None: there is none."""
+    """The slip ring between the PC and a device on a turning part; None: there is none."""
 
     def extended(
         self, name: str, title: str, *, rows: Iterable[Interlock[Any]] = (), axes: Iterable[Axis] = (), **parts: Any
     ) -> Kind:
-        """Return a kind of a laboratory's own: this one with further interlock rows and axes, ahead of its own.
+        """Return a laboratory's own kind: this kind with further interlock rows and axes ahead of its own.
 
         ``name``: of the new kind, ``module:KIND`` or an extension's; ``parts``: other members in place of this kind's.
         A rig file states the rows' keys, or takes their defaults; control evaluates the rows in every scan::

@@ -22,10 +22,10 @@ AXES: Final = Axes(
     ),
     blocks="temperature",
 )  # fmt: skip
-"""All axes in the order of people's texts: weights and interface, which a person changes, before the speed.
+"""All axes, in the order of texts for people: weights and interface (a person changes them) before the speed.
 
-Track speed is that of the track under the standing specimen, load what the weights on the arm press with, temperature
-that of the air around the specimen, interface what is between specimen and track.
+Track speed is the speed of the track under the standing specimen, load the force of the weights on the arm,
+temperature that of the air around the specimen, interface the state of the track: dry, wet or powdered.
 """
 
 

@@ -28,7 +28,7 @@ SAMPLES = 40.0
 
 
 class TrackAttendant(Protocol):
-    """The hands at the rig: a person's work. A simulated rig does it itself; on a real one the calls do nothing."""
+    """A person's work at the rig. A simulated rig does it itself; on a real rig the calls do nothing."""
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Put a specimen of ``compound`` on the arm."""
@@ -69,13 +69,13 @@ class MountedSpecimen:
 
 @dataclass(slots=True)
 class TrackTarget:
-    """The values that the gates compare with; the activity that measures writes them."""
+    """The target values of the gates; the measuring activity writes them."""
 
     track_m_s: float = 0.0
     temperature_c: float = nan
     band_k: float = nan
     stretch_m: float = 0.0
-    """Length of a stretch of the way; 0: none is counted."""
+    """Length of a stretch of the way; 0: stretches are not counted."""
     stationary: bool = False
     """Friction has become stationary since the track began to move in this direction."""
 

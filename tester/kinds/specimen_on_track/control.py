@@ -19,7 +19,7 @@ from tester.machine.standstill import StandstillControl
 from tester.machine.state import ControlState
 
 ARRIVED_K = 2.0
-"""Air that came this near to the chamber's setpoint has reached it, K [A]."""
+"""The air has reached the chamber's setpoint within this difference, K [A]."""
 
 
 LATE_S = 0.1
@@ -152,12 +152,12 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         return min(speed, most) if isfinite(speed) else most
 
     def stop_ended(self) -> bool:
-        """Return whether the track is at rest with the chamber off, or the time for that is over ("stop not ended")."""
+        """Return whether the track is at rest with the chamber off, or the stop has timed out ("stop not ended")."""
         view = self.view
         since_s = view.readings.now_s - self.state.mode_since_s
         if since_s > view.parameters[STOP_TIMEOUT_S]:
             return True
-        # Later the row "chamber not off" has tripped, and the chamber's lease ends its output.
+        # After this time the row "chamber not off" has tripped, and the chamber's lease ends its output.
         off = not view.limits.chamber or view.readings.chamber_percent == 0.0
         late = since_s > view.parameters[CHAMBER_OFF_S] + LATE_S
         return standing(view) and (off or late)

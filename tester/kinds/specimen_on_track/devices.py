@@ -21,9 +21,9 @@ from tester.machine.rig_ports import Ports
 CELL_CHANNELS: Final = ("fx",)
 """Tangential force (N)."""
 SURFACE_CHANNELS: Final = ("surface",)
-"""Temperature of what a pyrometer looks at (degC)."""
+"""Temperature of the pyrometer's target (degC)."""
 SPEED_S: Final = 0.5
-"""Time over which the speed of a track with position feedback is taken, s [A]: 500 increments at 1 um/s."""
+"""Averaging time of the speed of a track with position feedback, s [A]: 500 increments at 1 um/s."""
 
 
 class TrackDevices(DeviceList):
@@ -36,7 +36,7 @@ class TrackDevices(DeviceList):
         """Build the drivers of the rig file on these wires; nothing is sent."""
         drivers = RigDrivers(rig, ports)
         cell = drivers.sensor("load_cell", CELL_CHANNELS)
-        assert cell is not None  # the rig file has one, or is refused
+        assert cell is not None  # a rig file without a cell is refused
         self.cell: Sensor = cell
         self.thermometer: Sensor | None = drivers.sensor("thermometer", SURFACE_CHANNELS)
         self.pyrometer: Sensor | None = drivers.sensor("pyrometer", SURFACE_CHANNELS)

@@ -10,7 +10,7 @@ from tester.kinds.specimen_on_track.procedures.motions import TakeTrackTare, sti
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 STEPS: Final = 10.0
-"""Steps from standstill to the greatest speed."""
+"""Number of steps from standstill to the greatest speed."""
 CHAMBER_STEP_K: Final = 1.0
 
 
@@ -28,7 +28,7 @@ class TrackHand:
 
     @property
     def busy(self) -> str:
-        """Why no step is possible at present, "" if one is."""
+        """Reason why no step is possible at present; "" if a step is possible."""
         return "the load cell is being tared" if self.taring is not None else ""
 
     def demand(self, ctx: TrackContext) -> None:

@@ -24,7 +24,7 @@ class TrackReadings(BaseReadings):
     track_m_s: float = NAN
     """Speed of the track under the specimen, above 0 forward; from its position, over half a second."""
     track_now_m_s: float = NAN
-    """The same from one reading to the next."""
+    """The same speed, from one reading to the next."""
     track_mm: float = NAN
     """Place of a linear track in its travel."""
     way_m: float = 0.0
@@ -38,7 +38,7 @@ class TrackReadings(BaseReadings):
     force_n: float = NAN
     """Tangential force on the specimen, tare applied, above 0 where the track moves forward."""
     friction_n: float = NAN
-    """The force against the motion of the track: below 0 only where nothing slides."""
+    """The force against the motion of the track; below 0 only without sliding."""
     sliding_m_s: float = NAN
     """Speed of the track in the demanded direction."""
     load_n: float = 0.0
@@ -48,9 +48,9 @@ class TrackReadings(BaseReadings):
     """The load cell has not answered several requests in a row, and is not set up again yet."""
     cell_at_s: float = NEVER
     cell_changed_s: float = NEVER
-    """When a reading of the cell last differed from the one before."""
+    """When a reading of the cell last differed from its predecessor."""
     air_c: float = NAN
-    """Air at the specimen: the chamber's reading, else the thermometer's."""
+    """Air temperature at the specimen: the chamber's reading, else the thermometer's."""
     air_valid: bool = False
     air_silent: bool = False
     air_at_s: float = NEVER
@@ -75,7 +75,7 @@ class TrackDemand(BaseDemand):
 
     track_m_s: float = 0.0
     lowered: bool = False
-    """The arm is wanted down."""
+    """The arm is to be down."""
     tared: bool = False
     """The cell has been tared with this specimen: only then may the track move with the arm down."""
     sliding_m: float = 0.0
@@ -94,4 +94,4 @@ class TrackSetpoints(BaseSetpoints):
     chamber: bool = False
     """Chamber in run (True) or standby."""
     chamber_silent: bool = False
-    """The chamber's setpoint is not renewed any more: its lease ends an output that standby has not ended."""
+    """The chamber's setpoint is no longer renewed: the lease ends an output that standby did not end."""

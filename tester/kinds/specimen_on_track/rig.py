@@ -1,4 +1,4 @@
-"""A rig of this kind: its sections, what must fit together in them, and what its file's reader has to know."""
+"""A rig of this kind: its sections, their consistency checks, and the rules for reading its file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tester.machine.interlock_table import InterlockTable
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)
 METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
-"""Metres in the unit of length of the track's drive."""
+"""Metres per unit of length of the track's drive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class TrackLimitsConfig:
     """Hard limits: no recipe and no procedure gets past them."""
 
     force_n: Annotated[float, "N", Range(gt=0.0, le=195.0)]
-    """At most 195 N: the cell of these rigs ends at 200 N."""
+    """At most 195 N: these rigs' cells end at 200 N."""
     track_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     slowest_m_s: Annotated[float, "m/s", _POSITIVE]
     air_low_c: Annotated[float, "degC", Range(ge=-55.0, le=60.0)]
@@ -49,7 +49,7 @@ class TrackAxes:
 
 @dataclass(frozen=True, slots=True)
 class ArmConfig:
-    """The arm: where it is raised, and when it is where it was sent."""
+    """The arm: its raised place, and its tolerance."""
 
     raised_mm: Annotated[float, "mm", _POSITIVE]
     within_mm: Annotated[float, "mm", _POSITIVE]
@@ -66,15 +66,15 @@ class TrackGates:
 
 @dataclass(frozen=True, slots=True)
 class HeatConfig:
-    """What is believed of friction heat: checks and plans say by it where it matters."""
+    """Assumed heating by friction, for checks and plans."""
 
     rise: Annotated[float, "K/W", _NOT_NEGATIVE]
-    """Of the specimen's contact, in the end, by the power of friction."""
+    """Final warming of the specimen's contact per power of friction."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrackArmingConfig:
-    """What is shown before a run may move anything."""
+    """The proofs before a run may move anything."""
 
     listen_s: Annotated[float, "s", _NOT_NEGATIVE]
     bump_test: bool
@@ -86,7 +86,7 @@ class TrackArmingConfig:
 
 @dataclass(frozen=True, slots=True)
 class TrackCertificatesConfig(CalibrationConfig):
-    """What has a certificate."""
+    """The sensors that have a certificate."""
 
     certificates: ClassVar[tuple[str, ...]] = ("load_cell", "weights", "temperature")
 
@@ -122,12 +122,12 @@ CEILINGS: Final = (
             "a drive continues for this long without setpoints", zero_is_off=True),
     *ceilings_of(SECTION, TABLE.parameters),
 )  # fmt: skip
-"""Every key on which safety hangs, in the order of the kind's page."""
+"""Every safety key, in the order of the kind's page."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackConfig(Rig):
-    """A rig: everything about the machine that software needs to know, and nothing about a test."""
+    """A rig: everything that the software must know about the machine, and nothing about a test."""
 
     packaged: ClassVar[Mapping[str, str]] = KIND.rigs
     may_lack: ClassVar[tuple[str, ...]] = (
@@ -151,7 +151,7 @@ class TrackConfig(Rig):
 
     track: Literal["linear", "disc"]
     weights: tuple[float, ...]
-    """Of the arm, N: what may press, lightest first."""
+    """The arm's possible loads, N, lightest first."""
     ambient: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
     limits: TrackLimitsConfig
     axes: TrackAxes
@@ -204,11 +204,11 @@ class TrackConfig(Rig):
 
     @property
     def metres(self) -> float:
-        """Metres in the unit of length of the track's drive."""
+        """Metres per unit of length of the track's drive."""
         return METRES[self.axes.track.unit]
 
     def problems(self) -> Iterator[tuple[Location, str]]:
-        """Yield what does not fit together between the kind's sections, with its place."""
+        """Yield inconsistencies between the kind's sections, with their places."""
         track, limits = self.axes.track, self.limits
         if track.unit not in METRES or track.mode != "velocity":
             yield ("axes", "track"), "the track has a speed in mm/s or m/s (expected mode velocity)"

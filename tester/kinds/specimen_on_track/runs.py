@@ -62,7 +62,7 @@ class TrackRuns(KindRun):
         return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: TrackAttendant, compound: str) -> None:
-        """Put a new specimen on; "" is SBR."""
+        """Mount a new specimen; "" is SBR."""
         attendant.install(1, 1, compound or "SBR", new_specimen=True)
 
     def history(self, runs: Path, rig: Rig) -> NoHistory:
@@ -70,7 +70,7 @@ class TrackRuns(KindRun):
         return NoHistory((Check("zero of the load cell", None, "taken anew before every repeat"),))
 
     def calibration(self, rig: Rig) -> Iterator[Calibration]:
-        """Yield the weights."""
+        """Yield the weights, for the record of calibration."""
         for number, weight_n in enumerate(TrackConfig.of(rig).weights, start=1):
             yield Calibration("weights", f"set {number}", repr(weight_n), "N")
 

@@ -18,7 +18,7 @@ HAND: Final = (
     HandAxis("arm", "Arm", "down or up, track standing"),
     HandAxis("chamber", "Chamber", "1 K a step"),
 )
-"""In the order of the screen."""
+"""Axes of manual mode, in the order of the screen."""
 
 MACHINE: Final = MachineView(
     NAME,
@@ -46,7 +46,7 @@ class TrackPanel(RunPanel):
     }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
-        """Read only."""
+        """Store the run; the panel only reads it."""
         super().__init__(engine)
         limits = engine.ctx.rig.interlocks
         self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_air_s, limits.stale_exit_s)
@@ -64,7 +64,7 @@ class TrackPanel(RunPanel):
         }
 
     def wanted(self) -> dict[str, Wanted]:
-        """Return setpoints and gates of the values that have them."""
+        """Return the setpoints and gates, for values that have them."""
         ctx, out = self.engine.ctx, self.engine.control.state.setpoints
         target = ctx.target
         mm_s = 1e3 * out.track_m_s

@@ -49,7 +49,7 @@ class SpecimenOnTrack(ServedKind):
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: TrackAttendant, record: Recorder, left: Left | None, history: History
     ) -> ByHand:
-        """Put a person in the place of a recipe, with a new specimen on a simulated rig."""
+        """Let a person command the run instead of a recipe; a simulated rig gets a new specimen."""
         own = TrackConfig.of(rig)
         run = RUNS.build(own, Plan(MANUAL, (), (), 1, kind=NAME), ports, attendant, record, Prompts())
         executor = ManualExecutor(TrackHand(own))

@@ -50,9 +50,9 @@ compounds."""
 
 
 def terms_of(cell_sensitivity: float, record: str) -> tuple[Term, ...]:
-    """Return the terms of a rig, with the result of a calibration of its cell with weights, if there was one.
+    """Return the terms of a rig, including any calibration of its load cell with weights.
 
-    ``cell_sensitivity``: of Fx over Fz, with its standard uncertainty (``commission.weights``), 0: not stated.
+    ``cell_sensitivity``: error of Fx over Fz, with its standard uncertainty (``commission.weights``); 0: not stated.
     """
     if not cell_sensitivity > 0.0:
         return TERMS
@@ -71,7 +71,7 @@ def instruments_budget(
 ) -> Budget:
     """Return the measuring chain's part of the uncertainty of an expected coefficient.
 
-    ``size``: of the wheel, as it is expected by then; ``slope``: the known sensitivity to temperature.
+    ``size``: the wheel's expected size at that time; ``slope``: the known sensitivity to temperature.
     """
     means = {"wheel_speed_m_s": held.wheel_speed_m_s, "belt_speed_m_s": held.belt_speed_m_s}
     turning = {"wheel_speed_m_s": 0.0, "belt_speed_m_s": -held.slip_velocity_m_s} if both_directions else None
@@ -80,15 +80,15 @@ def instruments_budget(
 
 
 ROLL_CHECK_N: Final = 50.0
-"""Load of the automatic diameter check, N [A]: little penetration, and above the press's friction."""
+"""Load of the automatic diameter check, N [A]: small indentation, but more than the press's friction."""
 ROLL_CHECK_TURNS: Final = 6.0
-"""Whole turns averaged by the check: runout drops out, and the load loop's ripple."""
+"""Whole turns averaged by the check: runout and the load loop's ripple cancel."""
 
 
 def roll_check_u_mm(rig: RigConfig, off_mm: float = 0.0) -> float:
-    """Return the standard uncertainty of a diameter by a roll check, mm, by itself.
+    """Return the standard uncertainty of the diameter from a single roll check, mm.
 
-    ``off_mm``: by how much the press stood deeper for a load beside the nominal one.
+    ``off_mm``: additional depth of the press due to a load off the nominal one.
     """
     wear, stiffness = rig.wear, rig.loops.load.stiffness_n_per_mm
     per_n = 2.0 * (depth_mm(ROLL_CHECK_N + 0.5, stiffness) - depth_mm(ROLL_CHECK_N - 0.5, stiffness))

@@ -25,22 +25,22 @@ _LOAD: Final = Press.LOAD
 
 
 class Attendant(Protocol):
-    """The hands at the rig: a simulated rig does a person's work itself; on a real rig nothing happens."""
+    """A person's work at the rig. A simulated rig does it itself; on a real rig the calls do nothing."""
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel of ``compound``."""
         ...
 
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Put the wheel of an interrupted run back, as worn as it was (mm, m)."""
+        """Mount the wheel of an interrupted run again, with its wear (mm, m)."""
         ...
 
     def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Put a wheel back on that was on before in this run, as worn as it was (mm, m)."""
+        """Mount an earlier wheel of this run again, with its wear (mm, m)."""
         ...
 
     def belt_travelled(self, travel_m: float) -> None:
-        """Have the belt on that an interrupted run has used, m of travel under load."""
+        """Keep the belt of an interrupted run, with its travel under load, m."""
         ...
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
@@ -62,7 +62,7 @@ class CellZero(Protocol):
 
 
 class Context(BaseContext[RigConfig, Readings, Demand]):
-    """One per run; activities read and write it, nothing else."""
+    """One per run; only activities read and write it."""
 
     def __init__(
         self,
@@ -96,21 +96,21 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self._wear_mm3_per_n_m = rig.wear.rate_mm3_per_n_m
 
     def put_on(self, wheel: WheelLife) -> None:
-        """Reckon with another wheel from now on: where it was touched is not known, and its turns count anew."""
+        """Use another wheel from now on: its place of contact is unknown, and its turns count from zero."""
         self.wheel = wheel
         self.contact.forget_contact()
         self.readings.wheel_angle_rev = 0.0
 
     def before_reading(self) -> None:
-        """Bring the wheel's diameters up to date: speeds are worked out with them."""
+        """Update the wheel's diameters, from which speeds are computed."""
         self.wheel.show(self.readings, self.rig.wear)
 
     def after_reading(self) -> None:
-        """Account for what this scan's sliding takes off the wheel, and for the belt that passes below it."""
+        """Add this scan's wear of the wheel, and the belt's travel under load."""
         r = self.readings
         if r.force_z_n > CONTACT_N:
             travelled_m = r.belt_speed_m_s * self.dt
-            if travelled_m > 0.0:  # also: it is a number
+            if travelled_m > 0.0:  # false for NaN, too
                 self.belt_travel_m += travelled_m
         if r.force_z_n > CONTACT_N and r.slip_m_s > SLIDING_M_S:
             self.wheel.slide(r.force_z_n, r.slip_m_s, self.dt, self._wear_mm3_per_n_m)
@@ -120,7 +120,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         return self.gates.update(self.readings, self.dt)
 
     def after_control(self) -> None:
-        """Note when the wheel touches."""
+        """Record when the wheel touches."""
         in_contact = self.contact.in_contact
         if in_contact is not self._was_in_contact:
             self._was_in_contact = in_contact
@@ -131,5 +131,5 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         return self.readings.force_z_n > CONTACT_N or self.demand.press is _LOAD
 
     def known(self) -> list[str]:
-        """Return the history of earlier heatings."""
+        """Return the rig's history of heatings."""
         return [f"heat balance: {self.view.heat_known}"]

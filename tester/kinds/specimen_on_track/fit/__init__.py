@@ -1,1 +1,1 @@
-"""What was measured of a specimen on a track, as laws and master curves take it."""
+"""Measured conditions of a specimen on a track, for laws and master curves."""

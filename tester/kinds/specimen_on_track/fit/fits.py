@@ -1,4 +1,4 @@
-"""What this machine contributes to fitting, and which conditions are fitted together."""
+"""This machine's part of fitting: its laws, and groups of conditions that are fitted together."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class TrackFits(FitPart):
         return Sourced(tuple(_grouped(point, surface) for point in sourced.points), sourced.left_out)
 
     def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
-        """Return a law for a group: of its compound's moduli and its surface where it needs them; raises FitError."""
+        """Return a law for a group, with the moduli of its compound and its surface if needed; raises FitError."""
         wanted = group_of(group)
         if law.name not in OF_MATERIALS:
             if figures:
@@ -91,11 +91,11 @@ class TrackFits(FitPart):
             raise FitError(f"{group}: {error}") from error
 
     def _with_glass(self, law: Law, compound: str) -> Law:
-        """Return the bell with the band of its t_ref for a compound, from the glass transition in its file."""
+        """Return the bell; the band of its t_ref comes from the glass transition in a compound's file."""
         try:
             glass_c = self._materials().rubber(compound).glass_c
         except (ValueError, InvalidSource):
-            # No file, or a file without moduli: the band of any rubber serves.
+            # No file, or a file without moduli: the band of all rubbers is used.
             return law
         bands = {"t_ref": reference_band(glass_c)}
         return replace(law, parameters=tuple(replace(p, band=bands.get(p.name, p.band)) for p in law.parameters))

@@ -1,6 +1,6 @@
-"""Laws fitted to a specimen on a track: two of measurements alone, two based on moduli and a surface.
+"""Laws fitted to a specimen on a track: two use measurements alone, two also moduli and a surface.
 
-v is the sliding speed in m/s, T in degC, the load F in N. A law of materials is bound to a compound and a surface
+v is the sliding speed in m/s, T in degC, the load F in N. A law based on moduli is bound to a compound and a surface
 before it is fitted (``tester.kinds.specimen_on_track.fit.bound``).
 """
 
@@ -15,9 +15,9 @@ from tester.base.arrays import Array
 from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED, TEMPERATURE, VARIABLES
 
 FITTED: Final[tuple[Variable, ...]] = VARIABLES[:3]
-"""Speed, temperature, load: each interface has groups of its own."""
+"""Speed, temperature, load; the interface belongs to the group."""
 V0_M_S, N0_N = 0.1, 10.0
-"""Speed and load at which the factor of the power law is the coefficient."""
+"""Speed and load at which the power law's factor equals the coefficient."""
 
 
 def _bell(p: Array, x: Array) -> Array:
@@ -25,7 +25,7 @@ def _bell(p: Array, x: Array) -> Array:
 
     mu_0, mu_max, width, v_ref, t_ref = (p[..., i, None] for i in range(5))
     off_k = x[..., TEMPERATURE] - t_ref
-    with np.errstate(divide="ignore", invalid="ignore"):  # at the pole and below it there is no law
+    with np.errstate(divide="ignore", invalid="ignore"):  # the law is undefined at and below its pole
         shift = np.where(off_k > -C2_K, -C1 * off_k / (C2_K + off_k), np.nan)
     decades = shift + np.log10(x[..., SPEED] / v_ref)
     return mu_0 + (mu_max - mu_0) * np.exp(-((decades / width) ** 2))
@@ -37,9 +37,9 @@ def _power(p: Array, x: Array) -> Array:
 
 
 _GLASS_C: Final = (-110.0, 10.0)
-"""Range of the glass transitions of rubbers, butadiene at the lower end [A]."""
+"""Range of the glass transitions of rubbers [A]; butadiene rubber is at the lower end."""
 NEAR_K: Final = 15.0
-"""Most that the t_ref of a bell is off Tg + 50 K of the compound's file [A]: Tg by two methods differs by 5 to 10 K."""
+"""Greatest deviation of a bell's t_ref from the file's Tg + 50 K [A]: Tg by two methods differs by 5 to 10 K."""
 _RUBBER: Final = "[A] rubber on a hard track"
 
 
@@ -131,12 +131,13 @@ PERSSON: Final = Law(
 def below_glass(
     glass_c: float | None, parameters: Sequence[float], measured: Sequence[tuple[float, ...]]
 ) -> Iterator[str]:
-    """Yield how many conditions of a law of moduli are below the compound's glass transition, degC (``Law.beyond``)."""
+    """Yield how many conditions are below the compound's glass transition, degC, for a law based on moduli
+    (``Law.beyond``)."""
     below = sum(condition[TEMPERATURE] < glass_c for condition in measured) if glass_c is not None else 0
     if below:
         yield f"{below} conditions are below the glass transition, {glass_c:g} degC: rubber is a glass there"
 
 
 LAWS: Final[Mapping[str, Law]] = {law.name: law for law in (WLF_BELL, POWER, PERSSON, GRETA)}
-"""By name; the bell first: it needs measurements alone."""
+"""Laws by name; the bell is first because it needs measurements alone."""
 OF_MATERIALS: Final = frozenset({PERSSON.name, GRETA.name})

@@ -1,8 +1,8 @@
-"""The conditions of a specimen on a track as a master curve takes them, unless friction warms the contact.
+"""The conditions of a specimen on a track for a master curve, unless friction warms the contact.
 
-A row whose contact friction warms beyond its band of temperature is not at the temperature that is on record
-(``heat.rise`` of the rig times the power of friction). A run with such a row is refused as a whole: which rows are
-wrong by a little less is not known.
+Friction may warm a row's contact beyond its temperature band (the rig's ``heat.rise`` times the power of friction):
+the recorded temperature is then wrong. A run with one such row is refused as a whole, because smaller errors of its
+other rows are unknown.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from tester.store.run_reader import RunReader
 
 
 def _run(folder: Path) -> MasterRun:
-    """Return the conditions of a run; raises StoreError where it cannot be read, InvalidSource for its rig file."""
+    """Return the conditions of a run; raises StoreError for an unreadable run, InvalidSource for its rig file."""
     with RunReader(folder) as reader:
         results = results_of(reader)
     sourced = points_of(folder.name, results)
@@ -38,7 +38,7 @@ def _run(folder: Path) -> MasterRun:
 
 
 def _heated(results: RunResults) -> str:
-    """Return the rows that friction warms beyond their band, in words; "" for none."""
+    """Return a text that lists the rows that friction warms beyond their band; "" for none."""
     rise_k_w = rise_of(results.run.info)
     rows = [condition for condition in results.conditions() if beyond_band(condition, rise_k_w)]
     if not rows:

@@ -1,4 +1,4 @@
-"""What takes long to work out, at the nodes of a grid that are asked for, and straight between them."""
+"""A table of an expensive function: computed at grid nodes when first needed, interpolated linearly between them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tester.base.arrays import Array, Places
 
 
 class GridAxis(NamedTuple):
-    """Nodes of a coordinate, evenly apart; beyond the ends those hold."""
+    """Evenly spaced nodes of a coordinate; values beyond an end take that end's node."""
 
     first: float
     last: float
@@ -24,7 +24,7 @@ class GridAxis(NamedTuple):
         return round((self.last - self.first) / self.step) + 1
 
     def place(self, values: Array) -> tuple[Places, Array]:
-        """Return the node below each value, and how far on to the next it lies, 0 to 1."""
+        """Return the node below each value, and the value's place from it to the next, 0 to 1."""
         at = np.clip((values - self.first) / self.step, 0.0, self.nodes - 1.000001)
         below = np.floor(at)
         return below.astype(np.intp), np.asarray(at - below, dtype=np.float64)
@@ -34,7 +34,7 @@ class GridNodes:
     """Values of a function, each a row of numbers, at nodes of some axes."""
 
     def __init__(self, axes: Sequence[GridAxis], work_out: Callable[[Sequence[float]], Array]) -> None:
-        """``work_out``: from the coordinates of a node to a row; what it raises reaches who asks."""
+        """``work_out``: returns the row of a node's coordinates; its exceptions reach the caller of ``corners``."""
         self._axes, self._work_out = tuple(axes), work_out
         self._row_of = np.full([axis.nodes for axis in self._axes], -1, dtype=np.int32)
         self._rows: list[Array] = []
@@ -42,14 +42,15 @@ class GridNodes:
 
     @property
     def values(self) -> Array:
-        """Return the rows that are known, shape (rows, m)."""
+        """Return the computed rows, shape (rows, m)."""
         if len(self._values) != len(self._rows):
             self._values = np.array(self._rows)
         return self._values
 
     def corners(self, *coordinates: Array) -> Iterator[tuple[Places, Array]]:
-        """Yield, for each corner of the cells in which points lie, its row in ``values`` and its weight, both of the
-        shape of the points. All rows are worked out before the first is yielded.
+        """Yield the row in ``values`` and the weight of each corner of the points' cells, both in the points' shape.
+
+        All rows are computed before the first corner is yielded.
         """
         placed = [axis.place(one) for axis, one in zip(self._axes, np.broadcast_arrays(*coordinates), strict=True)]
         found: list[tuple[Places, Array]] = []

@@ -1,7 +1,7 @@
 """The law ``persson`` (``sim.physics.persson``) for many conditions and many upper ends q1 of the spectrum at once.
 
-The share of contact at a wave number knows only what is coarser. One integral up to the largest q1 is therefore all of
-them: the coefficient of any lower q1 is that integral so far.
+The share of contact at a wave number depends only on smaller wave numbers. One integral up to the largest q1 therefore
+serves every q1: its running value at a lower q1 is the coefficient for that q1.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from tester.kinds.specimen_on_track.fit.nodes import GridAxis, GridNodes
 from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED, TEMPERATURE
 
 AREA_MM2: Final = 100.0
-"""Of the contact, over which the load is spread evenly, where nothing else is given [A]."""
+"""Default contact area [A]; the load is spread evenly over it."""
 BEYOND: Final = 30.0
-"""A self-affine spectrum may go on so many times beyond the q1 of its file; a measured one ends where it ends."""
+"""A self-affine spectrum may extend to this many times the q1 of its file; a measured spectrum is not extended."""
 END: Final = 1.01
-"""So near to an end of the spectrum, as a factor, a q1 is where the search was stopped [A]."""
+"""A q1 within this factor of an end of the spectrum is a search limit, not a fitted value [A]."""
 _AXES: Final = (GridAxis(-150.0, 250.0, 1.0), GridAxis(-9.0, 4.0, 0.1), GridAxis(2.0, 9.0, 0.2))
-"""Temperature in degC, decades of the speed in m/s and of the pressure in Pa. Coefficients are taken as straight
-between them, which is right within 0.3 % over a bell of three decades."""
+"""Temperature in degC, decades of the speed in m/s and of the pressure in Pa. Coefficients are
+interpolated linearly: the error is at most 0.3 % over a bell of three decades."""
 _PANELS, _NODES = 100, 16
 
 
 def bound(rubber: Rubber, surface: Surface, figures: Mapping[str, float]) -> Law:
-    """Return the law of a rubber on a surface; ``figures``: area in mm2. Raises ValueError for what makes none."""
+    """Return the law of a rubber on a surface; ``figures``: area in mm2. Raises ValueError for unusable inputs."""
     unknown = [name for name in figures if name != "area"]
     area_mm2 = figures.get("area", AREA_MM2)
     if unknown or not area_mm2 > 0.0:
@@ -57,7 +57,7 @@ def bound(rubber: Rubber, surface: Surface, figures: Mapping[str, float]) -> Law
 
 
 class _ManyPersson:
-    """The law with its tables."""
+    """The law with its table of running integrals."""
 
     def __init__(self, law: PerssonLaw, band_1_m: tuple[float, float], rubber: str, area_mm2: float) -> None:
         self._law, self._rubber, self._per_n = law, rubber, 1e6 / area_mm2
@@ -65,10 +65,10 @@ class _ManyPersson:
         self._nodes = GridNodes(_AXES, self._up_to)
 
     def value(self, p: Array, x: Array) -> Array:
-        """Return coefficients (``Law.value``). Raises FitError where the modulus is not known."""
+        """Return coefficients (``Law.value``). Raises FitError where the modulus is unknown."""
         last = 2 * _PANELS
         reached = np.clip((np.log(p[..., 0, None]) - self._low) / self._span, 0.0, 1.0)
-        at = np.minimum(last * reached**0.25, last - 1e-6)  # the points of the integral are even in this
+        at = np.minimum(last * reached**0.25, last - 1e-6)  # the integral's points are evenly spaced in this
         below = np.floor(at).astype(np.intp)
         on = at - below
         pressure = np.log10(self._per_n * x[..., LOAD])

@@ -1,4 +1,4 @@
-"""The conditions of a run, as fits and master curves take them: measured speed, temperature and load, and interface."""
+"""The conditions of a run for fits and master curves: measured speed, temperature and load, and interface."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tester.store.records import RunInfo
 from tester.store.run_reader import RunReader
 
 SPEED, TEMPERATURE, LOAD, INTERFACE = range(4)
-"""Places of the variables; an interface is its place among ``INTERFACES``."""
+"""Indexes of the variables; an interface is given by its index in ``INTERFACES``."""
 VARIABLES: Final = (
     Variable("speed", "mm/s", 1e3),
     Variable("temperature", "degC", ratio=False),
@@ -31,16 +31,16 @@ BEYOND_BAND: Final = "friction warms the contact beyond its band of temperature"
 
 
 def run_points(folder: Path) -> Sourced:
-    """Return the conditions of a run with a reliable value; raises StoreError where it cannot be read."""
+    """Return the conditions of a run with a reliable value; raises StoreError for an unreadable run."""
     with RunReader(folder) as reader:
         return points_of(folder.name, results_of(reader))
 
 
 def points_of(name: str, results: RunResults) -> Sourced:
-    """Return the conditions of the results of a run of this name: speed in m/s, temperature in degC, load in N.
+    """Return the conditions in the results of a run: speed in m/s, temperature in degC, load in N.
 
-    Left out: conditions without a value, those with a value that needs care, and those in which friction warms the
-    contact beyond its band of temperature.
+    It omits conditions without a value, conditions with a flagged value, and those in which friction warms the
+    contact beyond its temperature band.
     """
     rise_k_w = rise_of(results.run.info)
     reader = fit_points.ConditionReader(
@@ -56,7 +56,7 @@ def points_of(name: str, results: RunResults) -> Sourced:
 def rise_of(info: RunInfo) -> float:
     """Return the rig's assumed ``heat.rise``, K/W, from a run's record; raises InvalidSource.
 
-    Only this section of the rig file is read: its law of friction may no longer be installed.
+    It reads only this section of the rig file, because the file's law of friction may no longer be installed.
     """
     tree = load_tree(info.rig_text, "rig.yaml")
     complete(TrackConfig, tree)

@@ -1,4 +1,4 @@
-"""The inputs of this machine's interlock conditions, updated once a scan, and when the track is known to stand.
+"""The inputs of this machine's interlock conditions, updated once a scan, and the test for standstill.
 
 Old or unknown data do not count as standing. Several rows test for standstill and share its parameters.
 """
@@ -16,7 +16,7 @@ from tester.machine.inputs import ScanInputs
 from tester.machine.row import Interlock
 
 WINDOW_S = 1.0
-"""Time over which the track's way is compared with its commands, s [A]: at 1 um/s it covers 1000 increments."""
+"""Time over which the track's way is compared with its commands, s [A]: 1000 increments at 1 um/s."""
 LAG_S = 0.15
 """Time by which the way may lag behind a change of its command, s [A]: two slow scans and the drive's ramp loop."""
 
@@ -29,7 +29,7 @@ class TrackLimits:
     force_n: float
     track_m_s: float
     fastest_m_s: float
-    """``axes.track.max_speed``: the speeds that count as standstill and as least motion are shares of it."""
+    """``axes.track.max_speed``; the speed limits of standstill and of least motion are shares of it."""
     deceleration_m_s2: float
     quick_stop_m_s2: float
     low_mm: float
@@ -44,7 +44,7 @@ class TrackLimits:
 
 
 class WayMonitor:
-    """Deviation of the track's way in the last second from its commands."""
+    """Deviation of the track's way from its commands in the last second."""
 
     def __init__(self, ramp_m_s2: float) -> None:
         """``ramp_m_s2``: the drive's acceleration."""
@@ -52,7 +52,7 @@ class WayMonitor:
         self.begin(0.0)
 
     def begin(self, speed_m_s: float) -> None:
-        """Begin again with a track at this speed."""
+        """Restart with a track at this speed."""
         self.speed_m_s = speed_m_s
         self.expected_m = 0.0
         self.changed_m_s = 0.0
@@ -60,7 +60,7 @@ class WayMonitor:
         self.until_s = -inf
         self.seen: deque[tuple[float, float, float]] = deque()
         self.off_m = 0.0
-        """Way in the window beyond the commanded one; negative where it is short of it."""
+        """Way in the window less the commanded way."""
         self.due_m = 0.0
         """Commanded way in the window, with its sign."""
 
@@ -73,7 +73,7 @@ class WayMonitor:
             self.until_s = now + LAG_S
         elif self.changed_m_s and now >= self.until_s:
             self.changed_m_s = 0.0
-            self.seen.clear()  # a lag is no deviation: the window begins again
+            self.seen.clear()  # a lag is no deviation: restart the window
         self.speed_m_s = speed + (step if -most <= step <= most else most if step > 0.0 else -most)
         self.expected_m += 0.5 * (speed + self.speed_m_s) * dt
         seen = self.seen
@@ -91,7 +91,7 @@ class WayMonitor:
 
 @dataclass(slots=True)
 class TrackStopStart:
-    """Speed of the track at the begin of a stop, and of its quick stop; an unknown one counts as the greatest."""
+    """Speed of the track at the start of a stop, and of its quick stop; an unknown speed counts as the greatest."""
 
     speed_m_s: float = 0.0
     fast_speed_m_s: float = 0.0
@@ -99,21 +99,21 @@ class TrackStopStart:
 
 @dataclass(slots=True)
 class TrackInputs(ScanInputs):
-    """One scan, as the conditions see it."""
+    """The inputs of the conditions in one scan."""
 
     limits: TrackLimits = field(init=False)
     readings: TrackReadings = field(init=False)
     demand: TrackDemand = field(init=False)
     setpoints: TrackSetpoints = field(init=False)
-    """Commands of the scan before."""
+    """Commands of the previous scan."""
     track: WayMonitor = field(init=False)
     stop_start: TrackStopStart = field(default_factory=TrackStopStart)
     arm_since_s: float = inf
-    """Since when the arm has not been at its commanded place; infinite while it is."""
+    """Time at which the arm left its commanded place; infinite while it is there."""
     arrived_c: float = inf
     """The chamber's setpoint that its air has reached; infinite before that."""
     off_since_s: float = inf
-    """Since when the chamber has given output although it should be in standby; infinite while it gives none."""
+    """Time since which the chamber, commanded to standby, has given output; infinite while it gives none."""
 
 
 Row: TypeAlias = Interlock[TrackInputs]

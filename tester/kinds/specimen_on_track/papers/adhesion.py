@@ -14,7 +14,7 @@ from tester.kinds.specimen_on_track.papers.paper_parts import load_n, rubber, su
 
 WARM_C: Final = 25.0
 PRESSURE_PA: Final = 3e5
-"""Of Figures 17 and 18."""
+"""Pressure of Figures 17 and 18."""
 DECADE_K: Final = 8.0
 MACRO_M, MACRO_RA_M = 9.9e-3, 0.8e-3
 MACRO: Final = ((0.5e-3, 50e-3), (0.1e-3, 20e-3))
@@ -27,7 +27,7 @@ PREDICT: Final = (
 
 
 def modulus_pa(celsius: float, hertz: float) -> complex:
-    """Return E* of the tread that ships, Pa."""
+    """Return E* of the packaged tread compound, Pa."""
     result = rubber("tread").modulus.complex_pa(np.array([2.0 * pi * hertz]), celsius)
     return 3.0 * complex(result[0])
 

@@ -29,9 +29,9 @@ GRAINS_M: Final = 1.4e-4
 OUR_RUBBERS: Final = ("SBR", "NR", "NBR")
 LIGHT_PA: Final = (5.5e3, 5.5e4)
 NEGLIGIBLE: Final = 0.05
-"""Share by which friction may change and the change still be called negligible or marginal [A]."""
+"""A change of friction up to this share counts as negligible or marginal [A]."""
 HALF_DECADE: Final = 0.5
-"""How near in decades a speed has to be to a rule to be called the same [A]: the paper gives lengths to two digits."""
+"""A speed within this many decades of a rule's agrees with the rule [A]: the paper gives lengths to two digits."""
 
 
 def _wlf() -> PaperFinding:
@@ -113,7 +113,7 @@ def _rules() -> PaperFinding:
     decades: list[float] = []
     for name in OUR_RUBBERS:
         ours = rubber(name)
-        celsius = ROOM_C + RUBBERS[name].t_ref - RUBBERS["SBR"].t_ref  # as far above its own Ts as SBR is
+        celsius = ROOM_C + RUBBERS[name].t_ref - RUBBERS["SBR"].t_ref  # the same distance above its Ts as SBR
         top = peak(persson_over_speed(ours.modulus, spectrum("silicon carbide"), celsius=celsius))
         rule = rules_of(ours.modulus, celsius, (Peak(10.0 ** top[1], top[0]),))[1]
         decades.append(rule.decades)

@@ -17,7 +17,7 @@ from tester.kinds.specimen_on_track.papers.adhesion import MACRO_M, MACRO_RA_M, 
 from tester.kinds.specimen_on_track.papers.paper_parts import Stiffer, load_n, rubber, surface, tread_on_road
 
 STRESS_PA: Final = 125e3
-"""Of Figures 11 to 14."""
+"""Stress of Figures 11 to 14."""
 PRESSURES_PA: Final = (5e4, 5e5)
 SPEEDS_M_S: Final = (0.1, 1.0, 10.0)
 DRAWN: Final = "tester figure --components --law greta --compound tread --surface road"
@@ -54,7 +54,7 @@ def _loss() -> PaperFinding:
 
 
 def _power() -> PaperFinding:
-    """The work of friction against the power that Eq 19 dissipates in the volume, both per area."""
+    """Compare the work of friction with the power that Eq 19 dissipates in the volume, both per area."""
     law = tread_on_road()
     coarse = law.dynamic(WARM_C, 1.0)[0]
     normal_m, _ = law.stress_m(PRESSURE_PA / (coarse.magnitude_pa * law.full_per_modulus))
@@ -113,8 +113,7 @@ def _eq_22() -> PaperFinding:
 
 
 def _field(friction: float, depth: float = 0.02) -> tuple[Array, Array]:
-    """Return places over a wave in shares of it, and sx over p at a depth (share of the wave) under the mean"
-    " pressure."""
+    """Return places in shares of a wave, and sx over p at a depth (share of the wave) under the mean pressure."""
     law = tread_on_road()
     coarse = law.dynamic(WARM_C, 1.0)[0]
     a = harmonics(STRESS_PA / (coarse.magnitude_pa * law.full_per_modulus), HARMONICS)

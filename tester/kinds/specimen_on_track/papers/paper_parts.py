@@ -1,4 +1,4 @@
-"""Rubbers, surfaces and laws that items of the papers are held against: those that ship."""
+"""Packaged rubbers, surfaces and laws for the checks of the papers' items."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ SPEEDS_M_S: Final = np.logspace(-6.0, 2.0, 81)
 
 @cache
 def rubber(name: str) -> Rubber:
-    """Return a compound that ships, with its moduli."""
+    """Return a packaged compound with its moduli."""
     return Library([recipes.FOLDER]).rubber(name)
 
 
 @cache
 def surface(name: str) -> Surface:
-    """Return a surface that ships."""
+    """Return a packaged surface."""
     return Library([recipes.FOLDER]).surface(name)
 
 
 def spectrum(name: str) -> SelfAffine:
-    """Return the spectrum of a self-affine surface that ships."""
+    """Return the spectrum of a packaged self-affine surface."""
     result = surface(name).spectrum
     assert isinstance(result, SelfAffine)
     return result
@@ -43,7 +43,7 @@ def spectrum(name: str) -> SelfAffine:
 
 @dataclass(frozen=True, slots=True)
 class Stiffer:
-    """A modulus with a storage modulus of ``storage`` times that of another, and a loss of ``loss`` times."""
+    """A modulus whose storage part is ``storage`` times another's, and whose loss part is ``loss`` times."""
 
     of: ShearModulus
     storage: float
@@ -64,7 +64,7 @@ def persson_over_speed(
 
 
 def peak(mu: Array) -> tuple[float, float]:
-    """Return the largest coefficient and log10 of its speed in m/s, by a parabola."""
+    """Return the largest coefficient and log10 of its speed in m/s, from a parabola through the peak."""
     i = int(np.clip(np.argmax(mu), 1, len(mu) - 2))
     a, b, c = mu[i - 1 : i + 2].tolist()
     bend = a - 2.0 * b + c
@@ -81,7 +81,7 @@ def smoother(name: str, factor: float) -> SelfAffine:
 
 @cache
 def tread_on_road() -> Greta:
-    """Return the law greta of the tread on the road that ship."""
+    """Return the law greta of the packaged tread on the packaged road."""
     return Greta(rubber("tread"), surface("road"))
 
 

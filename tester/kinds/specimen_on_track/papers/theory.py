@@ -1,4 +1,4 @@
-"""Paper S, sections 6 to 9: Persson's theory, its equations, and what it gives."""
+"""Paper S, sections 6 to 9: Persson's theory, its equations, and its results."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from tester.kinds.specimen_on_track.papers.paper_parts import (
 PRESSURES_PA: Final = (1e5, 2.5e5, 4e5, 5.5e5, 7e5)
 BAND_1_M: Final = (2.0e4, 10.0**5.344)
 SAME_DECADES: Final = 0.1
-"""Within which a peak has not moved [A]: a quarter of its speed."""
+"""A peak that shifts by less has not moved, decades [A]: a quarter of its speed."""
 
 
 def _direct(law_at_q1: bool) -> tuple[float, float]:
-    """Return mu of Eqs 1 to 3 by the midpoint rule, for a rubber without frequency on S0, and that of the program.
+    """Return mu of Eqs 1 to 3 by the midpoint rule, for a frequency-independent rubber on S0, and the program's mu.
 
     ``law_at_q1``: with P of the largest wave number at every scale, as Eq 3 is printed.
     """
@@ -40,7 +40,7 @@ def _direct(law_at_q1: bool) -> tuple[float, float]:
     edges = np.logspace(log10(rough.q0_1_m), log10(rough.q1_1_m), count + 1)
     q, dq = np.sqrt(edges[1:] * edges[:-1]), np.diff(edges)
     plane = 2.0 * modulus.storage_pa / 0.5
-    # The integrals over phi are closed: 4 of |cos| and 2 pi of the square.
+    # The integrals over phi have closed forms: 4 for |cos|, and 2 pi for the square.
     square = 2.0 * pi * plane**2 * (1.0 + modulus.tan_delta**2) / s**2
     running = np.cumsum(q**3 * rough.power_m4(q) * dq) * square / 8.0
     running = np.full_like(running, running[-1]) if law_at_q1 else running - 0.5 * np.diff(running, prepend=0.0)
@@ -137,7 +137,7 @@ def _cut() -> PaperFinding:
 
 
 def _sinusoid() -> PaperFinding:
-    """One wave in full contact: the most loss where its frequency is that of the loss modulus' maximum."""
+    """Check one wave in full contact: its loss peaks at the frequency of the loss modulus' maximum."""
     modulus, q = rubber("SBR").modulus, 1e5
     entry = SelfAffine(1e-22, q, 1.02 * q, 0.8)
     mu = persson_over_speed(modulus, entry, 1e9)

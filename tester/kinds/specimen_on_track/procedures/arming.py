@@ -16,7 +16,7 @@ from tester.machine.proof import WatchdogProof
 BUMP_S = 0.6
 """Time after which ramp and lag are over, s [A]."""
 BUMP_SHARE = 0.3
-"""Greatest deviation of a following speed, as a share of its target [A]."""
+"""Greatest deviation of a speed that follows its target, as a share of the target [A]."""
 SILENT_S = 1.0
 """Longest time without a valid reading of the cell, s [A]: it is read in every tick."""
 
@@ -31,7 +31,7 @@ class TrackUnloaded:
         self.since_s = nan
         self.done = False
         self.raised = False
-        """The arm is raised: from now on the cell must show no force."""
+        """Whether the arm is raised: the cell must then show no force."""
 
     def step(self, now: float) -> None:
         """Advance by one scan at ``now`` s."""
@@ -43,7 +43,7 @@ class TrackUnloaded:
             self.failure = f"the load cell gave no valid reading for {SILENT_S:g} s"
 
     def trouble(self, now: float) -> str:
-        """Return "", or why the rig is not known to be unloaded."""
+        """Return "", or the reason why the rig may be loaded."""
         cell = self.devices.cell
         if self.done and not (cell.valid and now - cell.stamp_s <= SILENT_S):
             return "load cell silent: nobody sees whether the specimen touches"

@@ -1,5 +1,7 @@
-"""The moves of this machine: track, arm, the cell's zero, standing for a person. Those of any machine are in
-``tester.machine.motions``."""
+"""The moves of this machine: track, arm, the cell's zero, standstill for a person.
+
+The moves common to all machines are in ``tester.machine.motions``.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,7 @@ from tester.machine.motions import Ask, Move, Power, Sequence, ZeroOfCell
 TARE_S: Final = 1.0
 """Averaging time of the cell's zero, s [A]."""
 NEAR_MM: Final = 0.5
-"""Greatest distance of a track that has arrived from its place, mm [A]."""
+"""A track within this distance of its target has arrived, mm [A]."""
 
 
 class ComeToStand(Move):
@@ -21,7 +23,7 @@ class ComeToStand(Move):
     name = "stopping the track"
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when its speed is that of standstill."""
+        """Done when the speed counts as standstill."""
         ctx.demand.track_m_s = 0.0
         ctx.moving = True
         return abs(ctx.readings.track_now_m_s) <= still_m_s(ctx)
@@ -33,17 +35,17 @@ def still_m_s(ctx: TrackContext) -> float:
 
 
 class GoTo(Move):
-    """Bring a linear track to a place in its travel, with the arm raised."""
+    """Move a linear track to a place in its travel, with the arm raised."""
 
     limit_s = 120.0  # [A]; 270 mm at 10 mm/s take 27 s
     name = "bringing the track to its place"
 
     def __init__(self, place_mm: float) -> None:
-        """``place_mm``: between the soft ends."""
+        """``place_mm``: the target, between the soft ends."""
         self.place_mm = place_mm
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when it is there; ``ComeToStand`` follows."""
+        """Done when the track is there; ``ComeToStand`` follows."""
         far_mm = self.place_mm - ctx.readings.track_mm
         if abs(far_mm) <= NEAR_MM:
             ctx.demand.track_m_s = 0.0
@@ -80,13 +82,13 @@ class WithoutPower(Move):
     name = "coming to a stand for a person to go near"
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when it is measured, not just commanded."""
+        """Done when both are measured, not just commanded."""
         ctx.moving = True
         return ctx.readings.drives_disabled and abs(ctx.readings.track_now_m_s) <= still_m_s(ctx)
 
 
 class AskBesideTrack:
-    """Ask a person to come near: with the track at rest and the drives off, an arm with a drive raised first."""
+    """Ask a person to come near, with the track at rest and the drives off; an arm with a drive is raised first."""
 
     def __init__(self, text: str) -> None:
         """``text``: the question."""
@@ -95,7 +97,7 @@ class AskBesideTrack:
         self.ask: Ask | None = None
 
     def resume(self, ctx: TrackContext) -> None:
-        """Come to standstill again."""
+        """Bring the track to standstill again."""
         if self.ask is None:
             self.moves = None
 
@@ -139,7 +141,7 @@ class ArmByHand(AskBesideTrack):
             ctx.attendant.raise_arm()
             ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm
         ctx.demand.lowered = self.lowered
-        return False  # with the next reading
+        return False  # done with the next reading
 
 
 def arm(ctx: TrackContext, *, lowered: bool) -> tuple[MoveArm, ...] | tuple[ArmByHand, Power]:
@@ -150,7 +152,7 @@ def arm(ctx: TrackContext, *, lowered: bool) -> tuple[MoveArm, ...] | tuple[ArmB
 
 
 class TakeTrackTare(ZeroOfCell):
-    """Average the cell with the arm raised and make that its zero; ``failed``: why it is not trustworthy."""
+    """Average the cell with the arm raised and make that its zero; ``failed``: why the zero is not trustworthy."""
 
     def __init__(self, kind: str) -> None:
         """``kind``: "reference" for a specimen's first, else "repeat"."""

@@ -1,9 +1,9 @@
-"""One condition, the air at its temperature before each repeat; and one repeat: tare with the arm raised, lower, slide
-until stationary for a stated way, there and back, raise.
+"""One condition and one repeat. A condition brings the air to its temperature before each repeat. A repeat tares with
+the arm raised, lowers it, slides a stated way with stationary friction, there and back, and raises the arm.
 
-A linear track slides forward and back, so that a zero of the cell that has moved cancels in the mean; it turns back
-before the end of its travel. A disc slides one way. The way is counted in stretches. Friction is stationary, and
-samples count, once its means of three stretches in a row differ by less than ``gates.stationary``.
+A linear track slides forward and back, so that a shift of the cell's zero cancels in the mean; it turns back before the
+end of its travel. A disc slides one way. The way is counted in stretches. Friction is stationary, and samples count,
+once its means of three stretches in a row differ by less than ``gates.stationary``.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from tester.machine.motions import Power, Sequence, Settle
 from tester.machine.result_keeping import StoredResults
 
 ALIKE: Final = 2
-"""Small differences in a row, of three stretches, that make friction stationary."""
+"""Number of small differences in a row that make friction stationary: three stretches have two."""
 LONGEST: Final = 60
-"""Stretches after which friction is collected although it is not stationary [A]."""
+"""Stretches after which friction is collected even if it is not stationary [A]."""
 MOST_WAYS: Final = 8
-"""Most ways, forward and back, of a repeat [A]."""
+"""Greatest number of ways, forward and back, in a repeat [A]."""
 STOP_MM: Final = 5.0
 """Distance before its soft end at which the track turns back, mm [A]: its ramp takes 2.5 mm, two scans 1 mm."""
 BLIND: Final = 5.0
@@ -47,22 +47,22 @@ class SlidePhase(Enum):
 
 
 class Stationary:
-    """Finds when the mean friction of consecutive stretches of one way is stationary."""
+    """Detects stationary friction from the means of consecutive stretches of one way."""
 
     def __init__(self, percent: float) -> None:
-        """``percent``: their greatest difference."""
+        """``percent``: greatest difference of the means."""
         self.share = 0.01 * percent
         self.begin(nan)
 
     def begin(self, stretch: float) -> None:
-        """Begin a way at this count of stretches (NaN: at the first reading)."""
+        """Start a way at this count of stretches (NaN: at the first reading)."""
         self.origin = stretch
         self.number = 0
         self.total = self.before = 0.0
         self.count = self.alike = 0
 
     def add(self, stretch: float, friction_n: float) -> bool:
-        """Take in a reading; return whether friction is stationary."""
+        """Process a reading; return whether friction is stationary."""
         number = int(abs(stretch - self.origin))
         if number > self.number:
             mean = self.total / self.count if self.count else nan
@@ -95,13 +95,13 @@ class MeasureTrackRepeat:
         self.both = ctx.rig.linear
         wanted = REPEAT_WINDOWS * STRETCHES
         self.a_way = ceil(wanted / 2.0) if self.both else ceil(wanted)
-        """Stretches to count one way."""
+        """Stretches to count in each way."""
         self.tare = TakeTrackTare(tare_kind)
         self.phase = SlidePhase.TARE
         self.moves = self._tare(ctx)
         self.way = 0
         self.before = 0
-        """Blocks before the present way."""
+        """Blocks counted before the present way."""
         self.sample: tuple[float, ...] = ()
         self.counted_s = inf
         self.ending: Ending | None = None
@@ -130,7 +130,7 @@ class MeasureTrackRepeat:
         return Sequence(*arm(ctx, lowered=False), Power(True), ComeToStand(), *going, Settle(0.3), self.tare)
 
     def _next(self, ctx: TrackContext) -> bool:
-        """Begin the next phase; return whether there is none."""
+        """Begin the next phase; return whether the last phase is over."""
         if self.phase is SlidePhase.TARE:
             if self.tare.failed:
                 self._end(ctx, Ending.ZERO_DRIFT, self.tare.failed)
@@ -147,7 +147,7 @@ class MeasureTrackRepeat:
         return False
 
     def _go(self, ctx: TrackContext) -> None:
-        """Begin a way: forward, then back, in turns."""
+        """Begin a way, alternately forward and back."""
         self.way += 1
         ctx.burst = self.way
         speed = self.speed_m_s if self.way % 2 or not self.both else -self.speed_m_s
@@ -216,7 +216,7 @@ class MeasureTrackCondition(MeasureCondition[TrackContext, TrackCondition, Measu
         self.waits_since_s = inf
 
     def ready(self, ctx: TrackContext) -> bool:
-        """Return whether the air is at the condition's temperature; end the condition if it does not get there."""
+        """Return whether the air is at the condition's temperature; end the condition if it never gets there."""
         step, r = self.condition, ctx.readings
         wanted_c = held_by(step.setpoint).temperature_c
         if ctx.rig.chamber:

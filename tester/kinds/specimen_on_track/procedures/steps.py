@@ -71,7 +71,7 @@ class PrepareTrack(AskBesideTrack):
 
 
 class TemperAir:
-    """Bring the air to a temperature and let the specimen follow. Conditions that need it report one not reached."""
+    """Bring the air to a temperature and let the specimen follow. Later conditions report a temperature not reached."""
 
     def __init__(self, step: Temper) -> None:
         """The step of the plan."""
@@ -80,7 +80,7 @@ class TemperAir:
         self.since_s = float("inf")
 
     def step(self, ctx: TrackContext) -> bool:
-        """Done when the air has been near long enough, or has not come near in time."""
+        """Done when the air has been near its target long enough, or has not come near in time."""
         step, r = self.temper, ctx.readings
         ctx.demand.chamber_c = step.temperature_c if ctx.rig.chamber else float("nan")
         if self.began_s == float("-inf"):

@@ -24,7 +24,7 @@ PERSON_S: Final = 300.0
 REPEAT_S: Final = 5.0
 """Time for tare, lowering, settling and raising, s, from simulated runs [A]."""
 SETTLES: Final = {"linear": 1.7, "disc": 0.35}
-"""Windows until friction is stationary, on a linear track forward and back, from simulated runs [A]."""
+"""Windows until friction is stationary; on a linear track forward and back together. From simulated runs [A]."""
 CHAMBER_K_S: Final = 0.045
 """Rate of the chamber from one temperature to another, K/s [A]."""
 LIKELY_MU: Final = 1.0
@@ -32,7 +32,7 @@ LIKELY_MU: Final = 1.0
 
 
 class TrackEstimator(Estimator):
-    """Estimates of the time that steps take on one rig."""
+    """Estimates of the durations of steps on one rig."""
 
     spread: ClassVar[float] = 0.3
 
@@ -118,6 +118,6 @@ class TrackEstimator(Estimator):
         return 1.0
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
-        """Return the coefficient expected of a condition, and what the instruments add to its uncertainty."""
+        """Return a condition's expected coefficient, and the instruments' part of its uncertainty."""
         held, mu = held_by(step.setpoint), self.mu(step.setpoint)
         return mu, instruments_budget(mu, held.load_n, held.track_m_s, outlook.slope)

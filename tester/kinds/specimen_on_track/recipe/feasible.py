@@ -1,5 +1,5 @@
-"""Parts of a recipe that a rig cannot do, or is not expected to do: temperatures without a chamber, friction that is
-too low, a simulated law without its rubber or surface."""
+"""Parts of a recipe that a rig cannot do, or is unlikely to do: temperatures without a chamber, friction that is too
+low, a simulated law without its rubber or surface."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ from tester.kinds.specimen_on_track.recipe.schema import track_settings
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 LOW: Final = 0.9
-"""Share of the expected friction that a specimen may have [A]: specimens scatter by 3 %, repeats by 2 %, thrice."""
+"""Least friction of a specimen, as a share of the expected [A]: three times the scatter of specimens, 3 %, and
+repeats, 2 %."""
 
 
 def out_of_reach(
@@ -45,7 +46,7 @@ def out_of_reach(
 
 
 def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
-    """Yield, for each compound, the conditions whose expected friction counts as a lost contact, naming the lowest."""
+    """Yield a problem for each compound with conditions whose expected friction counts as a lost contact."""
     if not rig.simulated:
         return  # the friction of a real specimen is unknown
     surface = recipe.abrasive.name if recipe.abrasive is not None else ""
@@ -69,7 +70,7 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
 
 
 def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
-    """Yield every compound for which the simulated law cannot be made on the recipe's surface."""
+    """Yield a problem for every compound that has no simulated law on the recipe's surface."""
     sim = rig.sim
     surface = recipe.abrasive.name if recipe.abrasive is not None else ""
     setting = law_setting(surface, Path(tree.name)) if sim.of_materials else NO_SETTING

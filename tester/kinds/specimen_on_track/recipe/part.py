@@ -54,7 +54,7 @@ class TrackPart(SpecimenPart):
         return track_settings(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-        """Yield also the keys without effect on this machine."""
+        """Yield the common problems, and keys without effect on this machine."""
         yield from super().whole(recipe, tree)
         top = tree.data if isinstance(tree.data, dict) else {}
         grids = top.get("grids")
@@ -71,7 +71,7 @@ class TrackPart(SpecimenPart):
         return TERMS
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield values that the rig cannot reach, and speeds at which friction would heat a tempered contact."""
+        """Yield values that the rig cannot reach, and speeds whose friction would overheat a tempered contact."""
         own = TrackConfig.of(rig)
         measure = recipe.measure
         if own.simulated:
@@ -95,7 +95,7 @@ class TrackPart(SpecimenPart):
     ) -> Iterator[Problem]:
         """Yield the least speed of a grid at which friction would warm a tempered contact beyond its band."""
         if not rig.chamber:
-            return  # nothing tempers a contact in the room's air: the plan shows by how much it warms
+            return  # without a chamber the contact is not tempered; the plan shows its warming
         surface = recipe.abrasive.name if recipe.abrasive is not None else ""
         estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
         band_k = track_settings(measure, grid).temperature_band_k
@@ -125,7 +125,7 @@ class TrackPart(SpecimenPart):
         return (Temper(index, value, soak.within_k, soak.for_s, soak.at_most_s),)
 
     def before_condition(self, index: int, setpoint: Setpoint, before: Setpoint | None) -> tuple[Prepare, ...]:
-        """Return the step that asks for other weights or another interface; none where both stay."""
+        """Return the step that asks for other weights or another interface; nothing where both stay."""
         last = None if before is None else _prepared(before)
         return () if last == _prepared(setpoint) else (_prepare(index, last, _prepared(setpoint)),)
 
@@ -152,7 +152,7 @@ class TrackPart(SpecimenPart):
         return replace(plan, steps=tuple(steps))
 
     def words(self, step: Step, one: StepEstimate) -> str:
-        """Return the work of a step, as a line."""
+        """Return a description of a step, in a line."""
         match step:
             case MountSpecimen():
                 return f"put specimen {step.piece} on the arm"

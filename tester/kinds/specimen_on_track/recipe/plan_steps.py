@@ -12,16 +12,16 @@ from tester.inputs.recipe.plain_recipe import Mount
 from tester.inputs.recipe.plan import ConditionStep, Settings, Step
 
 STRETCHES: Final = 10
-"""Parts of a condition's way in which friction is averaged and held against each other [A]."""
+"""Number of parts of a condition's way whose mean frictions are compared [A]."""
 INSERTED: Final = -1
-"""Place of a step that the plan did not have."""
+"""Index of a step that is not in the plan."""
 
 
 @dataclass(frozen=True, slots=True)
 class MountSpecimen(Mount):
     """A person puts a specimen on the arm.
 
-    ``again``: it is on, as an interruption left it, and has slid ``sliding_m``.
+    ``again``: an interruption left the specimen mounted; it has slid ``sliding_m``.
     """
 
     kind: ClassVar[str] = "install"
@@ -31,7 +31,7 @@ class MountSpecimen(Mount):
 
 @dataclass(frozen=True, slots=True)
 class Prepare(Step):
-    """A person hangs weights on the arm and makes the track dry, wet or powdered; ``text`` asks for what changes."""
+    """A person hangs weights on the arm and makes the track dry, wet or powdered; ``text`` asks for the changes."""
 
     kind: ClassVar[str] = "prepare"
     load_n: float
@@ -52,13 +52,13 @@ class Temper(Step):
 
 @dataclass(frozen=True)
 class TrackSettings(Settings):
-    """How a condition is measured: over a way, or for as long as ``at_least_s`` takes at its speed."""
+    """Settings of a condition: its way, or the longer way that ``at_least_s`` takes at its speed."""
 
     distance_m: float
     at_least_s: float
 
     def way_m(self, speed_m_s: float) -> float:
-        """Return the way over which friction is to be stationary at a speed."""
+        """Return the way, at a speed, over which friction must be stationary."""
         return max(self.distance_m, self.at_least_s * speed_m_s)
 
 

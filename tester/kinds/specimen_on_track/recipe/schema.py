@@ -1,4 +1,4 @@
-"""What a recipe for this machine may say beyond the common sections: the way that a condition slides."""
+"""The keys of this machine's recipes beyond the common sections: the way that a condition slides."""
 
 from __future__ import annotations
 

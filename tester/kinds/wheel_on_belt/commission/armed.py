@@ -41,24 +41,24 @@ class ArmedSeat:
 
     @property
     def ready(self) -> bool:
-        """Whether it is armed and in RUN."""
+        """Whether the rig is armed and in RUN."""
         return self.run.connected and self.run.engine.control.state.mode is Mode.RUN
 
     @property
     def finished(self) -> bool:
-        """Whether it is at rest and released."""
+        """Whether the rig is at rest and released."""
         return self.run.finished
 
     @property
     def reason(self) -> str:
-        """Why it ended by itself: a refusal to arm, a trip, a move that failed."""
+        """Reason for an unrequested end: a refusal to arm, a trip, a failed move."""
         trip = self.run.engine.control.state.trip
         if trip is not None:
             return f"{trip.name}: {trip.text}"
         return self.executor.failed or ("" if self._stopped else self.run.reason)
 
     def tick(self, now: float) -> float:
-        """Do what is due."""
+        """Advance the rig by one tick."""
         return self.run.tick(now)
 
     def stop(self, why: str, *, fast: bool = False) -> None:

@@ -1,6 +1,4 @@
-"""The first conditions, as ordinary runs: slip in both directions to reveal misalignment, then one condition three
-times.
-"""
+"""The first conditions, as ordinary runs: slip in both directions to reveal misalignment; one condition three times."""
 
 from __future__ import annotations
 
@@ -36,18 +34,19 @@ grids:
     temperature: {temperature} degC
 """
 WARMER_K: Final = 0.1
-"""Temperature above the middle of the band in which a repeat slips in [A]: the band reaches from 0.3 K below to 0.1 K
-above the loop's ``rolling_offset`` under the repeat's temperature (tester.kinds.wheel_on_belt.procedures.bursts). An
-unheated wheel is then inside it."""
+"""Offset of a condition's temperature, so that an unheated wheel is in the start band of its slip pulses [A]. That band
+reaches from 0.3 K below to 0.1 K above the condition's temperature less the loop's ``rolling_offset``
+(tester.kinds.wheel_on_belt.procedures.bursts)."""
 BELOW_K: Final = 3.0
-"""The first condition's hub is this much below the soak's [A]: slip warms the tread by 1 K, and the ratio of the losses
-is known to 10 %."""
+"""Difference by which the first condition's hub is below the soak's [A]: slip warms the tread by 1 K, and the ratio of
+the losses is known to 10 %."""
 LOAD_N: Final = 100.0
 SLIP_M_S: Final = 0.1
-"""Slip velocity of the first conditions [A]: 6 W of friction hardly warm a tread."""
+"""Slip velocity of the first conditions [A]: its 6 W of friction hardly warm a tread."""
 WHEEL_M_S: Final = 0.8
 PAIRS: Final = 5
-"""Repeats in both directions [A]: 2 % of scatter leave 0.5 degrees (95 %); three pairs would leave 1.4."""
+"""Pairs of repeats in both directions [A]: with 2 % scatter the angle is known to 0.5 degrees (95 %); with three pairs
+only to 1.4."""
 WARNED_SHARE: Final = 0.25
 REFUSED_SHARE: Final = 0.5
 """Deviation of a first coefficient from its compound's model that gives a warning, or a refusal [A]: the paper's
@@ -56,7 +55,7 @@ compounds are a quarter to a third apart.
 LEAST_MU, MOST_MU = 0.1, 3.0
 """Range for rubber on an abrasive, of any composition [A]: the paper has 0.31 to 2.59."""
 ANGLE_DEG: Final = 1.5
-"""An apparent angle is refused beyond this and its uncertainty [A]: 0.5 degrees of mounting, 0.5 % of crosstalk."""
+"""An apparent angle beyond this plus its uncertainty is refused [A]: 0.5 degrees from mounting, 0.5 % crosstalk."""
 
 
 def _recipe(title: str, compound: str, temperature_c: float, *, both: bool) -> str:
@@ -80,18 +79,18 @@ def mounted(notes: Notes) -> str:
 def as_it_is_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
     """Return the temperature of a condition that needs no heating of a cold wheel, degC.
 
-    It is the thermometer's reading of the tread after rolling, plus the offset from which slip warms it.
+    It is the thermometer's reading of the tread after rolling, plus the offset by which slip pulses start colder.
     """
     shown = float(done.get("rolling", {}).get("surface_c", rig.ambient_c))
     return shown + rig.loops.heat.rolling_offset_k + WARMER_K
 
 
 def as_soaked_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
-    """Return the temperature of a condition that keeps the hub about where the soak has brought it, degC.
+    """Return the temperature of a condition that keeps the hub near its soak temperature, degC.
 
-    In rolling contact the tread's excess over its cold reading is the hub's over 1 + ratio (``loops.loss_ratios``). So
-    the wheel is heated only once, without waiting for it to cool; ``BELOW_K`` keeps the hub below its earlier
-    temperature.
+    In rolling contact the tread's excess over its cold reading is the hub's excess divided by 1 + ratio
+    (``loops.loss_ratios``). So the wheel is heated only once, without a wait for cooling; ``BELOW_K`` keeps the hub
+    below its earlier temperature.
     """
     soaked = done.get("thermometer", {})
     _, rolling = loss_ratios(rig)
@@ -132,8 +131,8 @@ def coefficient(rig: Rig, run_recipe: RunRecipe, notes: Notes) -> None:
 def _plausible(notes: Notes, compound: str, mu: float, surface_c: float) -> dict[str, Any]:
     """Compare a coefficient with the model of its compound; raises StepRefused for an impossible one.
 
-    A belt of another grade, or another laboratory's mix of the compound, moves it by some tens of per cent; a wrong
-    scale or zero that passed the steps before, or a wrong compound, by more.
+    A belt of another grade, or another laboratory's mix of the compound, changes it by some tens of per cent. A wrong
+    scale or zero that passed the earlier steps, or a wrong compound, changes it more.
     """
     if compound not in KNOWN:
         if not LEAST_MU <= mu <= MOST_MU:

@@ -1,8 +1,8 @@
-"""Jog an axis: first a little, for its direction and that it is this axis; then further, for its scale.
+"""Jog an axis: first a short way, to check its identity and direction; then further, to check its scale.
 
-A person reads a ruler, a protractor or a dial gauge and types the value. The scale is the read way over the way that
-the drive reports; beyond the tolerance the step is refused, and the message gives the correct increments. The first way
-is short and slow: ten times as far and fast is harmless.
+A person reads a ruler, a protractor or a dial gauge and types the value. The scale is this value over the way that the
+drive reports; beyond the tolerance the step is refused, and the message gives the correct increments. The first way is
+so short and slow that a motion ten times as far and fast is harmless.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
 
 FIRST_SHARE: Final = 0.3
-"""Tolerance of the first, little way, share [A]: a ruler on some millimetres."""
+"""Tolerance of the first, short way, share [A]: a ruler on a few millimetres."""
 SPRING_S: Final = 1.5
 """Time for a spring to take the press back, s [A]: 4 mm at 20 mm/s take 0.2 s."""
 RIGHT, REVERSED, OTHER, NOTHING = "yes", "reversed", "other", "nothing"
@@ -24,7 +24,7 @@ RIGHT, REVERSED, OTHER, NOTHING = "yes", "reversed", "other", "nothing"
 
 @dataclass(frozen=True, slots=True)
 class JoggedAxis:
-    """How an axis is jogged and read. ``tolerance``: of its scale; ``reading``: standard uncertainty, in ``unit``."""
+    """Data for jogging an axis. ``tolerance``: of its scale; ``reading``: standard uncertainty, in ``unit``."""
 
     name: str
     speeds: JogSpeeds
@@ -34,12 +34,12 @@ class JoggedAxis:
     tolerance: float
     reading: float
     back: bool
-    """It is moved back afterwards, unlike an axis that turns round and round."""
+    """The axis is moved back afterwards, unlike one that turns endlessly."""
     holds: bool = False
-    """It is read while its drive holds it: without power a spring takes it back."""
+    """The axis is read while its drive holds it: without power a spring pulls it back."""
 
     def shown(self, moved: float) -> float:
-        """Return a way in the unit that a person reads."""
+        """Return a way in the unit of the person's instrument."""
         return degrees(moved) if self.name == "wheel" else 1e3 * moved if self.name == "belt" else moved
 
 
@@ -55,8 +55,8 @@ AXES: Final = (
     JoggedAxis("camber", JogSpeeds(1.0, 0.5, 2.0, 5.0), "deg", "an inclinometer on the wheel's carrier",
          "to the side that the rig's papers call positive", 0.05, 0.1, True),
 )  # fmt: skip
-"""Ways and speeds in the axes' units (rad, m, mm, deg; a second) [A]; tolerances [A]; readings: half of the finest
-division of such an instrument [A]."""
+"""Ways and speeds are in the axes' units (rad, m, mm, deg; per second) [A]; tolerances [A]; readings: half of an
+instrument's finest division [A]."""
 
 SPEEDS: Final = {axis.name: axis.speeds for axis in AXES}
 
@@ -130,7 +130,7 @@ def _mark(axis: JoggedAxis) -> Dialogue:
 
 
 def _read(axis: JoggedAxis, which: str) -> Measured:
-    """Ask how far it has moved; the intended direction is positive."""
+    """Ask how far the axis has moved; the intended direction is positive."""
     text = f"{axis.name}: how far has it moved, by {axis.instrument}?"
     return (yield from measure(f"jog {axis.name} {which} read", text, axis.unit))
 

@@ -1,9 +1,9 @@
 """A rig with untested scales: connected, with every drive off but the one that a person jogs.
 
-This comes before arming, and so before the interlock table, most rows of which depend on scales. The checks are those
-of the connection before every run (tester.machine.connect): safety chain and guard, heartbeats, faults, age of the
-inputs, a second master; and here also that the load cell does not change. Two bounds need no scale: a jog lasts
-``PRESS_S`` at most for each key press, and the drive has only a share of its torque.
+This comes before arming, and so before the interlock table: most of its rows depend on scales. The checks are those of
+the connection before every run (tester.machine.connect): safety chain and guard, heartbeats, faults, age of the inputs,
+a second master. Here the load cell must also stay constant. Two bounds need no scale: a jog lasts at most ``PRESS_S``
+for each key press, and the drive has only a share of its torque.
 """
 
 from __future__ import annotations
@@ -32,15 +32,15 @@ STILL_S: Final = 1.0
 TORQUE_SHARE: Final = 0.3
 """Share of the rated torque for a jog [A]: bearings and inertia of this machine's axes take a tenth of it."""
 PRESS_LOAD_N: Final = 60.0
-"""Load that the press's torque surely produces, N [A]: its spring pulls back with 40 N."""
+"""Load that the press must still be able to produce, N [A]: its spring pulls back with 40 N."""
 
 
 @dataclass(frozen=True, slots=True)
 class JogSpeeds:
-    """Speeds of the first, little jog and of the measured one, and how far they go; in the axis's units.
+    """Speeds and ways of the first, short jog and of the measured jog, in the axis's units.
 
-    The first is at most a tenth of 250 mm/s, the reduced speed near a person (ISO 10218-1): a scale ten times wrong
-    moves at no more than that.
+    The first speed is at most a tenth of 250 mm/s, the reduced speed near a person (ISO 10218-1): even a scale that is
+    wrong by a factor of ten does not exceed 250 mm/s.
     """
 
     first: float
@@ -50,7 +50,7 @@ class JogSpeeds:
 
 
 def jog_rig(rig: RigConfig, speeds: dict[str, JogSpeeds]) -> RigConfig:
-    """Return a rig whose drives have little torque, and whose positioned axes are slow."""
+    """Return a rig with little torque in its drives and with slow positioned axes."""
     axes: dict[str, AxisConfig | None] = {}
     for name, axis in rig.axes.driven().items():
         most = min(axis.max_torque_per_mille, round(1000 * TORQUE_SHARE))
@@ -66,20 +66,20 @@ def jog_rig(rig: RigConfig, speeds: dict[str, JogSpeeds]) -> RigConfig:
 
 @dataclass(slots=True)
 class JogMove:
-    """One key press: an axis moves ``way`` (signed, its unit) at ``speed``, for ``PRESS_S`` at most."""
+    """Motion for one key press: an axis moves ``way`` (signed, its unit) at ``speed``, for at most ``PRESS_S``."""
 
     axis: str
     way: float
     speed: float
     holds: bool = False
-    """It keeps its power at rest: a spring would move an unpowered press."""
+    """The axis keeps its power at rest: a spring would move an unpowered press."""
     moved: float = 0.0
     """Distance that the drive itself reports."""
     over: bool = False
 
 
 class Moving(Lifting, Protocol):
-    """Moves axes in place of a run's lift, for as long as the seat is taken: it is never done."""
+    """Moves axes in place of a run's lift, as long as the seat is in use: it is never done."""
 
     stepped_s: float
     """Time of the last step, s."""
@@ -91,7 +91,7 @@ class Moving(Lifting, Protocol):
 
     @property
     def provokes(self) -> bool:
-        """Whether drives are made to stop by themselves."""
+        """Whether drives are deliberately made to stop by themselves."""
         ...
 
 
@@ -133,7 +133,7 @@ class Jogging:
         return self._drives[axis]
 
     def rest(self) -> JogMove | None:
-        """Switch off an axis that was holding; return the jog that is over once it is off."""
+        """Switch off an axis that was holding; return its finished jog once it is off."""
         jog = self.jog
         if jog is not None and jog.over and jog.holds:
             jog.holds = jog.over = False
@@ -190,7 +190,7 @@ class Jogging:
     def _arrived(self, drive: ServoDrive, jog: JogMove) -> bool:
         if drive.config.mode == "position":
             return drive.reached
-        ramp = 0.5 * jog.speed * jog.speed / drive.config.deceleration  # distance that it still moves after the stop
+        ramp = 0.5 * jog.speed * jog.speed / drive.config.deceleration  # way of the ramp after the stop command
         return abs(jog.moved) + ramp >= abs(jog.way)
 
     def _halt(self, drive: ServoDrive) -> None:
@@ -200,7 +200,7 @@ class Jogging:
             drive.target = drive.actual
 
     def trouble(self, now: float) -> str:
-        """Return why nothing may keep moving; "" if nothing has power."""
+        """Return the reason to stop all motion, "" for none; also "" if nothing has power."""
         if not self.powered:
             return ""
         cell, bounds = self.devices.cell, self.rig.interlocks
@@ -234,10 +234,10 @@ def has_power(devices: Devices) -> bool:
 
 
 class QuietArming(WheelArming):
-    """Arming as before every run, except that the guard may be open while nothing has power: a person reads a ruler."""
+    """Arming as before every run, but without power the guard may be open, so that a person can read a ruler."""
 
     def __init__(self, devices: Devices, rig: RigConfig, moving: Moving) -> None:
-        """``moving``: jogs or tries, in place of a run's lift."""
+        """``moving``: jogs or trials, in place of a run's lift."""
         super().__init__(devices, rig)
         self.moving = moving
         self.renews = True
@@ -296,7 +296,7 @@ class QuietSeat:
 
     @property
     def reason(self) -> str:
-        """Why it ended by itself; "" after ``stop``."""
+        """Reason for an unrequested end; "" after ``stop``."""
         return self.connector.failure
 
     def guarded(self) -> bool:
@@ -305,7 +305,7 @@ class QuietSeat:
         return self.devices.axes.press.inputs & closed == closed
 
     def tick(self, now: float) -> float:
-        """Do what is due."""
+        """Advance the rig by one tick."""
         return self.connector.tick(now)
 
     def stop(self, why: str, *, fast: bool = False) -> None:

@@ -26,7 +26,7 @@ Table = tuple[tuple[str, str, str, int], ...]
 
 
 def of_bus(seat: JogSeat) -> Sequence[StepReading]:
-    """Return for each drive and device whether it answers."""
+    """Return whether each drive and device answers."""
     drives = [(drive.config.name, drive.online) for drive in seat.devices.drives]
     devices = [*drives, *((device.title, device.driver.ready) for device in seat.devices.modbus)]
     return tuple(StepReading(name, nan, "", 0, "heard" if online else "not heard") for name, online in devices)

@@ -1,4 +1,4 @@
-"""The end of a settling temperature and its uncertainty, from a fit of its tail before it has settled."""
+"""The final value of a settling temperature and its uncertainty, from a fit of its tail before it has settled."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from typing import Final
 import numpy as np
 
 MEAN_S: Final = 5.0
-"""Length of the means that are fitted, s [A]."""
+"""Averaging time of the fitted means, s [A]."""
 PAST_SHARE: Final = 0.75
-"""The tail begins once the rise is down to this share of its greatest [A]: the faster modes have decayed."""
+"""The tail begins once the rate of rise is down to this share of its maximum [A]: the faster modes have decayed."""
 TAIL: Final = 12
-"""Least number of means of the tail that are fitted: a minute."""
+"""Least number of fitted means: a minute."""
 TIMES_S: Final = np.geomspace(20.0, 1000.0, 200)
-"""Tried time constants, s."""
+"""Time constants to try, s."""
 
 
 class SettlingFit:
-    """Means of a temperature, each ``MEAN_S`` long, and the end of their tail."""
+    """Means of a temperature over ``MEAN_S`` each, and the final value of their tail."""
 
     def __init__(self) -> None:
         """Begin without readings."""
         self.means: list[float] = []
 
     def add(self, mean: float) -> None:
-        """Take another mean, any unit."""
+        """Add a mean, in any unit."""
         self.means.append(mean)
 
     def going(self) -> tuple[float, float]:
-        """Return the end of the tail and its standard uncertainty; NaN while the tail is too short.
+        """Return the tail's final value and its standard uncertainty; NaN while the tail is too short.
 
         y(t) = end - step exp(-t / T): least squares for end and step at each T of ``TIMES_S``; the best T's rows of
         d y / d (end, step, T) give the uncertainty, the residuals the noise.
@@ -55,7 +55,7 @@ class SettlingFit:
         return (end, sqrt(variance)) if isfinite(variance) else (nan, nan)
 
     def _tail(self) -> np.ndarray:
-        """Return the means after the rise has passed its greatest."""
+        """Return the means of the tail: those after the maximum rate of rise, see ``PAST_SHARE``."""
         means = np.asarray(self.means)
         if len(means) < 2 * TAIL:
             return means[:0]

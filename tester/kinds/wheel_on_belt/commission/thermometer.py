@@ -1,8 +1,9 @@
-"""The thermometer against the hub: cold, where both are as warm as the air, and at a soak of at most 45 degC.
+"""The thermometer against the hub: cold, where both are at the air's temperature, and in a soak of at most 45 degC.
 
 The difference when cold is the offset. Warm, lifted and turning, the tread follows the hub: its excess over the air is
-the hub's over 1 + ratio (``loops.loss_ratios``). The thermometer's share of that excess is its gain: to first order the
-set emissivity over the true one, as the tread is not much warmer than the surroundings that it reflects.
+the hub's excess divided by 1 + ratio (``loops.loss_ratios``). The share of that excess that the thermometer shows is
+its gain. The gain is, to first order, the true emissivity over the set one, because the tread is not much warmer than
+the surroundings that it reflects.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ HUB_C: Final = 42.0
 """Temperature at which the hub is held, degC [A]: its controller overshoots by some kelvin."""
 TURNS_M_S: Final = 0.3
 COLD_K: Final = 2.0
-"""Tolerance of the cold offset [A]: 1 K of bias, and the hub's sensor."""
+"""Tolerance of the cold offset [A]: 1 K of thermometer bias, and the error of the hub's sensor."""
 GAIN_SHARE: Final = 0.10
-"""Tolerance of the gain [A]: the ratio of the losses is known to a third, 5 % of the excess."""
+"""Tolerance of the gain [A]: the ratio of the losses is known to a third, which is 5 % of the excess."""
 AVERAGE_S: Final = 10.0
 SURE_K: Final = 0.3
-"""Soaked: the end of the surface's tail is known with this standard uncertainty, K: 2.5 % of the excess [A] ..."""
+"""Soaked: the surface's final temperature is known with this standard uncertainty, K: 2.5 % of the excess [A] ..."""
 SAME_S: Final = 30.0
 SAME_K: Final = 0.5
 """... and has been the same within ``SAME_K`` for ``SAME_S`` [A] ..."""
@@ -54,8 +55,8 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
         )
     yield from seat.do(Sequence(Power(True), Lift(), Turn(TURNS_M_S, TURNS_M_S)))
     lifted, _ = loss_ratios(seat.rig)
-    # The heat loop turns this surface setpoint into one of the hub; the hub's is then frozen, whatever the thermometer
-    # shows, because the thermometer is what is being tested.
+    # The heat loop turns this surface setpoint into one of the hub. The hub's setpoint is then frozen: the thermometer
+    # under test must not change it.
     seat.ctx.demand.surface_c = (HUB_C + air * lifted + surface) / (2.0 + lifted)
     yield from wait(2.0 * seat.rig.loops.heat.period_s)
     seat.ctx.demand.freeze_heat = True
@@ -86,9 +87,9 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
 
 
 def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float, float]]:
-    """Wait until the end of the surface's tail is known, with the hub held.
+    """Wait until the surface's final temperature is known, with the hub held.
 
-    Return that end, degC, its standard uncertainty, K, and the hub's temperature, degC.
+    Return that temperature, degC, its standard uncertainty, K, and the hub's temperature, degC.
     """
     fit, last = SettlingFit(), deque[tuple[float, float]](maxlen=round(SAME_S / MEAN_S))
     began_s = seat.ctx.now

@@ -1,4 +1,4 @@
-"""Homing, first contact and tare, and the ratio of the speeds from rolling: the armed rig's cold steps."""
+"""The armed rig's cold steps: homing, first contact and tare, and the ratio of the speeds from rolling."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from tester.machine.commission.person import Dialogue, StepRefused, Waits, choos
 from tester.machine.motions import Power, Sequence, Settle
 
 ANGLE_DEG: Final = 0.5
-"""Greatest deviation of a homed axis from straight [A]: misalignment that the budget includes."""
+"""Greatest deviation of a homed axis from straight [A]: the misalignment in the budget."""
 DIAMETER_MM: Final = 0.5
 """Greatest deviation of a new wheel's diameter from the rig file's [A]: three times a caliper's resolution on rubber.
 """
 TARE_S: Final = 2.0
 ROLLING_N: Final = 50.0
-"""Load of the rolling wheel [A]: the indentation shortens its radius by some hundredths of a mm only."""
+"""Load of the rolling wheel [A]: the indentation shortens its radius by only some hundredths of a mm."""
 SPEEDS_M_S: Final = (0.2, 0.5, 0.8)
 HALVINGS: Final = 6
-"""Number of halvings to find the belt speed at which friction reverses: from +-(3 % and 10 mm/s) to 0.05 %."""
+"""Number of halvings of the range in which friction reverses: from +-(3 % and 10 mm/s) to 0.05 %."""
 SURFACE_S: Final = 3.0
 """Time for reading the lifted tread: thirty readings of 0.1 K leave 0.02 K [A]."""
 SWEEP_SHARE: Final = 0.03
@@ -35,7 +35,7 @@ RATIO_SHARE: Final = 0.005
 
 
 def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Check positioned axes after homing: a person reads whether their zero is straight."""
+    """Check positioned axes after homing: a person measures whether their zero is straight."""
     angles: dict[str, Any] = {}
     for name in seat.run.engine.devices.axes.positioned:
         at = seat.ctx.readings.positions[name]
@@ -77,7 +77,7 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
 
 
 def _compound(notes: Notes) -> Generator[Waits, str, str]:
-    """Return the wheel's compound, from the command line or the person."""
+    """Return the wheel's compound, as given on the command line or by the person."""
     named, known = notes.given.get("compound", ""), ", ".join(KNOWN)
     if named:
         answer = yield from choose("compound given", f"is the wheel of the compound {named}?", "yes", "no")
@@ -92,8 +92,8 @@ def _tare(reference: list[float]) -> TakeTare:
 
 
 def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Find the slip at which friction reverses at three speeds; the part proportional to speed is the ratio of the
-    scales.
+    """Find the slip at which friction reverses, at three speeds: the part proportional to speed gives the scales'
+    ratio.
     """
     first = SPEEDS_M_S[0]
     yield from seat.do(

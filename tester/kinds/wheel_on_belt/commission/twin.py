@@ -1,7 +1,6 @@
-"""A person who commissions the simulated rig: reads the plant's true values as a ruler, a weight or a thermometer
-would.
+"""A simulated person who commissions the simulated rig: the plant's true values replace ruler, weight, thermometer.
 
-For ``--yes`` on the simulated rig, for tests and campaigns. Each answer takes rig time, as a person's does.
+It serves ``--yes`` on the simulated rig, tests and campaigns. Each answer takes rig time, as a person's does.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ from tester.machine.commission.person import Person
 from tester.machine.prompts import GO, Asks, Prompt, Prompts, Question
 
 THINKS_S: Final = 15.0
-"""Rig time of an answer that needs a reading or a hung weight, s [A]."""
+"""Rig time for an answer that needs a reading or a hung weight, s [A]."""
 STILL_M_S: Final = 0.002
 """Slowest motion that a person sees, m/s [A]."""
 KEY_S: Final = 2.0
@@ -29,7 +28,7 @@ class TwinPerson(Person):
     scripted = True
 
     def __init__(self, say: Callable[[str], None] = lambda text: None) -> None:
-        """``say`` gets the messages to the person."""
+        """``say`` receives the messages to the person."""
         self.hands: Any = None
         """The simulated rig (sim.machines.wheel_on_belt.rig.WheelRig)."""
         self.asked: list[Question] = []
@@ -59,11 +58,11 @@ class TwinPerson(Person):
             prompt.reply(self.answer(question))
 
     def put(self, question: Question) -> None:
-        """Take a new question."""
+        """Receive a new question."""
         self.asked.append(question)
 
     def prepare(self, question: Question) -> None:
-        """Do what the question asks, if anything; the answer follows."""
+        """Do the question's task, if any, before the answer."""
         words = question.key.split()
         if words[0] == "jog" and (words[2] == "first" or words[2] == "mark"):
             self._from.setdefault(words[1], self.hands.ruler(words[1]))

@@ -1,7 +1,7 @@
 """The watchdogs of drives and jacket, triggered in front of a person: heartbeat, setpoints, and the lease of the heat.
 
 Cold, lifted and unloaded, guard closed. Each watchdog is tried alone: only one signal is withheld, the rest continues.
-The record keeps each device's deadline, as read back, and its report when the deadline had passed.
+The record has each device's deadline, as read back, and its report after the deadline.
 """
 
 from __future__ import annotations
@@ -28,13 +28,14 @@ from tester.machine.rig_ports import Ports
 SETPOINT_LATE: Final = 0x8250
 """EMCY code of an RPDO that did not arrive in time (CiA 301, table 26)."""
 MORE_S: Final = 0.15
-"""Setpoints are withheld for the longest deadline plus this, s [A]: the EMCY arrives, and the ramp from creep ends."""
+"""Setpoints are withheld this much longer than the longest deadline, s [A]: the EMCY arrives, and the ramp from creep
+ends."""
 NEEDS_DEADLINE: Final = ("wheel", "belt", "press")
 """Axes that would keep moving at their last setpoint."""
 COOLER_K: Final = 20.0
-"""The jacket's setpoint is this much below the hub's temperature: it runs without heating."""
+"""The jacket's setpoint is this much below the hub's temperature, so that it runs without heating."""
 RUNS_S: Final = 1.5
-"""Time that it runs with its setpoint, s: three writes of it, and a reading."""
+"""Time for which it runs with its setpoint, s: three writes of the setpoint, and a reading."""
 LEASE_MORE_S: Final = 3.0
 """Time for the jacket to report the end of its lease, s [A]: a period of its own and of its readings."""
 NO_OUTPUT_PERCENT: Final = 0.5
@@ -87,7 +88,7 @@ class Trials:
 
     @property
     def failure(self) -> str:
-        """Why nothing can be tried. The procedure reports a failed proof itself."""
+        """Reason why no trial is possible. The procedure reports a failed proof itself."""
         return self.unloaded.failure
 
     @property
@@ -102,7 +103,7 @@ class Trials:
 
     @property
     def provokes(self) -> bool:
-        """Whether a proof makes drives stop by themselves: that does not end the connection."""
+        """Whether a proof makes drives stop by themselves; such stops do not end the connection."""
         return self.proof is not None and self.trying and self.proof.provokes
 
     def step(self, now: float) -> None:
@@ -114,7 +115,7 @@ class Trials:
             self.proof.step(now)
 
     def trouble(self, now: float) -> str:
-        """Return why the rig is no longer known to be unloaded; a person may reach in between proofs."""
+        """Return the reason why the rig may be loaded again, "" for none; a person may reach in between proofs."""
         return self.unloaded.trouble(now) if self.trying else ""
 
     def stop(self) -> None:
@@ -148,7 +149,7 @@ class TrialSeat(QuietSeat):
 
 
 def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
-    """Let each watchdog run out in front of a person; raises StepRefused for one that has no effect."""
+    """Let each watchdog time out in front of a person; raises StepRefused for a watchdog without effect."""
     arming = seat.rig.arming
     if not (arming.bump_test and arming.watchdog_proof):
         raise StepRefused("watchdogs not shown: switched off in the rig file (arming.bump_test, arming.watchdog_proof)")
@@ -173,7 +174,7 @@ def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
 
 
 def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text: str) -> Dialogue:
-    """Try a watchdog when the person says go, ask what they saw, and record every drive's deadline and report."""
+    """Try a watchdog at the person's command, ask what they saw, and record every drive's deadline and report."""
     yield from press(f"watchdog {name}", text, seat.guarded)
     yield from seat.prove(proof)
     for drive in proof.watched():
@@ -191,7 +192,7 @@ def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text:
 
 
 def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
-    """Run the jacket without heat, and send nothing until its lease, or its own setpoint, ends that."""
+    """Run the jacket without heat, then send nothing until its lease, or its own setpoint, ends the run."""
     jacket: TemperatureController = seat.devices.jacket
     ends_s = jacket.ends_s
     if ends_s is None:
@@ -205,7 +206,7 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
     seat.arming.renews = False
     after_s = yield from _left_alone(jacket, asked_c, ends_s)
     failed = jacket.lease_expired
-    yield from wait(1.0)  # for a new reading of its output
+    yield from wait(1.0)  # until there is a new reading of its output
     output = jacket.output_percent
     seat.arming.renews = True
     jacket.enable(False)

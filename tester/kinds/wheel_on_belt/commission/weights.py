@@ -3,10 +3,10 @@
 Nothing has power. Each weight loads one channel; a line through zero is fitted to each channel's readings less its
 zero. Crossed wires, a wrong sign, a wrong gain and a mistyped weight show before anything presses:
 
-- a typed weight that is off the channel's other points by more than ``TYPED_SHARE`` is asked for again, once;
-- a channel whose weights show on another one, with the other sign or with another gain is refused, with the remedy.
+- a typed weight that deviates from the channel's other points by more than ``TYPED_SHARE`` is requested once more;
+- a channel is refused, with the remedy, if its weights show on another channel, with the wrong sign or another gain.
 
-The readings are not corrected by the cell's error: it enters the budget (``budget.calibrated``).
+The readings are not corrected for the cell's error: the error enters the budget (``budget.calibrated``).
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ from tester.machine.commission.commission_step import Notes
 from tester.machine.commission.person import Dialogue, StepRefused, Waits, line, measure
 
 LEAST_READINGS: Final = 20
-"""Fewest readings of the cell for judging whether they have settled [A]: five a quarter."""
+"""Fewest readings of the cell for judging whether they have settled [A]: five per quarter."""
 QUARTERS: Final = 4
 NOISES: Final = 4.0
-"""Means of pure noise differ by more than this many of its standard deviations in 2 % of cases [A]."""
+"""Tolerance for noise, in standard deviations of the means: pure noise exceeds it in 2 % of cases [A]."""
 
 
 def settled_cell(seat: JogSeat) -> Generator[Waits, str, list[float]]:
     """Yield until the cell's readings have settled; return the means of Fx, Fy, Fz, raw, N.
 
-    Settled: the means of the quarters of the last ``AVERAGE_S`` of readings agree within ``STILL_N`` and their noise,
-    which is estimated from successive readings, because a swing is slower. Raises StepRefused if it still swings after
-    ``SWINGS_S``.
+    Settled: the means of the quarters of the last ``AVERAGE_S`` of readings agree within ``STILL_N`` and their noise.
+    The noise is estimated from successive readings, because a swing is slower. Raises StepRefused if the weight still
+    swings after ``SWINGS_S``.
     """
     rows: deque[tuple[float, float, float, float]] = deque()
     began_s = inf
@@ -76,20 +76,20 @@ PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0
 AVERAGE_S: Final = 1.0
 """Averaging time of a settled point, s [A]: 0.25 N of noise at 100 readings a second leaves 0.025 N."""
 STILL_N: Final = 0.1
-"""Settled: the quarters of that time agree within this and their noise [A]: 0.2 % of the least weight."""
+"""Settled: the means of those quarters agree within this and their noise [A]: 0.2 % of the least weight."""
 SWINGS_S: Final = 30.0
 """Longest swing of a weight, s [A]."""
 TYPED_SHARE: Final = 0.05
-"""A point this far off its channel's others was mistyped [A]: the cell's linearity is 0.1 %."""
+"""A point that deviates this much from its channel's others was mistyped [A]: the cell's linearity is 0.1 %."""
 CROSSED_SHARE: Final = 0.5
-"""A channel that shows more than this share of a weight on another has that channel's wires [A]."""
+"""A channel that shows more than this share of another channel's weight has that channel's wires [A]."""
 GAIN_SHARE: Final = 0.02
 """A gain is refused beyond this [A]: a cell with a certificate has 0.5 % without adjustment."""
 COUPLING_SHARE: Final = 0.04
 """Crosstalk and misalignment are refused beyond this [A]: 0.5 % and 0.5 degrees are 1.4 %."""
 WEIGHT_SHARE: Final = 2e-4
-"""Standard uncertainty of a hung force, share [A]: weights of class M1 (OIML R 111-1) have 5e-5, gravity typed to 1e-4,
-the direction of a wire over a pulley within 1 degree 1.5e-4."""
+"""Standard uncertainty of a hung force, share [A]: 5e-5 from weights of class M1 (OIML R 111-1), 1e-4 from the typed
+gravity, 1.5e-4 from a wire's direction over a pulley within 1 degree."""
 
 
 @dataclass(slots=True)
@@ -101,7 +101,7 @@ class HungChannel:
     shown_n: list[tuple[float, float, float]] = field(default_factory=list[tuple[float, float, float]])
 
     def slopes(self) -> tuple[float, float, float]:
-        """Return each channel's reading for a newton on this one, by least squares through zero."""
+        """Return each channel's reading per newton on this channel, by least squares through zero."""
         square = sum(f * f for f in self.hung_n)
         x, y, z = (
             sum(f * s[i] for f, s in zip(self.hung_n, self.shown_n, strict=True)) / square for i in range(3)
@@ -140,7 +140,7 @@ class HungChannel:
 
 
 def calibrate(seat: JogSeat, notes: Notes) -> Dialogue:
-    """Hang weights; raises StepRefused."""
+    """Calibrate every channel with hung weights; raises StepRefused."""
     weights = yield from line(
         "weights certificate", "which weights, with which certificate? Force = mass times local gravity (9.78 to 9.83)"
     )
@@ -223,7 +223,7 @@ def _judge(channel: HungChannel) -> None:
 
 
 def _due() -> Generator[Waits, str, str]:
-    """Ask until which day the calibration is valid, and return that day."""
+    """Ask for the last day on which the calibration is valid, and return it."""
     text = "until which day does this calibration count (2027-01-31)? A year is usual for a cell in daily use [A]"
     while True:
         answer = yield from line("due", text)

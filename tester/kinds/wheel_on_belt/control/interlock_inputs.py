@@ -30,7 +30,7 @@ class InterlockInputs(Inputs):
     rig: RigConfig = field(kw_only=True)
     observer: ThermalObserver = field(init=False)
     heat_known: str = ""
-    """What earlier runs make known of the heat balance, in words."""
+    """Facts about the heat balance from earlier runs, in words."""
 
     def __post_init__(self) -> None:
         """Read the rig file's limits, link the control's state, and create the observers and monitors."""
@@ -58,7 +58,7 @@ class InterlockInputs(Inputs):
         self.heat = _heat_balance(rig, p)
 
     def look(self, demand: Demand, r: Readings, scan_s: float, dt: float) -> None:
-        """Take this scan's demand and readings, and compute the values that several conditions use."""
+        """Store this scan's demand and readings, and compute the values that several conditions use."""
         self.demand, self.readings = demand, r
         state = self.state
         self.note_times(state, r.now_s, scan_s)
@@ -103,9 +103,9 @@ class InterlockInputs(Inputs):
             self.surface.update(r, model_c)
 
     def _follow_speeds(self, demand: Demand, r: Readings, dt: float) -> None:
-        """Bring the speed trackers up to date while the drives are in operation and something commands them.
+        """Update the speed trackers while the drives are in operation and receive commands.
 
-        A stop has limits of its own: its ramps are steeper, and its own rows watch whether it comes to its end.
+        A stop has its own limits: its ramps are steeper, and separate rows check that it ends.
         """
         resting = self.unpowered
         if self.note_drives(self.state.mode, demand, r):
@@ -121,7 +121,7 @@ class InterlockInputs(Inputs):
             self.rest_mm = r.press_mm
 
     def wheel_changed(self, now: float) -> None:
-        """Restart with a wheel at ambient temperature: nothing is compared with the wheel before."""
+        """Restart with a wheel at ambient temperature: nothing is compared with the previous wheel."""
         self.observer.new_wheel()
         self._forget_readings(now)
 
@@ -139,10 +139,10 @@ class InterlockInputs(Inputs):
 
 
 def limits_of(rig: RigConfig) -> RigLimits:
-    """Return the limits of a rig file's sections beside ``interlocks`` with which conditions compare.
+    """Return the limits for conditions from a rig file's sections other than ``interlocks``.
 
-    The configuration is known by its annotations and therefore stays Python where the scan is compiled
-    (docs/decisions/0019); reading it in every scan would cost more than comparing.
+    The configuration depends on its annotations and therefore stays Python where the scan is compiled
+    (docs/decisions/0019). Reading it in every scan would cost more than comparing.
     """
     limits, belt = rig.limits, rig.axes.belt
     low_mm, high_mm = rig.axes.press.software_limits or (-inf, inf)

@@ -1,8 +1,8 @@
 """The press: lift to clear, approach the wheel, hold the load.
 
-The press is a velocity-controlled screw, the contact a stiff spring, so velocity to force is an integrator: a
-proportional law with the gain ``2 pi bandwidth / stiffness`` gives first-order settling; the integral part only
-removes the slow drift from wear and thermal growth.
+The press is a velocity-controlled screw and the contact a stiff spring, so the path from velocity to force is an
+integrator. A proportional law with the gain ``2 pi bandwidth / stiffness`` gives first-order settling; the integral
+part only removes the slow drift from wear and thermal growth.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ _INF: Final = inf
 _LOAD: Final = Press.LOAD
 _TURN: Final = 2.0 * pi
 DECELERATION_SHARE: Final = 0.6
-"""Share of ``loops.load.acceleration`` that profiles to a position use: they come down gently where they end."""
+"""Share of ``loops.load.acceleration`` for profiles to a position, so that they end gently."""
 POSITION_GAIN_PER_S: Final = 6.0
-"""Final approach to a press position: mm/s per mm, well below the drive's 30 ms lag [A]."""
+"""Gain of the final approach to a press position, mm/s per mm: slow compared with the drive's 30 ms lag [A]."""
 HELD_BAND: Final = 0.03
-"""Inside this relative error the slower holding bandwidth is used: it does not chase the runout."""
+"""Within this relative error the loop uses the slower holding bandwidth, which does not follow the runout."""
 
 
 @dataclass(slots=True)
@@ -35,15 +35,15 @@ class LoadLoop(Contact):
     """State of the press control."""
 
     diameter_mm: float = nan
-    """The wheel's diameter when it was touched last: since then it has worn."""
+    """The wheel's diameter at its last first touch; it has worn since."""
     seen_open: bool = False
-    """The contact was open since it was touched last: where it is touched again is where the rubber begins."""
+    """The contact has been open since the last touch: the next touch shows where the rubber begins."""
     integral_mm_s: float = 0.0
     error_n: float = 0.0
-    """Load error, filtered over one turn or so; decides between the fast and the holding bandwidth."""
+    """Load error, filtered over about one turn; decides between the fast and the holding bandwidth."""
 
     def forget_contact(self) -> None:
-        """Forget where the wheel was touched: another wheel is installed."""
+        """Forget the place of contact, since another wheel is installed."""
         self.contact_mm = nan
 
     def velocity(self, demand: Demand, readings: Readings, dt: float, loop: LoadLoopConfig) -> float:
@@ -66,11 +66,11 @@ class LoadLoop(Contact):
         return self._hold(demand, force, dt, loop)
 
     def lifted_mm(self, loop: LoadLoopConfig) -> float:
-        """Return the press position that counts as lifted, mm: a clearance off the known contact, else fully back."""
+        """Return the lifted press position, mm: a clearance off the known contact, else fully back."""
         return max(0.0, self.contact_mm - loop.clearance_mm) if isfinite(self.contact_mm) else 0.0
 
     def _lift(self, force: float, position: float, loop: LoadLoopConfig) -> float:
-        """Return the velocity to the lifted position; while the cell shows a load, the press goes back to its end."""
+        """Return the velocity to the lifted position; while the cell shows a load, to the end of the travel."""
         self.in_contact = self.loaded = False
         self._look_open(force, loop)
         self.highest_n = self.lowest_n = 0.0
@@ -87,12 +87,12 @@ class LoadLoop(Contact):
             self.seen_open = True
 
     def worn_to_mm(self, diameter_mm: float) -> float:
-        """Return where a wheel of this diameter would be touched now, mm; NaN where it has not been touched yet."""
+        """Return the place of contact of the wheel worn to this diameter, mm; NaN before its first touch."""
         worn = 0.5 * (self.diameter_mm - diameter_mm)
         return self.contact_mm + worn if worn > 0.0 else self.contact_mm
 
     def _track_contact(self, force: float, readings: Readings, loop: LoadLoopConfig) -> None:
-        """Note touching; a load that returns before the contact was open does not show where it begins."""
+        """Record a touch; its place counts only if the contact was open before, else the rubber begins elsewhere."""
         self._look_open(force, loop)
         if not self.in_contact and force > loop.touch_load_n:
             self.in_contact = True
@@ -131,7 +131,7 @@ class LoadLoop(Contact):
 
 
 def _gain(loop: LoadLoopConfig, bandwidth_hz: float, force_n: float) -> float:
-    """Return mm/s per N that closes the loop at ``bandwidth_hz`` at the contact's tangent stiffness."""
+    """Return the gain, mm/s per N, for ``bandwidth_hz`` at the contact's tangent stiffness."""
     stiffness = loop.stiffness_n_per_mm * math.pow(max(force_n, 20.0) / 200.0, STIFFNESS_EXPONENT)
     return _TURN * bandwidth_hz / stiffness
 
@@ -144,7 +144,7 @@ def _profile(distance_mm: float, loop: LoadLoopConfig) -> float:
 def loss_ratios(rig: RigConfig) -> tuple[float, float]:
     """Return the steady hub-surface difference per kelvin of surface above ambient: lifted, and in rolling contact.
 
-    Resistance of hub joint and rubber times the loss conductance of the surface, from the observer's parameters
+    It is the resistance of hub joint and rubber times the surface's loss conductance, from the observer's parameters
     [A]. The rubber's side faces lose about half of their heat through the surface cells.
     """
     observer, thermal = rig.observer, rig.observer.thermal
@@ -201,6 +201,6 @@ class WheelState(ControlState[Setpoints]):
         self.heat = HeatLoop(hub_min_c)
         self.stop_start = StopStart()
         self.turning_since_s = inf
-        """Since when the wheel has been confirmed turning."""
+        """Time since which the wheel has been confirmed turning."""
         self.hub_ceiling: list[tuple[float, float]] = []
         """(time, hub setpoint) within ``runaway_window``, falling ones only: the first is the highest."""

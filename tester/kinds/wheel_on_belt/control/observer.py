@@ -1,9 +1,9 @@
 """The thermal observer: the expected reading of the rubber's surface, computed from hub and friction alone.
 
-The infrared thermometer can lie (misaligned, dirty, wrong emissivity) and a heat loop that believes it overheats the
-rubber. The observer never uses it after the start: the hub's own sensor is its boundary, the measured friction power
-its source, the rig file's ``observer`` section its parameters. It is coarser than the simulated wheel
-on purpose: a few cells and steps of half a second are enough to detect 8 K.
+The infrared thermometer may be wrong (misaligned, dirty, wrong emissivity); a heat loop that trusts it overheats the
+rubber. The observer never uses it after the start. Its boundary is the hub's own sensor, its source the measured
+friction power; its parameters come from the rig file's section ``observer``. It is deliberately coarser than the
+simulated wheel: a few cells and steps of half a second are enough to detect 8 K.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ OUTER_CELL_MM: Final = 0.5
 STEP_S: Final = 0.5
 """Length of a step; the outermost cell is stable up to about one second [A]."""
 LONGEST_S: Final = 60.0
-"""A longer gap between two scans than this is not caught up with, s: scans that late have tripped."""
+"""Longest gap between two scans that is made up, s: later scans have tripped."""
 
 
 class ThermalObserver:
     """Temperatures of rubber and belt, degC; ``surface_c`` is NaN before hub and surface have been read once.
 
-    ``rub`` collects the friction of a scan. ``step`` is called when ``due_s`` has come; ``given_j`` is then the heat
-    that has flowed from hub to rubber in it, J.
+    ``rub`` collects the friction of a scan. ``step`` is called at ``due_s``; ``given_j`` is then the heat that has
+    flowed from hub to rubber in that step, J.
     """
 
     def __init__(self, rig: RigConfig) -> None:
@@ -63,12 +63,12 @@ class ThermalObserver:
         self.surface_c = nan
 
     def new_wheel(self) -> None:
-        """Take a wheel at ambient temperature: a new one from the shelf. The hub keeps its temperature."""
+        """Restart with a wheel at ambient temperature, new from the shelf. The hub keeps its temperature."""
         self.cells_c = [self._ambient_c] * CELLS
         self.surface_c = self._ambient_c
 
     def rub(self, power_w: float, dt: float) -> None:
-        """Note ``dt`` s of contact at a friction power in W; NaN counts as none."""
+        """Add ``dt`` s of contact at a friction power in W; NaN counts as no friction."""
         if power_w >= 0.0:
             self._energy_j += power_w * dt
         self._contact_s += dt
@@ -82,7 +82,7 @@ class ThermalObserver:
         if not self.cells_c:
             if not isfinite(measured_c):
                 return
-            # A wheel that was there before: its rubber lies somewhere between hub and surface.
+            # The wheel was mounted before: its rubber is somewhere between hub and surface.
             self.cells_c = [hub_c + (measured_c - hub_c) * (i + 0.5) / CELLS for i in range(CELLS)]
             self._last_s = now
         if not isfinite(self._last_s):

@@ -1,6 +1,6 @@
 """Permissives for heat, load and motion, and the bounds of their commands.
 
-A permissive is also a level: it is checked in every scan, and a command that loses its permissive is withdrawn in that
+A permissive is checked in every scan, not only at the start: a command that loses its permissive is withdrawn in that
 scan, before any interlock's delay is over.
 """
 
@@ -24,13 +24,13 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 HARD_LOAD_N: Final = 500.0
 HARD_HUB_C: Final = 155.0
 HARD_SURFACE_C: Final = 130.0
-"""Beyond these is harm (docs/kinds/wheel-on-belt.md), whatever a rig file or a recipe allows."""
+"""Values beyond these are harmful (docs/kinds/wheel-on-belt.md), whatever a rig file or a recipe allows."""
 _RADIANS: Final = pi / 180.0
 
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """Bounds of the commands: the least of what recipe, rig and harm allow."""
+    """Bounds of the commands: the least of the recipe's, the rig's and the harm limits."""
 
     load_n: float
     wheel_speed_m_s: float
@@ -38,10 +38,10 @@ class Bounds:
     surface_c: float
     hub_c: float
     positions: Mapping[str, float]
-    """Of the positioned axes, by name: to either side."""
+    """Bounds of the positioned axes to either side, by name."""
 
     def within(self, other: Bounds) -> Bounds:
-        """Return the lesser of both in everything."""
+        """Return the lesser of each pair of bounds."""
         return Bounds(
             min(self.load_n, other.load_n),
             min(self.wheel_speed_m_s, other.wheel_speed_m_s),
@@ -53,7 +53,7 @@ class Bounds:
 
 
 def rig_bounds(rig: RigConfig) -> Bounds:
-    """Return the bounds of a rig, never beyond what is harm."""
+    """Return the bounds of a rig, never beyond the harm limits."""
     limits = rig.limits
     return Bounds(
         min(limits.load_n, HARD_LOAD_N),
@@ -85,8 +85,8 @@ def may_heat(state: WheelState, readings: Readings, p: Values) -> bool:
 def may_load(state: WheelState, demand: Demand, readings: Readings, p: Values, most_n: float) -> bool:
     """Return whether the press may approach or press.
 
-    Both speeds confirmed and their difference bounded, the angles in place before touching, the load fresh and the
-    wanted one allowed. The drives' data are fresh: stale ones trip.
+    Conditions: both speeds are confirmed and their difference is bounded, the angles are in place before touching, the
+    measured load is fresh and the wanted load allowed. The drives' data are fresh, because stale data trip.
     """
     r = readings
     wheel, belt = r.wheel_speed_m_s, r.belt_speed_m_s

@@ -18,7 +18,7 @@ from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.mode_commands import bounded, may_move
 
 CEILING_STEP_S: Final = 1.0
-"""How exactly it knows when a setpoint was left, s."""
+"""Resolution of the times at which setpoints were left, s."""
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _INF: Final = inf
@@ -30,7 +30,7 @@ class WheelControl(WheelStops):
     """The control of a wheel on a belt."""
 
     def __init__(self, rig: RigConfig, recipe: Bounds | None = None) -> None:
-        """Begin in idle; ``recipe``: the most the recipe asks for; commands stay within it and the rig's own bounds."""
+        """Begin in idle; ``recipe``: the recipe's greatest values. They and the rig's own bounds limit the commands."""
         state = WheelState(rig.loops.heat.hub_min_c)
         view = InterlockInputs(state=state, rig=rig)
         p = view.parameters
@@ -52,7 +52,7 @@ class WheelControl(WheelStops):
         self.view.look(demand, readings, scan_s, dt)
 
     def unfit(self, readings: Readings) -> list[str]:
-        """Detect a misaligned thermometer: with a cold hub it must read the same as the hub."""
+        """Detect a misaligned thermometer: it must agree with a cold hub."""
         r, p = readings, self._parameters
         cold = abs(r.hub_c - self.rig.ambient_c) <= p[COLD_K]
         if cold and not abs(r.surface_c - r.hub_c) <= p[START_K]:
@@ -95,7 +95,7 @@ class WheelControl(WheelStops):
         self._heat(demand, readings)
 
     def _position(self, demand: Demand, readings: Readings) -> None:
-        """Positioned axes move only unloaded; under load they stay where they were commanded."""
+        """Command the positioned axes: they move only unloaded, and keep their last command under load."""
         if readings.force_z_n < UNLOADED_N:
             positions, most = self.state.setpoints.positions, self.bounds.positions
             for name, wanted in demand.positions.items():

@@ -1,4 +1,4 @@
-"""The stops of this machine, scan by scan, from leaving RUN to standstill. Their deadlines: ``interlocks.stops``."""
+"""The stops of this machine, scan by scan, from leaving RUN to standstill. Deadlines are in ``interlocks.stops``."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from tester.machine.state import Mode
 def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
     """Overwrite the commands with the safe ones, all in this scan; no action waits for another.
 
-    Heat off and contactor open, press retracting, both drives to zero on equal linear decelerations (``fast``: by
-    quick stop, and the press as fast as it goes). Positioned axes stay where they are: moving them would not help.
+    The heat is off and the contactor open, the press retracts, and both drives go to zero on equal linear decelerations
+    (``fast``: by quick stop, with the press at full speed). Positioned axes stay: moving them would not help.
     """
     setpoints.heat = False
     setpoints.contactor = False
@@ -36,7 +36,7 @@ def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
 def heat_off(view: InterlockInputs) -> bool:
     """Return whether the heat is known to be off: no output and the contactor open.
 
-    Once the time for both is over, one of them is enough, for it keeps the heat off; the other one's row has tripped.
+    Once the time for both is over, either is enough, because it keeps the heat off; the other's row has tripped.
     """
     r, p = view.readings, view.parameters
     silent = r.jacket_valid and r.now_s - r.jacket_at_s <= p[STALE_JACKET_S] and r.heat_percent <= 0.0
@@ -46,7 +46,7 @@ def heat_off(view: InterlockInputs) -> bool:
 
 
 class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
-    """Control outside RUN and HOLD; ``step`` adds what it commands in those."""
+    """Control outside RUN and HOLD; the module ``step`` adds the commands in RUN and HOLD."""
 
     rig: RigConfig
     bounds: Bounds
@@ -55,15 +55,15 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         safe_outputs(self.state.setpoints, self.rig, fast=True)
 
     def emergency_outputs(self) -> None:
-        """Set every command to zero: the hardware has taken over, and nothing may start when it gives the power back.
+        """Set every command to zero: the hardware has cut the power, and nothing may start when power returns.
 
-        The quick stop ends in power off by itself; the press wants no power, so that its spring lifts it.
+        The quick stop ends in power off by itself; the press gets no power, so that its spring lifts it.
         """
         safe_outputs(self.state.setpoints, self.rig, fast=True)
         self._no_power()
 
     def rest_outputs(self) -> None:
-        """Set every command to zero and want no power. What was escalated stays so until it is acknowledged."""
+        """Set every command to zero and request no power. Escalations stay until they are acknowledged."""
         safe_outputs(self.state.setpoints, self.rig, fast=False)
         self._no_power()
 
@@ -82,7 +82,7 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
             self.state.setpoints.jacket_silent = True
 
     def note_stop(self) -> None:
-        """Record the drives' speeds at the begin of a stop, and how far the press may still come.
+        """Record the drives' speeds at the start of a stop, and how far the press may still come.
 
         A press on its way to the contact still has its ramp ahead of it, and the lag of scan and drive.
         """
@@ -127,20 +127,18 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
             out.press_mm_s = 0.0
 
     def stop_ended(self) -> bool:
-        """Return whether the rig is at rest, lifted, unloaded and without heat, or the time for it is over ("stop not
-        ended").
-        """
+        """Return whether the rig is at rest, lifted, unloaded and without heat, or has timed out ("stop not ended")."""
         state, view = self.state, self.view
         r = view.readings
         if r.now_s - state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
             return True
         lifted = r.press_mm <= state.load.lifted_mm(self.rig.loops.load) + view.parameters[LIFTED_MM]
         if state.mode is Mode.EMERGENCY or state.setpoints.power_off or r.drives_disabled:
-            lifted = True  # the press has no power: the open contact is what counts
+            lifted = True  # the press has no power: only the open contact counts
         return standing(view) and lifted and unloaded(view) and heat_off(view)
 
     def must_cool(self) -> str:
-        """Return why the wheel is to turn on after a controlled stop: standing, a hot hub would bake it in one spot."""
+        """Return why the wheel must turn on after a controlled stop: a hot hub bakes one spot of a standing wheel."""
         view = self.view
         r = view.readings
         hub_c = r.hub_c if r.jacket_valid else view.jacket.hub_c
@@ -148,7 +146,7 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         return "jacket hot" if healthy and hub_c > view.parameters[COOLDOWN_HUB_C] else ""
 
     def cool_outputs(self) -> str:
-        """Command the cool-down: unloaded creep, heat off. Return why it is over, "" while it is not."""
+        """Command the cool-down: unloaded creep, heat off. Return why it is over, "" until then."""
         out, r, p = self.state.setpoints, self.view.readings, self.view.parameters
         safe_outputs(out, self.rig, fast=False)
         out.press_mm_s = 0.0

@@ -1,1 +1,1 @@
-"""Fitting friction laws of a wheel on a belt: the paper's form, a better one, and the paper's own data beside."""
+"""Fitting friction laws of a wheel on a belt: the paper's form, a better form, and the paper's own data."""

@@ -1,10 +1,9 @@
-"""The paper's appendices as they ship: every row with a word on its quality.
+"""The paper's appendices as packaged: every row has a word on its quality.
 
-Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0). The printed tables cannot be read everywhere; ``ok``
-rows can, ``reconstructed`` ones follow from others (the column ``note`` says from which), ``suspect`` ones contradict
-others, ``missing`` ones are not to be read. ``inferred`` ones carry a value that was chosen because the paper's own
-results want it; the column ``printed`` has what stands there. They are evidence for nothing, and are left out unless a
-reading asks for them.
+Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0). Parts of the printed tables are illegible. ``ok``
+rows are legible, ``reconstructed`` rows follow from others (see the column ``note``), ``suspect`` rows contradict
+others, ``missing`` rows are illegible. ``inferred`` rows have a value that was chosen to match the paper's own results;
+the column ``printed`` has the printed text. They are no evidence, and are left out unless a reading includes them.
 """
 
 from __future__ import annotations
@@ -22,34 +21,34 @@ APPENDICES: Final[Mapping[str, str]] = {"appendix-a": "appendix_a.csv", "appendi
 READABLE: Final = frozenset({"ok", "reconstructed"})
 INFERRED: Final = "inferred"
 _AGAIN: Final = "_dupT"
-"""Ends the group of rows that the paper prints a second time."""
+"""Suffix of the group of rows that the paper prints a second time."""
 
 
 class Reading(Enum):
     """The treatment of inferred rows."""
 
     WITHOUT = "without"
-    """They are left out. Every verdict is of this reading."""
+    """They are left out. Every verdict uses this reading."""
     PRINTED = "as printed"
     INFERRED = "as inferred"
-    """They have the value that the paper's own results want: for comparison, never as evidence."""
+    """They have a value that matches the paper's own results: for comparison, never as evidence."""
 
 
 def rows(name: str) -> list[dict[str, str]]:
-    """Return the rows of a packaged appendix as they stand; raises KeyError for a name that is none."""
+    """Return the rows of a packaged appendix unchanged; raises KeyError for an unknown name."""
     place = files("tester.kinds.wheel_on_belt.fit").joinpath("data", APPENDICES[name])
     return list(csv.DictReader(place.read_text(encoding="utf-8").splitlines()))
 
 
 def inferred_rows() -> list[dict[str, str]]:
-    """Return the rows whose value is inferred, of both appendices."""
+    """Return the rows of both appendices that have an inferred value."""
     return [row for name in APPENDICES for row in rows(name) if row["quality"] == INFERRED]
 
 
 def appendix(name: str, reading: Reading = Reading.WITHOUT) -> Sourced:
-    """Return the conditions of an appendix that a law can be fitted to, and why others are left out.
+    """Return the conditions of an appendix that a law can be fitted to, and the reasons for leaving out others.
 
-    Laws know no sideslip; rows that the paper repeats count once. Raises KeyError for a name that is none.
+    Laws have no sideslip; rows that the paper repeats count once. Raises KeyError for an unknown name.
     """
     source = Source(name)
     points: list[FitPoint] = []

@@ -54,7 +54,7 @@ class WheelFits(FitPart):
         return [*caveats(held.compound, *at)]
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
-        """Return a law over setpoints, NaN for compounds that are not the paper's; raises KeyError for no such law."""
+        """Return a law over setpoints, NaN for compounds outside the paper; raises KeyError for an unknown law."""
         if name not in MODEL_NAMES:
             raise KeyError(name)
 

@@ -1,9 +1,9 @@
-"""Why no master curve is made of what a wheel on a belt measured, each time with its own figures.
+"""The refusal of a master curve for a wheel on a belt, with the figures of each set of conditions.
 
 A wheel under hundreds of newtons at tenths of a metre a second heats its surface by friction. A repeat is then a
-stretch of a warming surface, within a band of temperature, and the rubber below is at another one. What is measured
-shows it: mu of these rubbers has a maximum over temperature at every speed, and below it rises with speed too, which no
-shift of time against temperature allows (``tester.analysis.master_curve.verdict``).
+stretch of a warming surface, within a band of temperature, and the rubber below has another temperature. Measurements
+confirm it: mu of these rubbers has a maximum over temperature at every speed, and below this maximum it also rises
+with speed. No shift of time against temperature allows that (``tester.analysis.master_curve.verdict``).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tester.kinds.wheel_on_belt.fit.data import appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
 
 COOL_W: Final = 1.0
-"""Power of friction below which a surface is taken to stay as warm as it was made [A]: a slow block has less."""
+"""Power of friction below which a surface is assumed to keep its temperature [A]: a slow block has less."""
 
 
 def _run(folder: Path) -> MasterRun:
@@ -34,7 +34,7 @@ def _packaged(name: str) -> MasterRun:
 
 
 def _refused(sourced: Sourced) -> MasterRun:
-    """Return conditions with the reason against a master curve of them."""
+    """Return conditions with the reason against their master curve."""
     sliding = [point for point in sourced.points if point.measured[SLIP] > 0.0]
     rolling = [(point.label, "rolls without slip") for point in sourced.points if not point.measured[SLIP] > 0.0]
     points = tuple(_point(point) for point in sliding)

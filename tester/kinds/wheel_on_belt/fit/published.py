@@ -1,7 +1,7 @@
-"""The paper's claims held against its own data: Eqs 7 to 9 with Table 3, and fits to appendix A seen on appendix B.
+"""The paper's claims compared with its own data: Eqs 7 to 9 with Table 3, and fits to appendix A tested on appendix B.
 
 Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0), section 4.2 and appendices.
-Rows whose value is inferred are left out; what they would change is shown beside.
+Rows with an inferred value are left out; their effect is shown separately.
 """
 
 from __future__ import annotations
@@ -21,24 +21,25 @@ from tester.kinds.wheel_on_belt.fit.staged import staged
 
 FIT, VALIDATION = "appendix-a", "appendix-b"
 ROWS: Final = 79
-"""Rows of appendix B that can be read and contradict no others."""
+"""Number of legible rows of appendix B that contradict no others."""
 TABLE_3_MEAN, TABLE_3_WITHIN, TABLE_3_NEAR = 0.1062, 0.0005, 36
-"""Mean error of Eqs 7 to 9 with Table 3 on those rows, how near ours has to come, and rows within 5 %: what was found
-by an independent calculation."""
+"""Mean error of Eqs 7 to 9 with Table 3 on those rows, the tolerance for our value, and the number of rows within 5 %:
+results of an independent calculation."""
 V2_MEAN: Final = 0.066
-"""What v2, fitted to appendix A alone, has to reach on them: mean error at most; and more rows within 5 % than Eq 6."""
+"""Greatest mean error of v2 on those rows, fitted to appendix A alone; it must also have more rows within 5 % than
+Eq 6."""
 
 Predicted = Callable[[Sequence[FitPoint]], list[float]]
 
 
 class Quoted(NamedTuple):
-    """An error that the paper quotes (section 4.2), of one condition."""
+    """An error of one condition that the paper quotes (section 4.2)."""
 
     temperature_c: float
     load_n: float
     slip_m_s: float
     printed: str
-    """In per cent, as it stands there."""
+    """The error in per cent, as printed."""
 
     @property
     def nominal(self) -> tuple[float, float, float]:
@@ -68,7 +69,7 @@ def of_table_3(points: Sequence[FitPoint]) -> list[float]:
 def scaled(points: Sequence[FitPoint], reading: Reading = Reading.WITHOUT) -> dict[str, float]:
     """Return the coefficient measured at 25 degC, load and slip alike, times Table 3's f(T), by label of the condition.
 
-    No Eq 7 to 9 at all. A condition whose value at 25 degC cannot be read has none.
+    Eqs 7 to 9 are not used. A condition without a legible value at 25 degC has no result.
     """
     cold = {
         (entry.group, entry.nominal[LOAD], entry.nominal[SLIP]): entry.value
@@ -84,7 +85,7 @@ def scaled(points: Sequence[FitPoint], reading: Reading = Reading.WITHOUT) -> di
 
 
 def published_table() -> PublishedTable:
-    """Return the table; raises MissingExtraError without what fits need."""
+    """Return the table; raises MissingExtraError without the packages for fits."""
     a, b = appendix(FIT).points, appendix(VALIDATION).points
     table_3 = _on("Eqs 7 to 9 with Table 3", of_table_3, a, b)
     staged_way, eq_6, v2, *others = _ways(Reading.WITHOUT, b)
@@ -114,7 +115,7 @@ _REMARKS: Final = (
 
 
 def _ways(reading: Reading, b: Sequence[FitPoint]) -> list[TableLine]:
-    """Return the lines that depend on what is done with inferred rows."""
+    """Return the lines that depend on the treatment of inferred rows."""
     a = appendix(FIT, reading).points
     both, times_f = (*a, *b), scaled(b, reading)
     seen = [entry for entry in b if entry.label in times_f]
@@ -173,7 +174,7 @@ def quoted_rows(quoted: Sequence[Quoted]) -> list[FitPoint]:
 
 
 def _answer(quoted: Sequence[Quoted]) -> str:
-    """Return the errors of Eqs 7 to 9 and those of a measured value times f(T), by every reading that matters."""
+    """Return the errors of Eqs 7 to 9 and of a measured value times f(T), for every relevant reading."""
     rows = quoted_rows(quoted)
     phrase = [f"{_list(dict(zip((entry.label for entry in rows), of_table_3(rows), strict=True)), rows)} by Eqs 7 to 9"]
     way = "by the value measured at 25 degC times f(T)"
@@ -191,12 +192,12 @@ def _list(predicted: Mapping[str, float], rows: Sequence[FitPoint]) -> str:
 
 
 def fitted(law: Law, points: Sequence[FitPoint]) -> Predicted:
-    """Return what a law predicts that is fitted to some conditions; raises MissingExtraError."""
+    """Return the predictions of a law that is fitted to some conditions; raises MissingExtraError."""
     return by_compound(law, {group: fit_only(law, group, subset) for group, subset in by_group(points).items()})
 
 
 def by_compound(law: Law, parameters: Mapping[str, Sequence[float]]) -> Predicted:
-    """Return what a law predicts with the parameters of each compound."""
+    """Return the predictions of a law with the parameters of each compound."""
 
     def predicted(points: Sequence[FitPoint]) -> list[float]:
         return [predict(law, parameters[entry.group], [entry])[0] for entry in points]

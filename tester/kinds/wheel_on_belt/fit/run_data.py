@@ -1,4 +1,4 @@
-"""The conditions of a run, as a fit takes them: measured temperature, load and slip, with their scatter."""
+"""The conditions of a run for a fit: measured temperature, load and slip, with their scatter."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tester.results.table_rows import Measured
 from tester.store.run_reader import RunReader
 
 _KNOWN = frozenset({"temperature", "load", "slip_velocity", "wheel_speed"})
-"""Axes in a law; of the wheel's speed only the slip counts. Any other has to be at its default."""
+"""Axes that a law covers; wheel speed counts only through the slip. All other axes must be at their defaults."""
 
 _PUBLISHED: Final = "residuals of the best separable law for the data of doi 10.3390/polym16050596"
 BETWEEN_CONDITIONS: Final[Mapping[str, Scatter]] = {
@@ -26,13 +26,13 @@ BETWEEN_CONDITIONS: Final[Mapping[str, Scatter]] = {
     "3#": Scatter(0.059, f"5.9 %, {_PUBLISHED}"),
     "": Scatter(CONDITION_SCATTER, f"{100.0 * CONDITION_SCATTER:g} %, the middle of that paper's compounds [A]"),
 }
-"""Standard deviation by which conditions of a compound miss any smooth law, as a share; "": of any other compound."""
+"""Standard deviation of a compound's conditions from any smooth law, as a share; "": of any other compound."""
 
 
 def run_points(folder: Path) -> Sourced:
-    """Return the conditions of a run that a law can be fitted to; raises StoreError where it cannot be read.
+    """Return the conditions of a run that a law can be fitted to; raises StoreError for an unreadable run.
 
-    Left out: conditions without a value, with a value that needs care, with an angle (no law has one).
+    It omits conditions without a value, with a flagged value, or with an angle (no law has one).
     """
     with RunReader(folder) as reader:
         return points_of(folder.name, results_of(reader), _READER)

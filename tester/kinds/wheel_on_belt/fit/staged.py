@@ -1,9 +1,9 @@
 """The paper's way of fitting Eq 6: one factor after the other, each from the few conditions that vary it alone.
 
 Load by a power law (Eq 1 with the load alone), speed by c v^b2 + a2, both at 25 degC; then the temperature's factor
-from the coefficient over that at 25 degC. That gives b2 and a2 of 3# and b1 of 2# of Table 3 back to the last digit;
-what it gives of 1# and 2# over speed hangs on two rows that cannot be read. The load's power belongs to the whole
-coefficient, but Eq 6 has it at the term of speed alone: hence its errors at 100 and 400 N.
+from the coefficient over that at 25 degC. This reproduces Table 3's b2 and a2 of 3# and b1 of 2# to the last digit; its
+results for 1# and 2# over speed depend on two illegible rows. The load's power applies to the whole coefficient, but
+Eq 6 applies it to the speed term alone: this causes its errors at 100 and 400 N.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def staged(points: Sequence[FitPoint]) -> dict[str, tuple[float, ...]]:
 
 
 def staged_table_3(points: Sequence[FitPoint]) -> dict[str, PaperParameters]:
-    """Return the parameters of each compound as Table 3 has them; raises MissingExtraError."""
+    """Return the parameters of each compound in Table 3's form; raises MissingExtraError."""
     return {compound: _staged(compound_points) for compound, compound_points in by_group(points).items()}
 
 
@@ -55,7 +55,7 @@ def _staged(points: Sequence[FitPoint]) -> PaperParameters:
 
 
 def _varied(points: Sequence[FitPoint], variable: int) -> tuple[Array, Array]:
-    """Return values of one variable and coefficients, of the conditions that are at the reference in the others."""
+    """Return values of one variable, and coefficients, for conditions with all other variables at the reference."""
     import numpy as np
 
     varied = [

@@ -12,27 +12,27 @@ from tester.base.axes import Axes, Axis, AxisValue, Setpoint
 KIND: Final = "wheel_on_belt"
 
 LEAST_SPEED_M_S: Final = 0.05
-"""Slowest wheel or belt that is ever loaded: below it the control cannot be sure that they turn [A]."""
+"""Least speed of a loaded wheel or belt: below it the control cannot be sure that they turn [A]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Positioned(Axis):
-    """An axis that a drive of its own brings to a position while the wheel is lifted, and holds there under load.
+    """An axis with its own drive that moves it to a position while the wheel is lifted, and holds it under load.
 
-    Its drive is in the rig file's ``axes`` and its limit in ``limits``, both under its name. Where a rig leaves it
-    to a person (``manual: true``) it is held at 0.
+    Its drive is in the rig file's ``axes`` and its limit in ``limits``, both under its name. An axis that a person sets
+    (``manual: true``) stays at 0.
     """
 
     most: float
-    """The most that a rig's limit may be, in ``recipe_unit``."""
+    """Greatest allowed limit of a rig, in ``recipe_unit``."""
     hardest: str
-    """Hardest limit without an accepted risk (tester.inputs.rig.ceilings), with its unit ..."""
+    """Greatest limit without an accepted risk (tester.inputs.rig.ceilings), with its unit ..."""
     because: str
-    """... and why there."""
+    """... and its reason."""
     symbol: str
     """Its unit on screens."""
     mean: int
-    """Place of its channel among the means of a block (tester.base.quantities.Channel)."""
+    """Index of its channel among the means of a block (tester.base.quantities.Channel)."""
     rank: int
     """Row of its channel on screens."""
     trend: str = ""
@@ -71,11 +71,11 @@ plane to the belt's travel, camber its tilt; temperature is the surface's, wheel
 
 
 POSITIONED: Final = tuple(axis for axis in AXES if isinstance(axis, Positioned))
-"""The axes that a drive positions, in their order: rig sections, drives, control and screens are made from them."""
+"""The axes with a positioning drive, in order: rig sections, drives, control and screens are made from them."""
 
 
 def straight() -> dict[str, float]:
-    """Return where the positioned axes are when nothing is turned: 0 for each, by name."""
+    """Return the straight position of each positioned axis, 0, by name."""
     return dict.fromkeys(_NAMES, 0.0)
 
 
@@ -91,7 +91,7 @@ class Held(NamedTuple):
     temperature_c: float
     wheel_speed_m_s: float
     positions: Mapping[str, float]
-    """Of the positioned axes, by name, in their units."""
+    """Positions of the positioned axes, by name, in their units."""
 
     @property
     def belt_speed_m_s(self) -> float:
@@ -100,7 +100,7 @@ class Held(NamedTuple):
         return round(self.wheel_speed_m_s - self.slip_velocity_m_s, 9)
 
     def reversed(self) -> Held:
-        """Return the same with the slip the other way: the belt is faster by as much as it was slower."""
+        """Return the same setpoint with reversed slip: the belt is faster by as much as it was slower."""
         return self._replace(slip_velocity_m_s=-self.slip_velocity_m_s)
 
     @property
@@ -110,7 +110,7 @@ class Held(NamedTuple):
 
     @property
     def yawed(self) -> bool:
-        """Return whether the wheel is turned out of its line: it is then in contact only while it slides."""
+        """Return whether the wheel is at an angle to its line: it is then in contact only while it slides."""
         return any(self.positions.values())
 
 

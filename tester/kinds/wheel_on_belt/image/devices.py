@@ -1,6 +1,6 @@
 """This machine's devices: servo drives on CAN; load cell, thermometer and jacket, and further sensors, on Modbus.
 
-Inputs fill the process image from the drivers, outputs hand setpoints to them. Nothing here decides.
+``fill`` copies readings into the process image, ``apply`` hands setpoints to the drivers. No decisions are made here.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from tester.store.recorder import Recorder
 
 @dataclass(frozen=True, slots=True)
 class CellSkew:
-    """Stored with the counters of the buses when a run, or a part of one, ends."""
+    """The time skew of the load cell's parts, stored with the bus counters at the end of a run or of its part."""
 
     cell: JoinedCell
 
     def store(self, recorder: Recorder, now_s: float) -> None:
-        """Store the greatest skew of a whole reading (ms), and how often parts lay too far apart for one."""
+        """Store the greatest skew of a whole reading (ms), and how often parts were too far apart to join."""
         cell = self.cell
         recorder.bus_statistic(now_s, "load cell", "", "greatest skew ms", 1e3 * cell.greatest_skew_s)
         recorder.bus_statistic(now_s, "load cell", "", "parts too far apart", cell.apart)
@@ -50,7 +50,7 @@ _TURN: Final = 2.0 * pi
 
 @dataclass(slots=True)
 class WheelDrives:
-    """The drives: three that run at a speed, and those that hold a position, by name; what a person sets has none."""
+    """The drives: three for speeds, and by name those that hold a position; an axis that a person sets has no drive."""
 
     wheel: ServoDrive
     belt: ServoDrive
@@ -68,7 +68,7 @@ class Devices(DeviceList):
         self, drivers: RigDrivers, axes: WheelDrives, cell: LoadCell, thermometer: Sensor, jacket: TemperatureController
     ) -> None:
         """Take the drivers."""
-        # A quick-stopped press would stay in contact: it keeps its own retraction, as long as it is to have power.
+        # A quick-stopped press would stay in contact, so it keeps retracting as long as it is to have power.
         super().__init__(drivers, links_of(cell), axes.press)
         self.axes = axes
         self.cell: LoadCell = cell
@@ -79,11 +79,11 @@ class Devices(DeviceList):
         if isinstance(cell, JoinedCell):
             self.counted.append(CellSkew(cell))
         self._positioned = tuple(axes.positioned.items())
-        self._contactor_closed = False  # its feedback, as it was last read
+        self._contactor_closed = False  # its last feedback
         self._last_angle_s: float = NEVER
 
     def fill(self, r: Readings, now: float) -> None:
-        """Bring the process image up to date; the wheel's diameters in it are (``WheelLife.show``)."""
+        """Update the process image; ``WheelLife.show`` has already updated the wheel's diameters."""
         r.now_s = now
         self._fill_motion(r, self.axes)
         self.fill_common(r, now)

@@ -1,8 +1,8 @@
 """The process image: the readings of a scan, the recipe's demand, and the commands.
 
-One instance of each exists per rig. The scan overwrites the fields in place at fixed places (inputs fill
-``Readings``, the executor writes ``Demand``, control writes ``Setpoints``): like a PLC's image it is
-complete and consistent between two steps of a scan, and costs no allocation.
+One instance of each exists per rig. The scan overwrites the fields in place (inputs fill ``Readings``, the executor
+writes ``Demand``, control writes ``Setpoints``). Like a PLC's image it is complete and consistent between two steps of
+a scan, and costs no allocation.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tester.kinds.wheel_on_belt.image.axes import straight
 from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpoints
 
 if TYPE_CHECKING:
-    from drivers.joined_cell import JoinedCell  # loads Modbus, which a plan has no use for
+    from drivers.joined_cell import JoinedCell  # loads Modbus, which a plan does not need
 
 # Gates that are closed, as bits of the channel ``gate``; 0 = the sample is accepted.
 GATE_LOAD: Final = 1
@@ -28,7 +28,7 @@ GATE_SETTLING: Final = 32
 
 
 CELL: Final = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
-"""The load cell's channels, in its order: what a tare takes off."""
+"""The load cell's channels, in its order; a tare is subtracted from each."""
 
 
 class Press(IntEnum):
@@ -55,22 +55,22 @@ class Readings(BaseReadings):
     belt_speed_m_s: float = NAN
     belt_at_s: float = NEVER
     belt_torque_nm: float = NAN
-    """Of the belt's drive at its roller: positive = it drives the belt on, as the wheel's torque drives the wheel."""
+    """Torque of the belt's drive at its roller: positive = it drives the belt forward, as for the wheel."""
     press_mm: float = NAN
     press_torque_nm: float = NAN
-    """Of the press's drive: what its screw makes of it is a second witness of the load (``drivers.screw``)."""
+    """Torque of the press's drive: by its screw it is a second witness of the load (``drivers.screw``)."""
     press_at_s: float = NEVER
     positions: dict[str, float] = field(default_factory=straight)
-    """Of the positioned axes (``axes.POSITIONED``), by name; of one that a person sets: 0."""
+    """Positions of the positioned axes (``axes.POSITIONED``), by name; 0 for an axis that a person sets."""
     positions_at_s: float = NEVER
-    """The oldest of their time stamps."""
+    """The oldest time stamp of the positions."""
     yaw_reached: bool = False
-    """Their drives report their targets reached."""
+    """The drives of these axes report their targets reached."""
     slip_m_s: float = NAN
     """Resultant slip speed from the measured speeds and sideslip angle."""
 
     contactor_closed: bool = False
-    """As old as the safety inputs (``inputs_at_s``)."""
+    """State of the heater's contactor, as old as the safety inputs (``inputs_at_s``)."""
 
     force_x_n: float = NAN
     force_y_n: float = NAN
@@ -80,12 +80,12 @@ class Readings(BaseReadings):
     cell_silent: bool = False
     """The load cell has not answered several requests in a row, and is not set up again yet."""
     joined: JoinedCell | None = None
-    """The load cell, where it has several transmitters: asked which of them is to blame, where something trips."""
+    """The load cell if it has several transmitters: after a trip it names the faulty one."""
     cell_old_s: float = inf
-    """A transmitter of the cell without a reading for so long is named."""
+    """A transmitter of the cell without a reading for this time is named, s."""
     cell_at_s: float = NEVER
     cell_changed_s: float = NEVER
-    """When a reading of the cell last differed from the one before."""
+    """When a reading of the cell last differed from its predecessor."""
 
     surface_c: float = NAN
     surface_valid: bool = False
@@ -93,7 +93,7 @@ class Readings(BaseReadings):
     """The thermometer has not answered several requests in a row."""
     surface_at_s: float = NEVER
     surface_changed_s: float = NEVER
-    """When a reading of the thermometer last differed from the one before."""
+    """When a reading of the thermometer last differed from its predecessor."""
     hub_c: float = NAN
     heat_percent: float = NAN
     jacket_valid: bool = False
@@ -107,7 +107,7 @@ class Readings(BaseReadings):
     """Wheel diameter at the reference temperature: as installed, less the estimated wear."""
 
     diameter_mm: float = NAN
-    """Wheel diameter as it runs: the cold one and what heat has added (``procedures.wheel_life``)."""
+    """Running diameter of the wheel: the cold diameter plus its growth by heat (``procedures.wheel_life``)."""
 
     def faults(self) -> list[str]:
         """Return the faults of drives, wires and devices, in words; the cell's transmitter first."""
@@ -117,7 +117,7 @@ class Readings(BaseReadings):
 
     @property
     def cell(self) -> tuple[float, float, float, float]:
-        """Readings of the load cell, tare applied, in the order of ``CELL``."""
+        """Return the load cell's readings, tare applied, in the order of ``CELL``."""
         return self.force_x_n, self.force_y_n, self.force_z_n, self.moment_z_nm
 
 
@@ -132,11 +132,11 @@ class Demand(BaseDemand):
     quick_touch: bool = False
     """Use the fast approach to a known contact (bursts with sideslip)."""
     positions: dict[str, float] = field(default_factory=straight)
-    """Of the positioned axes, by name."""
+    """Positions of the positioned axes, by name."""
     surface_c: float = NAN
     """Surface temperature to hold; NaN = heat off."""
     freeze_heat: bool = False
-    """Keep the hub setpoint as it is: friction heat of a slip pulse is not the jacket's to correct."""
+    """Keep the hub setpoint: the jacket must not correct the friction heat of a slip pulse."""
 
 @dataclass(slots=True)
 class Setpoints(BaseSetpoints):
@@ -151,4 +151,4 @@ class Setpoints(BaseSetpoints):
     """Jacket controller in run (True) or standby."""
     contactor: bool = False
     jacket_silent: bool = False
-    """The jacket's setpoint is not renewed any more: its lease ends the heating when standby does not."""
+    """The jacket's setpoint is no longer renewed: its lease ends the heating when standby does not."""

@@ -15,23 +15,23 @@ _ZERO: Final = Figure()
 _COLD: Final = Figure("ambient_c", offset=-10.0)
 """Low end of a temperature's bar, degC [A]."""
 _TOP: Final = 1.1
-"""A bar ends this much beyond its limit [A]."""
+"""End of a bar, as a multiple of its limit [A]."""
 _FRICTION_TOP: Final = Figure(offset=3.0)
-"""Top of the coefficient's bar: the largest that is printed is 2.59 (doi 10.3390/polym16050596, appendix B)."""
+"""Top of the coefficient's bar: the largest printed coefficient is 2.59 (doi 10.3390/polym16050596, appendix B)."""
 _FORCE: Final = 600.0
-"""End of the load cell, N [A], and of the bars of its horizontal forces."""
+"""End of the load cell's range, N [A], and of the bars of its horizontal forces."""
 _MOMENT: Final = 20.0
 """End of the aligning moment's bar, N m [A]."""
 _TRAVEL: Final = 30.0
-"""Travel of the press, mm [A], where the rig file states no limits."""
+"""Travel of the press, mm [A], for a rig file without its limits."""
 _PEAK: Final = 3.0
-"""A drive's peak torque over its rated one [A]."""
+"""A drive's peak torque over its rated torque [A]."""
 
 
 def _within(key: str, rank: int, device: str, limit: str, *, scale: float = 1.0, both: bool = False,
             watched: bool = False, axis: str = "", setpoint: str = "", trend: str = "",
             setpoint_trend: str = "") -> Screen:  # fmt: skip
-    """Return a bar from zero, or from the limit's negative, to somewhat beyond a limit of the rig."""
+    """Return a bar from zero, or from the negative limit, to slightly beyond a limit of the rig."""
     top = Figure(limit, scale * _TOP)
     low = Figure(limit, -scale * _TOP) if both else _ZERO
     at = Figure(limit, scale)
@@ -44,7 +44,7 @@ def _between(key: str, rank: int, low: float, high: float, device: str = "cell")
 
 
 def _position(axis: Positioned) -> Channel:
-    """Return the channel of an axis that a drive positions."""
+    """Return the channel of a positioned axis."""
     screen = _within(axis.name, axis.rank, "can", f"limits.{axis.field}", both=True, axis=axis.name, trend=axis.trend)
     source = f"readings.positions[{axis.name}]"
     return Channel(axis.field, axis.symbol, axis.name.capitalize(), source, axis.mean, 2, screen=screen)

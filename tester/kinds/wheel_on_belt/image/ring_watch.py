@@ -18,17 +18,17 @@ from tester.store.recorder import Recorder
 BUS: Final = "slip ring"
 """Name of the data in the record's table of bus counters."""
 MOST_NOTED: Final = 2000
-"""Most failed requests of a wheel whose angle is recorded [A]: more would add nothing, and fill the record."""
+"""Greatest number of failed requests recorded for a wheel [A]: more would add nothing, and fill the record."""
 DEVICE: Final = "jacket"
 """Device beyond the ring."""
 _TURN: Final = 2.0 * pi
 
 
 class SlipRingWatch:
-    """Looks at the counters of a device beyond a slip ring, once a scan.
+    """Reads the counters of a device beyond a slip ring, once a scan.
 
-    A request leaves at the end of a scan, so it belongs to where the wheel stood in that one: its outcome is seen in a
-    later scan. Between two scans the wheel turns 12 degrees at 100 Hz and 58 at 20 Hz (3.2 rev/s).
+    A request leaves at the end of a scan, so it belongs to the wheel's angle in that scan; a later scan sees its result.
+    Between two scans the wheel turns 12 degrees at 100 Hz and 58 at 20 Hz (3.2 rev/s).
     """
 
     def __init__(self, device: Device) -> None:
@@ -40,7 +40,7 @@ class SlipRingWatch:
         self._last_rev = self._last_rev_s = 0.0
 
     def look(self, angle_rev: float, wheel_rad_s: float) -> None:
-        """Take the counters in a scan: turns of the wheel since it was put on, and its speed in rad/s."""
+        """Read the counters in a scan, with the wheel's turns since it was mounted and its speed in rad/s."""
         counters = self.device.station.counters
         requests, failed = counters.requests, failures(counters)
         if failed != self._failures:
@@ -64,7 +64,7 @@ class SlipRingWatch:
             segment.at_rev.append(self._asked_rev)
 
     def store(self, recorder: Recorder, now_s: float) -> None:
-        """Store what was noted, with the counters of the buses."""
+        """Store the noted failures with the counters of the buses."""
         for number, segment in enumerate(self.segments, start=1):
             if not any(segment.requests):
                 continue

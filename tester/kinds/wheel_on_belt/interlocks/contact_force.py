@@ -1,4 +1,4 @@
-"""The contact of wheel and belt: where it begins, how firm it may be, and the force that the press's place predicts."""
+"""The contact of wheel and belt: its place, its stiffness, and the force predicted from the press's position."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Final
 from tester.kinds.wheel_on_belt.image.process_image import Readings
 
 UNLOADED_N: Final = 20.0
-"""Below this the contact counts as unloaded, N [A]: noise, zero drift and the runout of a wheel that just touches.
+"""Force below which the contact counts as unloaded, N [A]: noise, zero drift, runout of a wheel that just touches.
 
-No key of the rig file: what a rig may differ in, the zero of its cell, has keys of its own (``zero_stop``,
-``arming.unloaded``), which may not be looser than 30 N because they lean on this. Were 20 N set higher, a rig would
-turn its angles, and end its stops, under a load; set lower, a drifting zero would keep stops from ending.
+It is no key of the rig file: rigs differ in the zero of their cells, which has its own keys (``zero_stop``,
+``arming.unloaded``). These may not exceed 30 N because they depend on this value. With more than 20 N a rig would
+turn its angles, and end its stops, under a load; with less, a drifting zero would prevent stops from ending.
 """
 STIFFNESS_EXPONENT: Final = 0.23
-"""Tangent stiffness of the line contact grows with load to this power: 125 to 172 N/mm from 100 to 400 N [A]."""
+"""Exponent of load in the tangent stiffness of the line contact: 125 to 172 N/mm from 100 to 400 N [A]."""
 _DEPTH_SHARE: Final = 1.0 / (1.0 - STIFFNESS_EXPONENT)
 
 
@@ -29,34 +29,36 @@ class Contact:
     """Press position at the last first touch; NaN until the wheel has been touched since its installation."""
     in_contact: bool = False
     loaded: bool = False
-    """Half of the wanted load has been reached since touching: from then on losing it is a fault."""
+    """Half of the wanted load has been reached since touching: losing the load is now a fault."""
     highest_n: float = 0.0
     lowest_n: float = 0.0
-    """The wanted load, followed slowly downwards (highest) and upwards (lowest): what the load is watched against
-    while the press brings it to another value."""
+    """The wanted load, followed slowly downwards (highest) and upwards (lowest): the limits of the load while the press
+    changes it."""
 
 
 def depth_mm(force_n: float, stiffness_n_per_mm: float) -> float:
-    """Return how far beyond the first touch the press stands under ``force_n``, mm: the integral of dF over the tangent
-    stiffness, which is ``stiffness_n_per_mm`` at 200 N; 0 where there is no force."""
+    """Return the depth of the press beyond the first touch under ``force_n``, mm; 0 without force.
+
+    It is the integral of dF over the tangent stiffness, which is ``stiffness_n_per_mm`` at 200 N.
+    """
     if not force_n > 0.0:
         return 0.0
     return _DEPTH_SHARE * force_n / (stiffness_n_per_mm * math.pow(force_n / 200.0, STIFFNESS_EXPONENT))
 
 
 WINDOW_S: Final = 0.1
-"""Readings are compared with those of this long before, s [A]: a step stands in the comparison for that time."""
+"""Age of the readings that new readings are compared with, s [A]: a step shows in the comparison for this time."""
 PLACES: Final = 64
-"""Readings kept: at the sliding rate of the scan a window takes a quarter of them."""
+"""Number of readings kept: at the scan rate of sliding a window takes a quarter of them."""
 LEARNED_N: Final = 15.0
-"""A change of force by this much shows how stiff the contact is, N [A]: twice the runout's part."""
+"""Least expected change of force that shows the contact's stiffness, N [A]: twice the runout's part."""
 SEEN_S: Final = 0.2
-"""How long such changes must last until the stiffness counts as seen, s [A]."""
+"""Duration of such changes after which the stiffness counts as measured, s [A]."""
 LEARNING_S: Final = 1.0
-"""Over this long it is averaged, s [A]: ten times what a step is in the comparison."""
+"""Averaging time of the stiffness, s [A]: ten times ``WINDOW_S``."""
 SOFTEST: Final = 0.5
 STIFFEST: Final = 2.0
-"""Between these shares of ``loops.load.stiffness`` a stiffness is believed [A]: the rubber's own spread is 30 %."""
+"""Bounds of a measured stiffness, as shares of ``loops.load.stiffness`` [A]: rubbers differ by 30 %."""
 _POWER: Final = 1.0 / (1.0 - STIFFNESS_EXPONENT)
 
 
@@ -69,43 +71,43 @@ def force_n(depth: float, stiffness_n_per_mm: float) -> float:
 
 @dataclass(slots=True)
 class ForceObserver:
-    """Predicts the change of force over the last window from where the press has gone."""
+    """Predicts the change of force over the last window from the press's motion."""
 
     stiffness_n_per_mm: float
-    """``loops.load.stiffness``: where nothing has been seen yet."""
+    """``loops.load.stiffness``, used until a stiffness is measured."""
     unseen_share: float
-    """How far off that stiffness a contact may be."""
+    """Tolerance of an unmeasured stiffness, a share."""
     seen_share: float
-    """The same of one that has been seen."""
+    """Tolerance of a measured stiffness, a share."""
     cross_share: float
-    """Of the change of friction that the normal force may show: cross-talk and misalignment of the cell."""
+    """Share of a friction change that may show in the normal force: cross-talk and misalignment of the cell."""
     share: float = 1.0
-    """Stiffness seen over ``stiffness_n_per_mm``."""
+    """Measured stiffness over ``stiffness_n_per_mm``."""
     off_n: float = 0.0
-    """How far the force has changed beyond what press and friction explain, in either direction, N."""
+    """Change of force, of either sign, that press and friction do not explain, N."""
     stamp_s: float = -math.inf
     seen_s: float = 0.0
-    """How long changes of force have shown the stiffness since the contact was closed."""
+    """Duration of stiffness measurement since the contact was closed, s."""
     _at: int = 0
     kept: int = 0
-    """Readings that are compared with."""
+    """Number of readings in the window."""
     _times: list[float] = field(default_factory=lambda: [nan] * PLACES)
     _forces: list[float] = field(default_factory=lambda: [nan] * PLACES)
     _frictions: list[float] = field(default_factory=lambda: [nan] * PLACES)
     _places: list[float] = field(default_factory=lambda: [nan] * PLACES)
 
     def forget(self) -> None:
-        """Compare nothing with what was before: the contact is open, or not wanted."""
+        """Drop all earlier readings: the contact is open, or not wanted."""
         self.kept = 0
         self.off_n = self.seen_s = 0.0
 
     def update(self, r: Readings) -> None:
-        """Take in a new reading of the load cell, with the press where it is now."""
+        """Process a new reading of the load cell and the press's position."""
         now, force, place = r.cell_at_s, r.force_z_n, r.press_mm
         elapsed_s, self.stamp_s = now - self.stamp_s, now
         times = self._times
         at, kept = self._at, self.kept
-        # Leave out what is older than the window needs; the oldest that stays is what is compared with.
+        # Drop readings older than the window; the new reading is compared with the oldest that stays.
         while kept > 1 and now - times[(at - kept + 1) % PLACES] >= WINDOW_S:
             kept -= 1
         if kept:

@@ -1,4 +1,4 @@
-"""Friction: how much of it a load can make, which way it acts, and what the shafts of wheel and belt take for it."""
+"""Friction: its greatest share of the load, its direction, and the shaft power of wheel and belt that it causes."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ AGAINST_DELAY_S: Final = Parameter(
 
 
 def _friction_with_slip_n(v: Inputs) -> float:
-    """Return the friction that acts with a slip of sure direction, N; 0 where the slip is not sure."""
+    """Return the force that acts in the slip's direction, unlike friction, N; 0 where that direction is uncertain."""
     r = v.readings
     clear, along, across = v.parameters[CLEAR_SLIP_M_S], r.wheel_speed_m_s - r.belt_speed_m_s, 0.0
     if r.positions["sideslip"] != 0.0:
@@ -149,7 +149,7 @@ BELT_TORQUE_DELAY_S: Final = Parameter(
 
 
 def _driven(v: Inputs) -> bool:
-    """Return whether the belt's drive has a torque to judge: without power it shows none ("drive dropped out")."""
+    """Return whether the belt's drive reports a torque: without power it reports none ("drive dropped out")."""
     return v.confirmed and v.readings.drives_enabled
 
 
@@ -162,7 +162,7 @@ def _along_n(r: Readings) -> float:
 
 
 def _off_friction_nm(v: Inputs) -> tuple[float, float, float]:
-    """Return 0, how far the belt's drive is off what friction asks of it on a gripping roller, and may be, N m."""
+    """Return 0, the deviation of the belt drive's torque from friction's on a gripping roller, and its limit, N m."""
     friction_nm = -_along_n(v.readings) * v.limits.roller_m
     allowed_nm = v.parameters[BELT_TORQUE_NM] + v.parameters[BELT_TORQUE_SHARE] * abs(friction_nm)
     return 0.0, abs(v.readings.belt_torque_nm - friction_nm), allowed_nm
@@ -191,10 +191,10 @@ BELT_PULL_NM: Final = Parameter(
 
 
 def _sense(v: Inputs) -> float:
-    """Return which way friction acts on the belt for sure: 1 onwards, -1 back, 0 unsure.
+    """Return the certain direction of friction on the belt: 1 forward, -1 back, 0 uncertain.
 
-    Both speeds show it where it slides clearly. Else the load cell does, as long as scans are slow: no command changes
-    then, and friction does not turn round between two readings.
+    In clear sliding both speeds show it. Otherwise the load cell shows it while scans are slow: then no command changes,
+    so friction does not reverse between two readings.
     """
     r, p = v.readings, v.parameters
     clear, wheel_m_s = p[CLEAR_SLIP_M_S], r.wheel_speed_m_s

@@ -61,10 +61,10 @@ RUNAWAY_DELAY_S: Final = Parameter(
 
 
 def _highest_c(v: Inputs) -> float:
-    """Return the limit of the hub, degC: the highest of the setpoints that count, and ``runaway``."""
+    """Return the limit of the hub, degC: the highest setpoint that counts, plus ``runaway``."""
     r, setpoints = v.readings, v.hub_setpoints
-    # A hub that was hot takes longer to cool than the window is: without output it must not get hotter again,
-    # except by a rubber that friction has made hotter than itself.
+    # A hot hub takes longer to cool than the window lasts: without output it must not get hotter again,
+    # except from rubber that friction has made hotter than the hub.
     coolest = v.jacket.coolest_c
     highest = max(setpoints[0][1] if setpoints else _INF, v.limits.hub_min_c, coolest)
     if coolest > -_INF and r.surface_valid and r.surface_c > highest:
@@ -193,13 +193,13 @@ UNSEEN_HEAT_K: Final = Parameter(
     hardest="8 K", because="a hub sensor 20 s late hides 9 K at full output",
 )  # fmt: skip
 SHOWN_SHARE: Final = 0.5
-"""From this share of the heat on, it shows again [A]; less is a heater without current, a row of its own."""
+"""Least share of the heat that must show [A]; less is a heater without current, which has its own row."""
 UNSEEN_LEAST_K: Final = 1.0
-"""A sound sensor hides this at most, K [A]: 1 s behind and read every 0.2 s, 0.6 K at full output."""
+"""Greatest error of a sound sensor, K [A]: with 1 s of lag, read every 0.2 s, it hides 0.6 K at full output."""
 
 
 def _unseen_most_k(v: Inputs) -> float:
-    """Return by how much the hub may be hotter than shown: never beyond its limit."""
+    """Return the allowed excess of the hub over its reading, K: within the hub's limit."""
     heat, p = v.heat, v.parameters
     most_k = max(v.limits.jacket_c + p[JACKET_MARGIN_K] - v.readings.hub_c, UNSEEN_LEAST_K)
     if heat.shown_w < SHOWN_SHARE * heat.put_w or most_k < p[UNSEEN_HEAT_K]:
@@ -233,7 +233,7 @@ FROZEN_HUB_SHARE: Final = Parameter(
 
 
 def _still_most_k(v: Inputs) -> float:
-    """Return the heat that a constant reading may hide, K of hub: little where the hub is close to its limit."""
+    """Return the heat that a constant reading may hide, K of hub: less when the hub is close to its limit."""
     p = v.parameters
     away_k = v.limits.jacket_c - v.readings.hub_c
     return max(p[FROZEN_HUB_K], p[FROZEN_HUB_SHARE] * away_k)

@@ -1,6 +1,6 @@
-"""Inputs of the interlocks' conditions: plain data, brought up to date once a scan (``control.interlock_inputs``).
+"""Inputs of the interlocks' conditions: plain data, updated once a scan (``control.interlock_inputs``).
 
-Unknown values stay NaN, infinite or at the value that trips.
+Unknown values are NaN, infinite or at a value that trips.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tester.machine.wires import STALE_INPUTS_S
 
 @dataclass(slots=True)
 class RigLimits:
-    """Limits beside the conditions' own parameters: numbers from the rig file's other sections."""
+    """Limits besides the conditions' own parameters: numbers from the rig file's other sections."""
 
     load_n: float
     heartbeat_s: float
@@ -34,7 +34,7 @@ class RigLimits:
     jacket_c: float
     surface_c: float
     hub_min_c: float
-    """``loops.heat.hub_min``: the setpoint while no heat is wanted."""
+    """``loops.heat.hub_min``: the setpoint without demand for heat."""
     stiffness_n_per_mm: float
     """``loops.load.stiffness``."""
     press_low_mm: float
@@ -42,12 +42,12 @@ class RigLimits:
     """``axes.press.software_limits``; infinite where there are none."""
     deceleration_m_s2: float
     quick_stop_m_s2: float
-    """Ramps of the belt; those of the wheel are the same at its rim."""
+    """Ramps of the belt; the wheel's rim has the same ramps."""
 
 
 @dataclass(slots=True)
 class PressBand:
-    """Between which forces a torque of the press's drive can stand, moving either way or not at all (drivers.screw)."""
+    """The range of forces for a torque of the press's drive, at rest or moving either way (drivers.screw)."""
 
     known: bool
     """The rig file has ``axes.press.screw``."""
@@ -57,37 +57,37 @@ class PressBand:
     most_n_per_nm: float = 0.0
 
     def least_n(self, torque_nm: float) -> float:
-        """Return the least force, N; NaN for a torque that is not known."""
+        """Return the least force, N; NaN for an unknown torque."""
         least = (torque_nm - self.drag_nm) * self.least_n_per_nm - self.spring_n
         return 0.0 if least < 0.0 else least
 
     def most_n(self, torque_nm: float) -> float:
-        """Return the greatest force, N; NaN for a torque that is not known."""
+        """Return the greatest force, N; NaN for an unknown torque."""
         most = (torque_nm + self.drag_nm) * self.most_n_per_nm - self.spring_n
         return 0.0 if most < 0.0 else most
 
 
 @dataclass(slots=True)
 class StopStart:
-    """The state in which a stop began."""
+    """The state at the start of a stop."""
 
     speed_m_s: float = 0.0
     """The faster of wheel and belt."""
     press_mm: float = inf
-    """How far the press may still come, by its ramp; infinity where that is not known. At rest: where it stands."""
+    """Remaining travel of the press on its ramp; infinity if unknown. At rest: its position."""
     fast_speed_m_s: float = 0.0
     """The faster of wheel and belt when the quick stop began."""
 
 
 @dataclass(slots=True)
 class Inputs(ScanInputs):
-    """One scan, as conditions see it."""
+    """The inputs of the conditions in one scan."""
 
     limits: RigLimits = field(init=False)
     readings: Readings = field(init=False)
     demand: Demand = field(init=False)
     setpoints: Setpoints = field(init=False)
-    """The commands of the scan before."""
+    """The commands of the previous scan."""
     contact: Contact = field(init=False)
     stop_start: StopStart = field(init=False)
     hub_setpoints: list[tuple[float, float]] = field(init=False)
@@ -101,20 +101,20 @@ class Inputs(ScanInputs):
     force: ForceObserver = field(init=False)
     heat: HeatBalance = field(init=False)
     model_c: float = nan
-    """The rubber's surface by the thermal observer."""
+    """The rubber's surface temperature by the thermal observer."""
     pressing: bool = False
     """Contact is wanted."""
     turning: bool = False
     """The wheel is confirmed turning."""
     least_n: float = inf
-    """The least force since contact was last wanted: what is lifting does not get firmer."""
+    """The least force since contact was last wanted: a lifting press cannot press harder."""
     contact_mm: float = inf
-    """Where the press touches the wheel: as it was touched last, less its wear since, or by its diameter."""
+    """Press position of the contact: the last touch corrected for wear since, or from the diameter."""
     friction_n: float = 0.0
     friction_w: float = 0.0
     """Resultant friction force and its power (NaN where a part is unknown); 0 while unloaded."""
     rest_mm: float = inf
-    """How far back the press has been since a run was seen without power (``unpowered``)."""
+    """Farthest retraction of the press since a run was found without power (``unpowered``)."""
 
 
 Row: TypeAlias = Interlock[Inputs]
@@ -137,7 +137,7 @@ CLEAR_MM: Final = Parameter(
 
 
 def standing(v: Inputs) -> bool:
-    """Return whether wheel and belt are known to stand; old or unknown speeds are not standing."""
+    """Return whether wheel and belt are known to stand; old or unknown speeds do not count as standing."""
     r, p = v.readings, v.parameters
     since, slow = r.now_s - p[SPEEDS_OLD_S], p[STANDING_M_S]
     return (
@@ -155,9 +155,9 @@ def contactor_open(v: Inputs) -> bool:
 
 
 def unloaded(v: Inputs) -> bool:
-    """Return whether the contact is known to be open: by a fresh force, or by a press clear of it.
+    """Return whether the contact is known to be open: by a fresh force, or by a press away from the contact.
 
-    The position only counts where the cell shows nothing: it is stale, invalid, or repeats itself.
+    The position counts only if the cell gives no information: it is stale, invalid, or repeats its reading.
     """
     r, old_s = v.readings, v.parameters[SPEEDS_OLD_S]
     if r.cell_valid and r.now_s - r.cell_at_s <= old_s:

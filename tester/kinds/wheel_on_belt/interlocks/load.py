@@ -1,4 +1,4 @@
-"""Load and friction: what the load cell shows, whether it can be believed, and how firm the contact may get."""
+"""Load and friction: the load cell's readings, their credibility, and the greatest force of the contact."""
 
 from __future__ import annotations
 
@@ -65,12 +65,12 @@ FROZEN_CELL_S: Final = Parameter(
     "frozen_cell_s", "s", "500 ms", "identical raw counts of the load cell, loaded and turning ...",
     hardest="1 s", because="at 0.3 m/s runout moves the load once a second: a second without a change is no reading",
 )  # fmt: skip
-# A sound cell may show no force yet this far beyond where the contact is taken to be:
-#   a wheel's first contact: first_contact_place and first_contact_sweep of the radius, 0.3 + 1.35 mm, before that
-#   itself says that it is another wheel, and 0.03 mm that the press comes meanwhile in a scan (0.55 mm/s, 20 Hz);
-#   a known contact: 1.0 mm at touch_speed while a reading gets stale and its row waits (50 + 50 ms), 0.46 mm that a
-#   wheel has shrunk which was touched at its hottest (hub 150, surface 95 degC: 99.5 K of wear.growth and its
-#   uncertainty) and 0.025 mm of runout. Wear since then is taken off; the depth of touch_load is in both places.
+# A sound cell may show no force yet this far beyond the assumed place of the contact:
+#   at a wheel's first contact: first_contact_place and first_contact_sweep of the radius, 0.3 + 1.35 mm, before that
+#   check itself finds another wheel, and 0.03 mm that the press moves meanwhile in a scan (0.55 mm/s, 20 Hz);
+#   at a known contact: 1.0 mm at touch_speed while a reading gets stale and its row waits (50 + 50 ms), 0.46 mm of
+#   shrinkage since a touch at the wheel's hottest (hub 150, surface 95 degC: 99.5 K of wear.growth and its
+#   uncertainty) and 0.025 mm of runout. Wear since then is subtracted; both places include the depth of touch_load.
 # A dead cell lets 200 N grow in 1.8 mm, and some 60 N where "press torque" contradicts it (axes.press.screw).
 TOUCH_MARGIN_MM: Final = Parameter(
     "touch_margin_mm", "mm", "1.8 mm",

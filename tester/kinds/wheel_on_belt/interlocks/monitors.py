@@ -1,7 +1,6 @@
-"""Monitors of several readings: rates, jumps, values that stand still, speeds on their ramps.
+"""Monitors of several readings: rates, jumps, values that do not change, speeds on their ramps.
 
-Each monitor is brought up to date when something new has arrived, not in every scan; the interlocks compare its
-results in every scan.
+Each monitor is updated when new data has arrived, not in every scan; the interlocks compare its results in every scan.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from tester.kinds.wheel_on_belt.image.process_image import Readings
 
 @dataclass(slots=True)
 class JacketMonitor:
-    """The hub from poll to poll. The numbers it compares with are parameters of the rows in ``hub``."""
+    """The hub from poll to poll. Its limits are parameters of the rows in ``hub``."""
 
     blind_s: float
     rate_filter_s: float
@@ -27,30 +26,30 @@ class JacketMonitor:
     hub_c: float = nan
     """Last valid reading."""
     jump_k: float = 0.0
-    """Distance of the last two valid readings."""
+    """Difference of the last two valid readings."""
     filtered_c: float = nan
     rate_k_s: float = 0.0
     marks: tuple[float, float, float, float] = (nan, nan, nan, nan)
     """(time, filtered hub) at the last two ends of a window, older first."""
     off_since_s: float = inf
-    """Since when no heat has been commanded, or none has been put out."""
+    """Time since which no heat has been commanded, or the output has been zero."""
     coolest_c: float = -inf
-    """The coolest valid reading since the last output; -inf while there is one."""
+    """The coolest valid reading since the last output; -inf while there is output."""
     weak_since_s: float = inf
-    """Since when the output has been high with the hub well below its setpoint."""
+    """Time since which the output has been high with the hub well below its setpoint."""
     weak_from_c: float = nan
     rise_k: float = 0.0
     blind_until_s: float = -inf
 
     def forget(self, now: float) -> None:
-        """Compare nothing with the readings before: a person was at the wheel and its hub."""
+        """Drop earlier readings: a person was at the wheel and its hub."""
         self.filtered_c = nan
         self.jump_k = 0.0
         self.coolest_c = -inf
         self.blind_until_s = now + self.blind_s
 
     def update(self, r: Readings, heat: bool, setpoint_c: float) -> None:
-        """Take in a new reading; ``heat`` and ``setpoint_c`` (degC) are the commands."""
+        """Process a new reading; ``heat`` and ``setpoint_c`` (degC) are the commands."""
         stamp = r.jacket_at_s
         dt, self.stamp_s = stamp - self.stamp_s, stamp
         if not heat or r.heat_percent <= 0.0:
@@ -87,7 +86,7 @@ class JacketMonitor:
             self.rate_k_s = (self.filtered_c - old_c) / (stamp - old_s)
 
     def _watch_line(self, r: Readings, heat: bool, setpoint_c: float) -> None:
-        """Measure the rise while the output is high: a heater whose line is open makes none."""
+        """Measure the rise while the output is high: a heater with an open line makes no rise."""
         weak = heat and r.heat_percent >= self.open_output_percent and r.hub_c < setpoint_c - self.open_below_k
         if not weak:
             self.weak_since_s = inf
@@ -114,12 +113,12 @@ class SurfaceMonitor:
     blind_until_s: float = -inf
 
     def forget(self, now: float) -> None:
-        """Compare nothing with the readings before: another wheel is in front of the thermometer."""
+        """Drop earlier readings: another wheel is in front of the thermometer."""
         self.jump_k = 0.0
         self.blind_until_s = now + self.blind_s
 
     def update(self, r: Readings, model_c: float) -> None:
-        """Take in a new reading; ``model_c``: the same by the observer."""
+        """Process a new reading; ``model_c``: the observer's value for it."""
         self.stamp_s = r.surface_at_s
         if r.surface_changed_s > self.changed_s or not isfinite(self.model_c):
             self.changed_s = r.surface_changed_s
@@ -136,20 +135,20 @@ class PressTracker:
     """The press's travel towards the contact beyond its commands."""
 
     ramp_mm_s2: float
-    """Of a slow ramp."""
+    """Deceleration of a slow ramp."""
     high_mm_s: float = 0.0
-    """The fastest it may still be coming."""
+    """Greatest speed towards the contact that is still allowed."""
     at_s: float = -inf
     press_mm: float = nan
     ahead_mm: float = 0.0
 
     def begin(self, r: Readings) -> None:
-        """Begin where the press stands."""
+        """Begin at the press's position."""
         self.high_mm_s = self.ahead_mm = 0.0
         self.at_s, self.press_mm = r.press_at_s, r.press_mm
 
     def follow(self, target_mm_s: float, dt: float, r: Readings) -> None:
-        """Take in a target of ``dt`` s, and a new position where there is one."""
+        """Process a target that lasted ``dt`` s, and a new position if there is one."""
         high = self.high_mm_s - self.ramp_mm_s2 * dt
         if not high > target_mm_s:
             high = target_mm_s
@@ -164,10 +163,10 @@ class PressTracker:
 
 @dataclass(slots=True)
 class SpeedTracker:
-    """Between which speeds a drive may be: its target, and where a slow ramp to it would be by now."""
+    """The allowed range of a drive's speed: from its target to the present speed of a slow ramp to the target."""
 
     ramp_m_s2: float
-    """Of the slow ramp."""
+    """Acceleration of the slow ramp."""
     low_m_s: float = 0.0
     high_m_s: float = 0.0
 

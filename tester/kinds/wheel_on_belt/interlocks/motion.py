@@ -146,10 +146,10 @@ def _one_stands(v: Inputs) -> bool:
         return True
     if v.turning is belt_moves:
         return False
-    # While they come down together one may stand a moment before the other: that is no wheel on a stopped belt.
+    # In a common stop one may stand a moment before the other: that is no wheel on a stopped belt.
     most = p[APART_M_S]
     slow = -most <= wheel <= most and -most <= belt <= most
-    # A quick stop takes both down at once, whatever their difference: it cannot be made any quicker.
+    # A quick stop stops both, whatever their difference: no reaction is quicker.
     quick = v.stopped_s >= 0.0 and v.stop.fast_s <= r.now_s
     return not slow and not quick
 
@@ -198,7 +198,7 @@ def _slides_without_torque(v: Inputs) -> bool:
     r, p = v.readings, v.parameters
     if not (v.pressing and v.contact.in_contact and v.contact.loaded and r.slip_m_s > p[TORN_SLIP_M_S]):
         return False
-    # Bearings and seals take torque without any belt; without a deduction they pass for friction at a small load.
+    # Bearings and seals need torque even without a belt; undeducted, it looks like friction at a small load.
     rubbing_nm = abs(r.drive_torque_nm) - p[TORN_FRICTION_NM]
     return not (rubbing_nm >= _least_n(v) * r.diameter_mm * 0.5e-3)
 

@@ -1,4 +1,4 @@
-"""Bounds of the section ``interlocks`` that belong to no row: what may begin, holds, zero checks, the cool-down."""
+"""Bounds of the section ``interlocks`` that belong to no row: for starts, holds, zero checks, the cool-down."""
 
 from __future__ import annotations
 
@@ -87,4 +87,4 @@ PARAMETERS: Final[tuple[Parameter, ...]] = (
     FIRST_CONTACT_PLACE_MM,
 )  # fmt: skip
 ABOUT: Final = "what may begin, holds, zero checks, the cool-down, a wheel's first contact"
-"""What these parameters are for."""
+"""The purpose of these parameters."""

@@ -1,6 +1,6 @@
-"""Stops that do not work, with the time by which each part of a stop must be done; and motion or load at rest.
+"""Stops that fail, with the deadline of each part of a stop; and motion or load at rest.
 
-Rest is idle, armed and latched, and a run that has its drives off.
+Rest means idle, armed, latched, or a run with its drives off.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ STOP_MARGIN_S: Final = Parameter(
 
 
 def _ramp_s(v: Inputs) -> float:
-    # Slip is taken out first, then both come down on the ramp.
+    # Slip is taken out first, then both decelerate on the ramp.
     p = v.parameters
     return p[SLIP_OUT_S] + v.stop_start.speed_m_s / v.limits.deceleration_m_s2 + p[STOP_MARGIN_S]
 
@@ -199,9 +199,9 @@ def _moving(v: Inputs) -> bool:
 
 
 def _still(v: Inputs) -> bool:
-    """Return whether a run whose drives are off, or on their way to operation, stands: a person may be near.
+    """Return whether a run is at rest, with drives off or on their way to operation: a person may be near.
 
-    A drive without power may be turned by hand; one without news counts as powered.
+    A drive without power may be turned by hand; a drive without data counts as powered.
     """
     r, p = v.readings, v.parameters
     if v.demand.enabled:

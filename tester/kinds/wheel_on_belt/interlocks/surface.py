@@ -1,4 +1,4 @@
-"""The rubber's surface, its thermometer, and how worn the wheel is."""
+"""The rubber's surface, its thermometer, and the wheel's wear."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ SURFACE_HOT: Final[Row] = Interlock(
 
 
 def _surface_wanted(v: Inputs) -> bool:
-    """Return whether anything depends on the surface temperature: a contact, or a heat."""
+    """Return whether anything depends on the surface temperature: contact, or heating."""
     return v.pressing or -_INF < v.demand.surface_c < _INF
 
 
@@ -59,7 +59,7 @@ SURFACE_JUMP: Final[Row] = Interlock(
 )
 
 def _measures(v: Inputs) -> bool:
-    """Return whether the thermometer sees the tread pass: the model has no value for one spot of a standing wheel."""
+    """Return whether the tread moves past the thermometer: the model has no value for one spot of a standing wheel."""
     return v.readings.surface_valid and v.turning
 
 
@@ -84,7 +84,7 @@ def _same_s(v: Inputs) -> float:
 
 
 def _moved_k(v: Inputs) -> float:
-    """Return how far the model has moved since the thermometer last changed, K."""
+    """Return the model's change since the thermometer's reading last changed, K."""
     return abs(v.model_c - v.surface.model_c)
 
 

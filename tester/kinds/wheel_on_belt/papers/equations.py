@@ -1,4 +1,4 @@
-"""Equations 1 to 9 and Table 3: as printed, as meant, and what fits of them give."""
+"""Equations 1 to 9 and Table 3: as printed, as meant, and as fitted."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from tester.kinds.wheel_on_belt.papers.paper_rows import COMPOUND_NAMES, readabl
 COLD_C: Final = 25.0
 CELSIUS_0_K, GAS_J_MOL_K = 273.15, 8.314
 SAME: Final = 0.002
-"""Share within which a parameter counts as that of Table 3: its last printed digit."""
+"""Greatest relative difference of a parameter from Table 3's: its last printed digit."""
 CLAIMED: Final = 0.05
-"""Error that the paper states."""
+"""Error that the paper claims."""
 CURVE: Final = 0.02
-"""Share within which two factors of temperature are one curve [A]: the last digit of a coefficient of 0.5."""
+"""Greatest relative difference of two temperature factors on one curve [A]: the last digit of a coefficient of 0.5."""
 
 
 def words(errors: Errors) -> str:
@@ -99,7 +99,7 @@ def _together() -> PaperFinding:
 
 
 def _cold(moving: bool) -> dict[str, list[FitPoint]]:
-    """Return the rows at 25 degC by compound; ``moving``: without those at no slip."""
+    """Return the rows at 25 degC by compound; ``moving``: without rows at zero slip."""
     subset = [entry for entry in readable() if entry.nominal[TEMPERATURE] == COLD_C]
     return by_group(entry for entry in subset if not moving or entry.nominal[SLIP] > 0.0)
 
@@ -155,7 +155,7 @@ def _quadratic(p: float, v: float) -> tuple[float, ...]:
 
 
 def _meant(p: float, v: float) -> tuple[float, ...]:
-    return 1.0, p, v, p * p, v * v  # p v is not told apart: no row at 25 degC varies both
+    return 1.0, p, v, p * p, v * v  # p v cannot be resolved: no row at 25 degC varies both
 
 
 def _eq_3() -> PaperFinding:

@@ -1,4 +1,4 @@
-"""Figures 6 to 11, 14 and 15: the printed values behind them, their trends, and what Eqs 7 to 9 make of them."""
+"""Figures 6 to 11, 14 and 15: their printed values and trends, and the values of Eqs 7 to 9."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tester.kinds.wheel_on_belt.papers.paper_rows import (
 
 DRAWS: Final = "tester figure RUN --law paper"
 NEARLY: Final = 0.95
-"""Share of the steps or series that has to go as stated [A]: a value in twenty may be off by scatter."""
+"""Least share of steps or series that follow a stated trend [A]: scatter may spoil one value in twenty."""
 
 
 def _trend(variable: int, up: bool) -> PaperFinding:

@@ -17,7 +17,7 @@ TABLE_2: Final = {
     "sideslip": (0.0, 10.0, 20.0, 30.0),
     "temperature": (25.0, 40.0, 55.0, 70.0, 85.0),
 }  # fmt: skip
-"""In the units of the axes."""
+"""Values of the paper's Table 2, in the units of the axes."""
 OUTER_MM, WIDTH_MM = 90.0, 30.0
 CURE_C, CURE_S = 150.0, 1500.0
 GRIND: Final = {"wheel_speed": 0.8, "belt_speed": 0.6, "load": 200.0, "duration": 240.0}

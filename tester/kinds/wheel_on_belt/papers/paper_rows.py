@@ -1,4 +1,4 @@
-"""Rows of the appendices as items of the paper need them: series over one variable, errors by compound."""
+"""Rows of the appendices for the checks of the paper's items: series over one variable, errors by compound."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
 from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, errors_on, of_table_3
 
 USUAL_LOAD_N, USUAL_SLIP_M_S = 200.0, 0.3
-"""Held while the other is varied."""
+"""Load and slip that the paper keeps while it varies the other."""
 COMPOUND_NAMES = ("1#", "2#", "3#")
 
 
 def readable() -> list[FitPoint]:
-    """Return the rows of both appendices that can be read, without sideslip, none inferred."""
+    """Return the legible rows of both appendices, without sideslip and without inferred values."""
     return [*appendix(FIT).points, *appendix(VALIDATION).points]
 
 
@@ -40,13 +40,13 @@ def series(points: Iterable[FitPoint], variable: int) -> list[list[FitPoint]]:
 
 
 def steps(points: Iterable[FitPoint], variable: int, up: bool) -> tuple[int, int]:
-    """Return in how many steps along a variable the coefficient changes as stated, and how many there are."""
+    """Return the number of steps along a variable in which the coefficient changes as stated, and of all steps."""
     pairs = [pair for subset in series(points, variable) for pair in pairwise(subset)]
     return sum((b.value > a.value) is up and a.value != b.value for a, b in pairs), len(pairs)
 
 
 def peaks(points: Iterable[FitPoint]) -> tuple[int, int, list[str]]:
-    """Return how many series over temperature peak at 70 degC, how many reach beyond it, and which do not."""
+    """Return how many series over temperature peak at 70 degC, how many extend beyond it, and which do not peak there."""
     phrase: list[str] = []
     count = 0
     for subset in series(points, TEMPERATURE):
@@ -60,7 +60,7 @@ def peaks(points: Iterable[FitPoint]) -> tuple[int, int, list[str]]:
 
 
 def by_compound_words(points: Sequence[FitPoint]) -> str:
-    """Return how far Eqs 7 to 9 are off rows, by compound."""
+    """Return the errors of Eqs 7 to 9 on rows by compound, in words."""
     each = [errors_on(of_table_3, subset) for subset in by_group(points).values()]
     every = errors_on(of_table_3, points)
     means = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in each)
@@ -68,7 +68,7 @@ def by_compound_words(points: Sequence[FitPoint]) -> str:
 
 
 def bias(points: Sequence[FitPoint]) -> float:
-    """Return the mean of measured over Eqs 7 to 9, less 1; NaN of none."""
+    """Return the mean ratio of measured values to Eqs 7 to 9, less 1; NaN without rows."""
     if not points:
         return float("nan")
     return sum(entry.value / value for entry, value in zip(points, of_table_3(points), strict=True)) / len(points) - 1.0
@@ -78,7 +78,7 @@ def at(
     points: Iterable[FitPoint], compound: str, *, celsius: float | None = None, load: float | None = None,
     slip: float | None = None,
 ) -> list[FitPoint]:  # fmt: skip
-    """Return the rows of a compound at values that are given."""
+    """Return the rows of a compound at given values."""
     asked = {TEMPERATURE: celsius, LOAD: load, SLIP: slip}
     setting = {place: value for place, value in asked.items() if value is not None}
     return [

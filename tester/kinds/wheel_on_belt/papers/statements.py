@@ -40,10 +40,9 @@ PRINTED_1: Final[Mapping[str, float]] = {"B001": 0.96, "A005": 0.78, "B009": 0.6
 """Coefficients of section 3.1 by the row that should have them."""
 STATED_PEAK_C: Final = 70.0
 NEAR_PEAK_K: Final = 5.0
-"""How near "about 70 degC" is [A]."""
+"""Tolerance of "about 70 degC" [A]."""
 QUOTED_WITHIN: Final = 0.01
-"""How near an error has to come to a quoted one: both coefficients have two decimals, half of the last is 0.5 %"
-" each."""
+"""Tolerance of a quoted error: both coefficients have two decimals, and half of the last is 0.5 % each."""
 
 
 def _named(printed: Mapping[str, float]) -> PaperFinding:
