@@ -27,7 +27,7 @@ _TURN: Final = 2.0 * pi
 class SlipRingWatch:
     """Reads the counters of a device beyond a slip ring, once a scan.
 
-    A request leaves at the end of a scan, so it belongs to the wheel's angle in that scan; a later scan sees its result.
+    A request leaves at the end of a scan, so it belongs to the angle in that scan; a later scan has its result.
     Between two scans the wheel turns 12 degrees at 100 Hz and 58 at 20 Hz (3.2 rev/s).
     """
 

@@ -193,8 +193,8 @@ BELT_PULL_NM: Final = Parameter(
 def _sense(v: Inputs) -> float:
     """Return the certain direction of friction on the belt: 1 forward, -1 back, 0 uncertain.
 
-    In clear sliding both speeds show it. Otherwise the load cell shows it while scans are slow: then no command changes,
-    so friction does not reverse between two readings.
+    In clear sliding both speeds show it. Otherwise the load cell shows it while scans are slow: then no command
+    changes, so friction does not reverse between two readings.
     """
     r, p = v.readings, v.parameters
     clear, wheel_m_s = p[CLEAR_SLIP_M_S], r.wheel_speed_m_s

@@ -1,9 +1,9 @@
 """The heat balance: the heater's energy less the heat that the measured temperatures explain as stored or lost.
 
 A hub sensor that reads low or late, is loose, or shares a faulty supply with the thermometer makes the controller put
-in heat that no temperature shows. ``HeatBalance`` sums up that heat. The sum grows by the heater's output, shrinks by the heat
-that the temperatures explain and by an allowance for wrong parameters, and never falls below zero. Parameters that are
-off by less than the allowance leave it at zero; a larger error adds up.
+in heat that no temperature shows. ``HeatBalance`` sums up that heat. The sum grows by the heater's output, shrinks by
+the heat that the temperatures explain and by an allowance for wrong parameters, and never falls below zero. Parameter
+errors within the allowance leave it at zero; a larger error adds up.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ NO_HISTORY: Final = KnownRatio()
 
 
 def known_ratio(ratios: Sequence[float], widest: float, known: float) -> KnownRatio:
-    """Return the history of a rig from the ratios of its heatings, oldest first; ``widest``, ``known``: as in ``share``.
+    """Return a rig's history from the ratios of its heatings, oldest first; ``widest``, ``known``: as in ``share``.
 
     The ratio is the median of the newest, but never more than that of the first ones that agree within ``known``. A
     supply that drifts by 1 % per run would shift the newest, so that each run agrees with the previous run; the first

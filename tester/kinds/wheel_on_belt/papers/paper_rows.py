@@ -46,7 +46,7 @@ def steps(points: Iterable[FitPoint], variable: int, up: bool) -> tuple[int, int
 
 
 def peaks(points: Iterable[FitPoint]) -> tuple[int, int, list[str]]:
-    """Return how many series over temperature peak at 70 degC, how many extend beyond it, and which do not peak there."""
+    """Return how many series over temperature peak at 70 degC, how many extend beyond it, and the exceptions."""
     phrase: list[str] = []
     count = 0
     for subset in series(points, TEMPERATURE):

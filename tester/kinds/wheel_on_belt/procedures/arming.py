@@ -18,14 +18,14 @@ from tester.machine.proof import ProofStage, WatchdogProof
 BUMP_S = 0.3
 """Time for ramp and lag: 25 ms at 2 m/s2 to 0.05 m/s [A]."""
 BUMP_SHARE = 0.3
-"""A speed within this share of its target follows; the other drive must be at rest within the same speed [A]."""
+"""Tolerance of a speed as a share of its target, and of the other drive's standstill [A]."""
 PRESS_BUMP_MM_S = 2.0
 PRESS_BUMP_MM = 0.2
-"""Least motion of the press in the bump, away from rest and back [A]."""
+"""Least motion of the press in the bump test, away from rest and back [A]."""
 
 
 class Bump(Enum):
-    """The drive that is moved to see that it follows."""
+    """The drive that the bump test moves."""
 
     WHEEL = "turn the wheel"
     BELT = "turn the belt"
@@ -33,7 +33,7 @@ class Bump(Enum):
 
 
 class Proof(WatchdogProof):
-    """Wheel, belt and press follow, each alone; wheel and belt creep while our heartbeat is withheld."""
+    """Proves that wheel, belt and press follow, each alone, and that they stop without our heartbeat."""
 
     unloaded = ("lifted and unloaded", "decelerations equal")
 
@@ -51,7 +51,7 @@ class Proof(WatchdogProof):
         self.failure = unequal_decelerations(devices, self.radius_m)
 
     def watchdogs(self, shown: list[str], left_out: list[str]) -> None:
-        """Sort the watchdogs of drives and jacket into those that were shown, and those that were not."""
+        """Sort the watchdogs of drives and jacket into proved and unproved ones."""
         super().watchdogs(shown, left_out)
         if self.lease or self.heat_off != "fallback":
             (shown if self.lease else left_out).append("jacket's lease set and read back")
@@ -119,7 +119,7 @@ class Proof(WatchdogProof):
 
 
 def unequal_decelerations(devices: Devices, radius_m: float) -> str:
-    """Return "" or how the ramps read back from wheel and belt differ, in m/s2."""
+    """Return "", or the difference of the ramps read back from wheel and belt, m/s2."""
     wheel, belt = devices.axes.wheel, devices.axes.belt
     for index, name in ((o.PROFILE_DECELERATION, "deceleration"), (o.QUICK_STOP_DECELERATION, "quick stop")):
         at_rim = wheel.parameters.get((index, 0), 0) / wheel.config.acceleration_counts * radius_m
@@ -130,16 +130,16 @@ def unequal_decelerations(devices: Devices, radius_m: float) -> str:
 
 
 class WheelArming(Arming[Devices, RigConfig]):
-    """The press lifts and the load cell is asked; wheel, belt and press follow, and stop without our heartbeat."""
+    """Lifts the press, checks the load cell, and proves that the drives follow, and stop without our heartbeat."""
 
     def renew(self) -> None:
         """Renew the jacket's lease; it stays in standby."""
         self.devices.jacket.set_setpoint(self.rig.loops.heat.hub_min_c)
 
     def lift(self) -> Unloaded:
-        """Lift the press, and ask the load cell."""
+        """Lift the press, and check the load cell."""
         return Unloaded(self.devices, self.rig)
 
     def prove(self) -> Proof:
-        """Try out the drives."""
+        """Begin the proof of the drives."""
         return Proof(self.devices, self.rig)

@@ -1,10 +1,10 @@
-"""The state of a repeat: phase, burst in progress, what is left of the run-in, where bursts start and end.
+"""The state of a repeat: phase, burst in progress, remaining run-in, start and end temperatures of bursts.
 
 A burst begins with the surface below the setpoint and ends as far above it, so that its samples centre on the
-setpoint. How far below is learned: some conditions heat up before the first sample counts.
+setpoint. The start offset is learned: some conditions heat up before the first sample counts.
 
-A rubber's abrasion pattern turns round with the slip. Sliding after a reversal does not count before the run-in is
-over; it comes in pulses, as all sliding, each as long as the surface stays inside its band.
+A rubber's abrasion pattern reverses with the slip. Sliding after a reversal does not count before the run-in is over.
+Like all sliding, the run-in comes in pulses, each as long as the surface stays inside its band.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from tester.kinds.wheel_on_belt.image.axes import Held
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 
 COLDER_K: Final = 0.3
-"""A burst must not start further than this below its target: its samples would be too cold, K [A]."""
+"""Greatest distance of a burst's start below its target, K [A]: colder samples would be off the setpoint."""
 OFFSET_STEP_K: Final = 0.5
-"""How much lower the next burst starts after one that warmed through the band too quickly, K [A]."""
+"""Step by which the next burst starts lower after a burst that warmed through the band too quickly, K [A]."""
 FEW_REVOLUTIONS: Final = 3
-"""A burst with fewer whole turns than this starts the next one lower."""
+"""A burst with fewer whole turns makes the next burst start lower."""
 SLOW_COOLING_S: Final = 45.0
 SLOW_COOLING_K: Final = 0.15
-"""Cooling by less than this in that time is not worth waiting for, as long as the surface is below the setpoint [A]."""
+"""Cooling that is slower than this, with the surface below the setpoint, is not worth waiting for [A]."""
 CENTRED_K: Final = 0.2
 """A start this far below the setpoint still lets samples centre on it [A]."""
 MEAN_LIMIT_K: Final = 0.45
@@ -37,18 +37,17 @@ MEAN_LIMIT_K: Final = 0.45
 (required: within 0.7 K).
 """
 ROLLING_START_K: Final = 0.4
-"""Without slip nothing moves the surface during the window: it starts this near to the setpoint, K [A]."""
+"""Tolerance of the start without slip, K [A]: nothing changes the surface during the window."""
 BELOW_K: Final = 0.3
-"""After a burst whose samples are on average further below the setpoint than this, the next one starts higher, K [A].
-"""
+"""After a burst with samples on average further below the setpoint, the next burst starts higher, K [A]."""
 OFFSET_LEAST_K: Final = 0.2
 SPLIT_RISE_K: Final = 0.25
-"""A burst that has warmed by this much ends at half the window, any other at a whole one: a second rise tells
-temperature from time [A]."""
+"""A burst that has warmed by this much ends at half the window, any other at a whole window: a second rise separates
+the effect of temperature from that of time [A]."""
 BLIND_S: Final = 20.0
 """A burst is given up after this long without a counted sample, s [A]."""
 WARM_SHARE: Final = 1.2
-"""Revolutions that a condition must hold, with the ramp, to count as possible; used for the band that would suffice."""
+"""Revolutions that a sufficient band must hold, including the ramp."""
 
 
 class Phase(Enum):
@@ -75,14 +74,14 @@ class BurstNotes:
     counted_s: float = float("-inf")
     slid_s: float = float("nan")
     slid_c: float = float("nan")
-    """When half of the slip was there, and the reading of the surface then."""
+    """Time at which half of the slip was reached, and the surface's reading then."""
     peak_rate_k_s: float = 0.0
     sum_before_k: float = 0.0
     count_before: int = 0
 
 
 class RunIn:
-    """The distance that is left to slide, m, and the pulses made for it."""
+    """The remaining run-in distance, m, and the number of its pulses."""
 
     def __init__(self, distance_m: float) -> None:
         """Begin with the whole distance."""
@@ -90,27 +89,27 @@ class RunIn:
         self.pulses = 0
 
     def slide(self, distance_m: float) -> bool:
-        """Take in the distance slid in a scan; return whether the run-in is over."""
+        """Subtract the distance slid in a scan; return whether the run-in is over."""
         self.left_m -= distance_m
         return self.left_m <= 0.0
 
 
 def slides_reversed(step: WheelCondition, repeat: int) -> bool:
-    """Return whether a repeat of a condition, from 1, slides the other way than is asked for."""
+    """Return whether a repeat of a condition (counted from 1) slides with reversed slip."""
     return step.both_directions and is_reversed(repeat)
 
 
 def run_in_m(step: WheelCondition, repeat: int) -> float:
-    """Return how far a repeat slides before it counts, m: the first of a condition, and after each reversal."""
+    """Return a repeat's run-in distance, m: for the first of a condition, and after each reversal."""
     turned = repeat == 1 or slides_reversed(step, repeat) is not slides_reversed(step, repeat - 1)
     return step.run_in_m if step.both_directions and turned else 0.0
 
 
 class CentredBursts:
-    """The bursts of a repeat by their temperature: where a burst starts, when it is over, how the start is learned."""
+    """The temperature rules of a repeat's bursts: start, end, and the learned start offset."""
 
     def __init__(self, step: WheelCondition, setpoint: Held, offset_k: float, counter: BlockCounter) -> None:
-        """``offset_k``: how far below the setpoint bursts start, from the repeat before."""
+        """``offset_k``: distance of the start below the setpoint, from the previous repeat."""
         self.condition = step
         self.setpoint = setpoint
         self.offset_k = offset_k
@@ -119,9 +118,9 @@ class CentredBursts:
         self.bursts: int = 0
         self.warming_k_s = float("nan")
         self.holdable_band_k = float("nan")
-        """Where the temperature could not be held: the rate seen, and the band that would hold one turn."""
+        """Warming rate, and band that would hold one turn, where the temperature could not be held."""
         self.empty = 0
-        """Bursts without a whole turn since the last one with any."""
+        """Bursts without a whole turn since the last burst with one."""
         self.mark_s = 0.0
         self.mark_c = float("inf")
         self.surface_sum_k: float = 0.0

@@ -1,8 +1,8 @@
 """One repeat: whole revolutions inside the gates, collected in as many bursts as it needs.
 
-Straight running: the wheel stays in rolling contact and the belt brings the slip in and takes it out again (a slip
+Straight running: the wheel stays in rolling contact, and the belt brings the slip in and takes it out again (a slip
 pulse). With sideslip there is no matched speed, so every burst lifts, yaws, touches, counts and lifts again
-(docs/decisions/0013). Without slip there is nothing to pulse: one window of rolling.
+(docs/decisions/0013). Without slip a repeat is one window of rolling.
 """
 
 from __future__ import annotations
@@ -29,18 +29,17 @@ TARE_S: Final = 1.0
 TARE_WAIT_S: Final = 0.4
 """Time for the cell to settle after lifting, s [A]."""
 TARE_FRESH_S: Final = 110.0
-"""Age from which the zero is renewed before the first burst, s: when the first sample counts, some seconds later, it
-must be at most 120 s old (the cell's zero moves by 0.1 N/K with its temperature).
+"""Age from which the zero is renewed before the first burst, s: it must be at most 120 s old at the first counted
+sample, some seconds later (the cell's zero moves by 0.1 N/K with its temperature).
 """
 OFFSET_BEYOND_BAND_K: Final = 1.5
-"""How far below the band a burst may start, K [A]: it warms up before the first sample counts."""
+"""Greatest distance of a burst's start below the band, K [A]: it warms up before the first sample counts."""
 LIFT_TO_COOL_S: Final = 180.0
 """If rolling has not brought the temperature back after this time, the wheel is lifted to cool, s [A]."""
 COOL_AT_MOST_S: Final = 360.0
 """Longest cooling lifted before rolling is tried again, s [A]."""
 EMPTY_BURSTS: Final = 3
-"""After this many bursts in a row without a whole turn, started as low as possible, the condition cannot be held [A].
-"""
+"""Number of bursts in a row without a whole turn, started as low as possible, that end a condition [A]."""
 
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
@@ -67,9 +66,9 @@ class MeasureRepeat(CentredBursts):
         reversed_slip: bool = False,
         run_in_m: float = 0.0,
     ) -> None:
-        """``offset_k``: how far below the setpoint its bursts start, from the repeat before; ``quantities``: the run's
-        table of channels. ``reversed_slip``: slide the other way than is asked for; ``run_in_m``: slide so far before
-        anything counts."""
+        """``offset_k``: distance of its bursts' start below the setpoint, from the previous repeat; ``quantities``: the
+        run's table of channels; ``reversed_slip``: slide with reversed slip; ``run_in_m``: distance to slide before
+        samples count."""
         held = held_by(step.setpoint)
         super().__init__(step, held.reversed() if reversed_slip else held, offset_k, BlockCounter(quantities))
         self.run_in = RunIn(run_in_m)
@@ -81,7 +80,7 @@ class MeasureRepeat(CentredBursts):
         self.ending: Ending | None = None
         self.detail = ""
         self.ready_since_s = float("nan")
-        """Since when the next burst has been waited for; NaN while none is."""
+        """Start of the wait for the next burst; NaN outside a wait."""
         self.rolling_since_s = float("nan")
         self.cooling_since_s = float("nan")
 
@@ -134,7 +133,7 @@ class MeasureRepeat(CentredBursts):
         self._roll()
 
     def _tare_again(self) -> None:
-        """Renew the zero: the wait for the temperature was long, and the cell has warmed meanwhile."""
+        """Renew the zero after a long wait for the temperature, in which the cell's temperature changed."""
         self.phase = Phase.TARE
         self.tare = None
 
@@ -166,7 +165,7 @@ class MeasureRepeat(CentredBursts):
             self.moves = Sequence(Lift())
 
     def _cool(self, ctx: Context) -> None:
-        """Turn lifted until the surface is back at its temperature, then touch again; the wait keeps counting."""
+        """Turn lifted until the surface is back at its temperature, then touch again; this time counts as waiting."""
         self._demand_heat(ctx)
         self.moves.step(ctx)
         surface, target = ctx.gates.surface.now_c, self.setpoint.temperature_c
@@ -189,7 +188,7 @@ class MeasureRepeat(CentredBursts):
             self.moves = Sequence()
 
     def _begin_run_in(self, ctx: Context) -> None:
-        """Bring the slip in for a pulse that does not count: its samples belong to no burst."""
+        """Bring the slip in for a pulse of the run-in: its samples belong to no burst."""
         self.phase = Phase.RUN_IN
         ctx.demand.belt_speed_m_s = self.belt_m_s
         self._aim(ctx)
@@ -246,7 +245,7 @@ class MeasureRepeat(CentredBursts):
             self._end_burst(ctx)
 
     def _complete(self, ctx: Context) -> bool:
-        """Return whether the repeat has what it collects; without siblings, whether its drift is shown to be small."""
+        """Return whether the repeat is complete; a single repeat must also show that its drift is small."""
         window = self.condition.window
         alone = self.condition.repeats <= ALONE and not self.rolling_only
         return collected(self.counter, window, alone=alone)

@@ -31,14 +31,14 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
         self.offset_k = float("nan")
 
     def resume(self, ctx: Context) -> None:
-        """Condition again after a hold; a repeat that was cut off is done again from its tare."""
+        """Soak again after a hold; an interrupted repeat restarts at its tare."""
         super().resume(ctx)
         if self.outcome is None:
             self.before = self.soak = None
             self.soaked = False
 
     def ready(self, ctx: Context) -> bool:
-        """Return whether the rubber is soaked; end the condition where it does not get to its temperature."""
+        """Return whether the rubber is soaked; end the condition if it does not reach its temperature."""
         if self.soaked:
             return True
         step, sp = self.condition, held_by(self.condition.setpoint)
@@ -50,7 +50,7 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
             within = soak_within_k(step.soak, sp.temperature_c, ctx.rig.ambient_c, step.temperature_band_k)
             self.soak = SoakTo(target, within, step.soak.for_s, step.soak.at_most_s)
             checked = (ZeroCheck(sp.wheel_speed_m_s, self.reference_tare),) if is_due(ctx) else ()
-            # A condition that resumes after a hold has had its check.
+            # After a hold the condition has already had its check.
             self.before = Sequence(*checked, roll(sp.wheel_speed_m_s, sp.load_n))
             if step.wear_check == "each_condition" and self.repeat == self.done_before and not self.voided:
                 check = CheckByRolling(sp.wheel_speed_m_s, self.reference_tare, step.condition)
@@ -82,7 +82,7 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
             ctx.journal.event(ctx.now, "soak", text, "warning")
 
     def begin(self, ctx: Context, attempt: int) -> MeasureRepeat:
-        """Return the repeat, which starts as cold as the one before has ended."""
+        """Return the repeat; it takes the start offset that the previous repeat learned."""
         step, repeat = self.condition, self.repeat
         ctx.attendant.begin_repeat(step.row, repeat, attempt, step.setpoint.numbers())
         return MeasureRepeat(
@@ -91,6 +91,6 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
         )  # fmt: skip
 
     def finish(self, ctx: Context, measured: MeasureRepeat) -> None:
-        """Reduce and commit a repeat, and note how far below the setpoint its bursts started."""
+        """Reduce and commit a repeat, and keep its start offset."""
         self.offset_k = measured.offset_k
         super().finish(ctx, measured)

@@ -1,8 +1,8 @@
-"""A wheel's first contact: at a small load the belt passes the wheel's speed either way; friction must reverse.
+"""A wheel's first contact: at a small load the belt goes above and below the wheel's speed; friction must reverse.
 
-Rolling, friction is zero where wheel and belt are equally fast. If it keeps its sign while the belt goes from
-somewhat faster to somewhat slower than the wheel, one of the two has another speed than assumed: it turns the wrong way
-round, its scale is wrong, or the wheel has another diameter. Each is found at a load that a hand could hold.
+Friction is zero while the wheel rolls as fast as the belt. If it keeps its sign while the belt goes from slightly
+faster to slightly slower than the wheel, one of the speeds is wrong: a drive turns the wrong way, its scale is wrong, or the
+wheel has another diameter. The check finds each at a load that a hand could hold.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from tester.machine.motions import Power, Sequence
 
 OFF: Final = "speed ratio of wheel and belt is off (direction, scale or diameter)"
 SETTLE_S: Final = 0.4
-"""From the belt's new speed to the first reading that counts, s [A]: its ramp, and the contact's own build-up."""
+"""Time from the belt's new speed to the first reading that counts, s [A]: its ramp, and the build-up of the contact."""
 AVERAGE_S: Final = 0.6
-"""Over this long friction is averaged, s [A]: at 0.4 m/s runout turns the load a whole time."""
+"""Averaging time of friction, s [A]: about one turn of the runout at 0.4 m/s."""
 CLEAR_SHARE: Final = 0.1
 """Friction of more than this share of the load has a sign [A]: the least coefficient of the paper's tests is 0.5."""
 LEAST_N: Final = 1.0
-"""... and of more than this [A]: noise, cross-talk and what the zero has moved since the tare just before."""
+"""... and also of more than this [A]: noise, cross-talk, and drift of the zero since the tare."""
 TOUCH_AT_MOST_S: Final = 60.0
-"""A first touch that takes longer has not found the wheel, s [A]."""
+"""Longest time for a first touch, s [A]; after it the wheel is not found."""
 
 
 APPROACH: Final = 2.0
-"""Farther from where the wheel should be than it can be, the press comes as for this many times the load [A]."""
+"""Factor of the load that sets the speed of approach far from the wheel's expected place [A]."""
 NEAR: Final = 1.2
-"""... that is by this share of how far off it may be [A]: 0.3 mm before it the press is slow."""
+"""The approach is slow within this many tolerances of the expected place [A]: from 0.3 mm before the tolerance on."""
 
 
 class Touch:
-    """Press to a small load; the wheel must be where its diameter puts it."""
+    """Press to a small load; the wheel must be at the place given by its diameter."""
 
     def __init__(self, load_n: float, off_mm: float) -> None:
         """``off_mm``: allowed distance of the first touch from its expected place."""
@@ -46,7 +46,7 @@ class Touch:
         self.began_s = float("nan")
 
     def step(self, ctx: Context) -> bool:
-        """Done when the load has come; raises MoveFailedError for a wheel of another diameter."""
+        """Done when the load is reached; raises MoveFailedError for a wheel of another diameter."""
         ctx.moving = True
         if not isfinite(self.began_s):
             self.began_s = ctx.now
@@ -55,7 +55,7 @@ class Touch:
         touched_mm = ctx.contact.contact_mm
         place_mm = touched_mm if ctx.contact.in_contact and isfinite(touched_mm) else r.press_mm
         near = ctx.contact.in_contact or not place_mm < expected_mm - NEAR * self.off_mm
-        # The speed of the approach goes with the load that is wanted: farther from the wheel it may be higher.
+        # The speed of the approach follows the wanted load: farther from the wheel it may be higher.
         load_n = self.load_n if near else APPROACH * self.load_n
         ctx.demand.press, ctx.demand.load_n, ctx.demand.quick_touch = Press.LOAD, load_n, False
         ctx.gates.target.load_n = self.load_n
@@ -71,7 +71,7 @@ class Touch:
 
 
 class Friction:
-    """Average friction and load at the wheel's speed and another speed of the belt."""
+    """Average friction and load at a speed of the wheel and another speed of the belt."""
 
     def __init__(self, wheel_m_s: float, belt_m_s: float) -> None:
         """Both speeds, m/s."""
@@ -81,7 +81,7 @@ class Friction:
         self.count = 0
 
     def step(self, ctx: Context) -> bool:
-        """Done when enough readings are in."""
+        """Done when there are enough readings."""
         ctx.moving = True
         if not isfinite(self.reached_s):
             if self.turn.step(ctx):
@@ -96,24 +96,24 @@ class Friction:
 
     @property
     def sign(self) -> float:
-        """Direction in which friction acts on the wheel: 1 back, -1 onwards, 0 unclear."""
+        """Direction of friction on the wheel: 1 back, -1 forward, 0 unclear."""
         mean_n = self.friction_n / self.count
         clear_n = max(LEAST_N, CLEAR_SHARE * self.load_n / self.count)
         return 1.0 if mean_n > clear_n else -1.0 if mean_n < -clear_n else 0.0
 
 
 class SpeedSweep:
-    """Bring the belt above and below the wheel's speed; friction must turn round in between."""
+    """Bring the belt above and below the wheel's speed; friction must reverse in between."""
 
     def __init__(self, wheel_m_s: float, sweep_m_s: float) -> None:
-        """The wheel's speed, and how far the belt goes to either side of it, m/s."""
+        """The wheel's speed, and the belt's greatest difference to either side, m/s."""
         self.wheel_m_s = wheel_m_s
         self.faster = Friction(wheel_m_s, wheel_m_s + sweep_m_s)
         self.slower = Friction(wheel_m_s, wheel_m_s - sweep_m_s)
         self.moves = Sequence(self.faster, self.slower)
 
     def step(self, ctx: Context) -> bool:
-        """Done when it has turned round; raises MoveFailedError where it has not."""
+        """Done when friction has reversed; raises MoveFailedError if it has not."""
         if not self.moves.step(ctx):
             return False
         faster, slower = self.faster, self.slower
@@ -129,9 +129,9 @@ class SpeedSweep:
 
 
 class FirstContact:
-    """The whole first contact: touch, sweep slowly, then faster, lift. The wheel hangs free before and after it.
+    """The whole first contact: touch, sweep slowly, then faster, lift. The wheel is free before and after it.
 
-    Slowly first: drives that turn against each other then make little slip.
+    The first sweep is slow: drives that turn against each other then make little slip.
     """
 
     def __init__(self) -> None:
@@ -143,7 +143,7 @@ class FirstContact:
         self.moves = None
 
     def step(self, ctx: Context) -> bool:
-        """Done when lifted again; raises MoveFailedError where something is off."""
+        """Done when lifted again; raises MoveFailedError if a check fails."""
         ctx.progress.phase = "first contact"
         if self.moves is None:
             p = ctx.rig.interlocks

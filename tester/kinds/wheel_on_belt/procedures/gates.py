@@ -22,7 +22,7 @@ from tester.kinds.wheel_on_belt.rig.sections import GatesConfig
 
 _INF: Final = inf
 RESTART_SHARE: Final = 0.15
-"""An average starts again while the instant value is this far off: it holds only what followed the approach [A]."""
+"""An average restarts while the instant value is off by this share: it excludes the approach [A]."""
 RATE_FAST_S: Final = 0.3
 RATE_SLOW_S: Final = 1.5
 """Time constants of the two averages whose difference gives the surface's rate of change [A]."""
@@ -32,7 +32,7 @@ RATE_LIMIT_K_S: Final = 5.0
 
 @dataclass(slots=True)
 class Average:
-    """Average over up to ``window_s``: exact mean while young, exponential afterwards. Restarts on a jump."""
+    """Average over up to ``window_s``: the exact mean at first, exponential afterwards. It restarts on a jump."""
 
     window_s: float
     floor: float
@@ -41,7 +41,7 @@ class Average:
     age_s: float = 0.0
 
     def update(self, x: float, target: float, dt: float) -> float:
-        """Take in a value that lasted ``dt`` s; return the average."""
+        """Add a value that lasted ``dt`` s; return the average."""
         value = self.value
         off, jump = abs(x - target), RESTART_SHARE * abs(target)
         if (off > self.floor and off > jump) or not -_INF < value < _INF:
@@ -56,30 +56,30 @@ class Average:
 
 @dataclass(slots=True)
 class Target:
-    """Targets of the gates; written by the activity that measures."""
+    """Targets of the gates; the measuring activity writes them."""
 
     load_n: float = 0.0
     wheel_speed_m_s: float = 0.0
     belt_speed_m_s: float = 0.0
     slip_m_s: float = 0.0
-    """Resultant slip speed that the setpoints give."""
+    """Resultant slip speed of the setpoints."""
     temperature_c: float = 0.0
     band_k: float = 2.0
 
 
 @dataclass(slots=True)
 class SurfaceTrend:
-    """Surface temperature filtered, and its rate in K/s, updated with each new reading of the thermometer."""
+    """Filtered surface temperature and its rate in K/s, updated with each new reading of the thermometer."""
 
     fast_c: float = float("nan")
     slow_c: float = float("nan")
     stamp_s: float = float("-inf")
     rate_k_s: float = 0.0
     now_c: float = float("nan")
-    """The temperature with the thermometer's lag and that of the filter allowed for, degC."""
+    """The temperature corrected for the lags of thermometer and filter, degC."""
 
     def update(self, surface_c: float, stamp_s: float, lag_s: float) -> None:
-        """Take in a reading of a thermometer with a lag; a reading that is not newer than the last is ignored."""
+        """Process a reading of a thermometer with a lag; a reading that is not newer than the last is ignored."""
         if stamp_s <= self.stamp_s or not isfinite(surface_c):
             return
         dt, self.stamp_s = stamp_s - self.stamp_s, stamp_s
@@ -98,7 +98,7 @@ class Gates:
     """The live gates of a rig."""
 
     def __init__(self, config: GatesConfig) -> None:
-        """Start with nothing known: every gate closed."""
+        """Start without data, with every gate closed."""
         self.config = config
         self.target = Target()
         self.load = Average(config.load_filter_s, 10.0)
@@ -111,7 +111,7 @@ class Gates:
         self._slip_share = config.slip_percent * 0.01
         self._slip_floor_m_s = config.slip_floor_mm_s * 1e-3
         self.touched_s = float("inf")
-        """When the wheel last touched; samples settle for a second after it (contact transient)."""
+        """When the wheel last touched; samples do not count for a second afterwards (contact transient)."""
 
     def update(self, r: Readings, dt: float) -> int:
         """Return the mask of closed gates for this scan (0 = the sample counts)."""

@@ -16,7 +16,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.proof import ENABLE_S
 
 LIFT_S = 6.0
-"""The press's whole travel at its lifting speed takes 3 s [A]."""
+"""Longest time for lifting [A]: the press's whole travel at its lifting speed takes 3 s."""
 LIFTED_MM = 0.3
 SETTLE_S = 0.3
 """Age from which a reading counts after the lift, s [A]: a press at 10 mm/s is at rest 0.2 s after the command."""
@@ -34,9 +34,9 @@ class LiftStage(Enum):
 
 
 class Unloaded:
-    """Lifts the press, one call of ``step`` a scan; ``trouble`` then returns whether it stays unloaded.
+    """Lifts the press, with one call of ``step`` per scan; ``trouble`` then reports whether it stays unloaded.
 
-    ``failure``: why the rig is not known to be unloaded; "" while nothing contradicts it.
+    ``failure``: the reason why the rig may be loaded; "" for none.
     """
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
@@ -53,7 +53,7 @@ class Unloaded:
 
     @property
     def done(self) -> bool:
-        """Whether the press is lifted and the cell unloaded, or either could not be shown."""
+        """Whether the check has ended: the press is lifted and the cell unloaded, or there is a ``failure``."""
         return self.stage is LiftStage.WATCH or bool(self.failure)
 
     def step(self, now: float) -> None:
@@ -72,7 +72,7 @@ class Unloaded:
             self.stop()
 
     def trouble(self, now: float) -> str:
-        """Return "" or why the rig, once found unloaded, is not known to be so any more."""
+        """Return "", or the reason why the rig, once found unloaded, may be loaded again."""
         if self.stage is not LiftStage.WATCH:
             return ""
         self._note()
@@ -82,7 +82,7 @@ class Unloaded:
         return self._shown()
 
     def stop(self) -> None:
-        """Take the press's power; the others have none."""
+        """Cut the press's power; the other drives have none."""
         press = self.devices.axes.press
         press.target = 0.0
         press.goal = Goal.DISABLED
@@ -140,7 +140,7 @@ class Unloaded:
 
 
 def loaded(raw: Sequence[float], rig: RigConfig) -> str:
-    """Return "" or the load on a cell that should be unloaded; ``raw``: Fx, Fy, Fz in N and Mz in N m, without tare."""
+    """Return "", or the load on a cell that should be unloaded; ``raw``: Fx, Fy, Fz in N, Mz in N m, without tare."""
     fx, fy, fz, _ = raw
     friction_n, bound_n = hypot(fx, fy), rig.arming.unloaded_n
     if abs(fz) <= bound_n and friction_n <= bound_n:

@@ -1,7 +1,7 @@
-"""The moves of this machine: lift, turn, load, yaw, tare. Those of any machine are in ``tester.machine.motions``.
+"""The moves of this machine: lift, turn, load, yaw, tare. Common moves are in ``tester.machine.motions``.
 
-An activity's ``step`` writes the demand it needs and returns True in the scan in which it is done. It keeps its
-state in plain attributes: a running activity can be copied.
+An activity's ``step`` writes the demand it needs and returns True in the scan in which it is done. An activity keeps
+its state in plain attributes, so that it can be copied while it runs.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from tester.machine.motions import Move, ZeroOfCell
 
 SPEED_SHARE: Final = 0.01
 SPEED_FLOOR_M_S: Final = 0.003
-"""A speed counts as reached within 1 % or 3 mm/s, whichever is more [A]."""
+"""A speed counts as reached within the greater of 1 % and this [A]."""
 
 NEAR: Final = 0.05
 """Tolerance of a positioned axis, in its unit (deg) [A]."""
 LIFTED_N: Final = 5.0
 """Below this force the wheel counts as lifted [A]."""
 LIFTED_MM: Final = 0.3
-"""... or this near to the lifted position: the zero of the cell may have drifted by more than that force [A]."""
+"""... or within this distance of the lifted position: the cell's zero may have drifted by more than that force [A]."""
 
 
 class Lift(Move):
@@ -34,7 +34,7 @@ class Lift(Move):
     name = "lifting"
 
     def step(self, ctx: Context) -> bool:
-        """Done when the force is gone, or the press is back and what the cell still shows is its zero."""
+        """Done when the force is gone, or the press is back: the cell then shows only its zero."""
         ctx.demand.press = Press.LIFT
         ctx.demand.load_n = 0.0
         ctx.moving = True
@@ -51,7 +51,7 @@ class Turn(Move):
     name = "reaching the speeds"
 
     def __init__(self, wheel_m_s: float, belt_m_s: float) -> None:
-        """Both line speeds."""
+        """Line speeds of wheel and belt."""
         self.wheel_m_s = wheel_m_s
         self.belt_m_s = belt_m_s
 
@@ -98,7 +98,7 @@ class Load(Move):
 
 
 def straight(r: Readings) -> dict[str, float]:
-    """Return where positioned axes are when nothing is turned: 0 for each, by name."""
+    """Return the straight position of each positioned axis, 0, by name."""
     return dict.fromkeys(r.positions, 0.0)
 
 
@@ -108,7 +108,7 @@ def near(r: Readings, positions: Mapping[str, float]) -> bool:
 
 
 class Yaw(Move):
-    """Bring positioned axes to positions, by name, in their units; only ever unloaded."""
+    """Bring positioned axes to positions, by name, in their units; only while unloaded."""
 
     limit_s = 60.0  # [A]; 30 degrees take 2 s
     name = "reaching the angles"
@@ -129,22 +129,22 @@ class Yaw(Move):
 class TakeTare(ZeroOfCell):
     """Average the unloaded load cell over whole turns and make that its zero.
 
-    The reference zero (the first of this wheel) is kept: a zero that has wandered off it by more than
-    ``interlocks.zero_stop`` is a damaged or touching cell. The reference itself is no more than an unloaded cell may
-    show (``arming.unloaded``), else it is not taken.
+    The reference zero (the first of this wheel) is kept: a later zero that differs by more than
+    ``interlocks.zero_stop`` means a damaged or touching cell. A reference beyond the limit for an unloaded cell
+    (``arming.unloaded``) is not taken.
     """
 
     def __init__(self, seconds: float, reference: list[float], *, ends_run: bool = True) -> None:
         """``reference``: shared list, empty until the first tare fills it.
 
-        ``ends_run``: a zero that has wandered too far ends the run, which comes to its standstill with that zero: with
-        the one before, its stop would take the cell's drift for a load. Otherwise such a zero is not used.
+        ``ends_run``: a zero that has drifted too far ends the run. The run stops with the new zero: with the previous
+        zero its stop would mistake the cell's drift for a load. Without ``ends_run`` the new zero is not used.
         """
         super().__init__(seconds)
         self.reference = reference
         self.ends_run = ends_run
         self.drift_n = 0.0
-        """Drift of the zero from the reference, N: that of the force that has moved most."""
+        """Drift of the zero from the reference, N: the greatest of the forces."""
 
     def step(self, ctx: Context) -> bool:
         """Done when the average is taken; ``failed``: why the zero is not trustworthy."""
@@ -153,7 +153,7 @@ class TakeTare(ZeroOfCell):
             return bool(self.failed)
         new = self.zero(ctx.cell.tare)
         if not self.reference:
-            # A tare has nothing to be compared with yet: what it may take off is bounded, or it hides a load.
+            # The first tare has no reference: a bound on its size keeps it from hiding a load.
             self.failed = loaded(new, ctx.rig)
             if not self.failed:
                 self.reference.extend(new)
@@ -169,7 +169,7 @@ class TakeTare(ZeroOfCell):
         ctx.journal.tare(ctx.now, kind, dict(zip(CELL, new, strict=True)), ctx.repeat_key)
 
     def _wandered(self, ctx: Context, new: tuple[float, ...]) -> str:
-        """Return "" or how far a zero is off the reference; journal one that is worth a warning."""
+        """Return "", or a zero's excessive deviation from the reference; journal one that deserves a warning."""
         limits = ctx.rig.interlocks
         self.drift_n = drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
         text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"

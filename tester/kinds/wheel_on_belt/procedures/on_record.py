@@ -1,9 +1,9 @@
 """A condition's record beside its samples: the wheel's state after a repeat, the check after a soak.
 
-Rolling without slip, the surface is colder than the hub by what the air takes. The thermal observer works that out
-from the hub's sensor alone (``control.observer``), so that the check compares thermometer and hub. They may differ by
-the sum of three beliefs: the thermometer's bias as in the budget, that of the hub's sensor, and a share of the drop
-from hub to surface by which the observer may be off.
+In rolling without slip, heat loss to the air makes the surface colder than the hub. The thermal observer computes this
+difference from the hub's sensor alone (``control.observer``), so the check compares thermometer and hub. They may
+differ by the sum of three assumed errors: the thermometer's bias as in the budget, the hub sensor's bias, and the
+observer's error, a share of the drop from hub to surface.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class WheelResults(StoredResults[Context]):
     """Results of a wheel on a belt."""
 
     def begin_repeat(self, ctx: Context, step: ConditionStep, repeat: int, attempt: int) -> int:
-        """Open a repeat, with how far belt and wheel have come; return the key that its samples carry."""
+        """Open a repeat with the distances of belt and wheel; return the key of its samples."""
         key = super().begin_repeat(ctx, step, repeat, attempt)
         self.recorder.travelled(ctx.wheel.wheel, travel_of(ctx), key)
         return key
@@ -53,26 +53,26 @@ class WheelResults(StoredResults[Context]):
         record_state(self.recorder, ctx, ctx.now)
 
     def predicted_loss_mm(self, step: WheelCondition, rig: RigConfig) -> float:
-        """Return the loss of diameter that a condition is expected to cost, mm."""
+        """Return the expected loss of diameter in a condition, mm."""
         return predicted_loss_mm(step, rig)
 
 
 THERMOMETER_K: Final = next(term.bound for term in TERMS if term.name == "thermometer")
-"""Bias of the thermometer, K, at most."""
+"""Greatest bias of the thermometer, K."""
 HUB_K: Final = 0.5
-"""Error of the hub's sensor, K, at most [A]: Pt100 class B at 60 degC is 0.6 K, and the line through the slip ring is
-watched by itself."""
+"""Greatest error of the hub's sensor, K [A]: Pt100 class B at 60 degC is 0.6 K; other checks cover the line through the
+slip ring."""
 MODEL_SHARE: Final = 0.15
-"""Tolerance of the observer's drop from hub to surface, a share [A]: a fifth more film of air makes 12 %."""
+"""Tolerance of the observer's drop from hub to surface, a share [A]: a fifth more air film changes it by 12 %."""
 
 
 def allowed_k(hub_c: float, model_c: float) -> float:
-    """Return by how much thermometer and model may differ, K, at a hub and a modelled surface of these degC."""
+    """Return the allowed difference of thermometer and model, K, at these hub and model temperatures, degC."""
     return THERMOMETER_K + HUB_K + MODEL_SHARE * abs(hub_c - model_c)
 
 
 def soak_check(ctx: Context, condition: int) -> SoakCheck | None:
-    """Return thermometer and model at the end of a condition's soak; None where either is unknown."""
+    """Return the readings of thermometer and model at the end of a soak; None if either is unknown."""
     r, observer = ctx.readings, ctx.observer
     if not r.jacket_valid or not isfinite(observer.surface_c):
         return None

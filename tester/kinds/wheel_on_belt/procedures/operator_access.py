@@ -1,4 +1,4 @@
-"""A person at the rig: asked only once it is safe to go near, with the run resumed only once the person has left."""
+"""A person at the rig: a question comes only once the rig is safe; the run resumes only once the person has left."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Move, Power, Sequence
 
 STILL_WARM_K: Final = 5.0
-"""A hub that has stopped may show this much more than while it turned, K [A], without a warning."""
+"""Greatest rise of a stopped hub's reading over that while turning without a warning, K [A]."""
 
 
 class Standing(Move):
     """Wait until wheel and belt stand, no drive applies torque and the heater's contactor is open."""
 
-    limit_s = 10.0  # [A]; drives that are off come to a stand in far less
+    limit_s = 10.0  # [A]; drives that are off stop much sooner
     name = "coming to a stand for a person to go near"
 
     def step(self, ctx: Context) -> bool:
-        """Done when all of it is measured, not just commanded."""
+        """Done when all these states are measured, not just commanded."""
         r = ctx.readings
         ctx.moving = True
         still_m_s = ctx.rig.interlocks.standing_m_s
@@ -37,13 +37,13 @@ class Standing(Move):
 
 
 class Free(Move):
-    """Wait until the load cell shows a free wheel, without tare: a person may have left it on the belt."""
+    """Wait until the load cell, without tare, shows a free wheel: a person may have left it on the belt."""
 
     limit_s = 30.0  # [A]; a hand may still be at the wheel
     name = "waiting for a load cell that shows a free wheel"
 
     def step(self, ctx: Context) -> bool:
-        """Done when a fresh reading shows no more than an unloaded cell may."""
+        """Done when a fresh reading is within the limit for an unloaded cell."""
         r = ctx.readings
         fresh = r.cell_valid and r.now_s - r.cell_at_s <= ctx.rig.interlocks.speeds_old_s
         shown = [value + zero for value, zero in zip(r.cell, ctx.cell.tare, strict=True)]
@@ -51,14 +51,13 @@ class Free(Move):
 
 
 class AskAtRest:
-    """Put a question about the wheel: cool enough to touch, lifted, standing, heat and drives off.
+    """Ask a question about the wheel once it is cool enough to touch, lifted and standing, with heat and drives off.
 
-    A hot wheel turns on slowly, unloaded, until its hub may be touched: a standing wheel would bake in one spot. The
-    question is asked only once all of it is reached.
+    A hot wheel keeps turning slowly, unloaded, until its hub may be touched: a standing wheel would bake in one spot.
     """
 
     def __init__(self, text: str) -> None:
-        """The question as a person reads it."""
+        """Store the question's text for the person."""
         self.text = text
         self.cool: CoolDown | None = None
         self.moves: Activity[Context] = Sequence()
@@ -67,7 +66,7 @@ class AskAtRest:
         self.free = Sequence(Free())
 
     def resume(self, ctx: Context) -> None:
-        """Resume cooling, or coming to a stand."""
+        """Resume cooling, or stopping."""
         self.free.resume(ctx)
         if isinstance(self.moves, CoolDown | Sequence):
             self.moves.resume(ctx)

@@ -1,4 +1,4 @@
-"""The activities for the steps of a plan, and unforeseen work: a worn wheel, a person at it."""
+"""The activities for the steps of a plan, and for unforeseen work: a worn wheel, a person at the wheel."""
 
 from __future__ import annotations
 
@@ -28,44 +28,44 @@ WEAR_CHECK: Final = "check the wheel's diameter and wear"
 
 
 class WheelProcedures(Procedures[Context]):
-    """The steps of this machine, and what it remembers of wheels from step to step."""
+    """The steps of this machine, and the state of wheels between steps."""
 
     def __init__(self, plan: Plan, results: WheelResults, *, hardware: bool) -> None:
-        """``hardware``: ask people where a simulated rig continues by itself."""
+        """``hardware``: ask a person where a simulated rig continues by itself."""
         self.plan = WheelPlan.of(plan)
         self.results = results
         self.hardware = hardware
         self.reference_tare: list[float] = []
         """The present wheel's first zero."""
         self.wheels = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
-        """Highest wheel number in use: one that the plan did not foresee gets the next."""
+        """Highest wheel number in use: an unplanned wheel gets the next number."""
         self.unchecked: WheelCondition | None = None
-        """A condition whose wear nothing has measured yet, though its recipe asks for it."""
+        """A condition with a wear check still to be made."""
         self.checked = 0
-        """The last condition before which a person has looked at the wheel."""
+        """The last condition with a person's look at the wheel before it."""
         self.measured_wheel = 0
-        """The wheel of the last condition. A new one measures at least one condition, else changing never ends."""
+        """The wheel of the last condition. A new wheel measures at least one condition, so that changing ends."""
 
     def title(self, step: Step) -> str:
-        """Return a step in words, as a line."""
+        """Return a description of a step, in a line."""
         return title(step)
 
     def number_after(self, last: int) -> None:
-        """Give wheels that the plan did not foresee numbers behind ``last``."""
+        """Give unplanned wheels numbers above ``last``."""
         self.wheels = max(self.wheels, last)
 
     def resumed(self, ctx: Context) -> None:
-        """Stay lifted and without slip, at the wheel's speed."""
+        """Resume lifted and without slip, at the wheel's speed."""
         demand = ctx.demand
         demand.press, demand.load_n, demand.freeze_heat = Press.LIFT, 0.0, False
         demand.belt_speed_m_s = demand.wheel_speed_m_s
 
     def measuring(self, activity: Activity[Context]) -> bool:
-        """Return whether a condition has been soaked and makes its repeats."""
+        """Return whether a condition is past its soak and in its repeats."""
         return isinstance(activity, MeasureWheelCondition) and activity.measuring is not None
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: Context) -> Activity[Context]:
-        """Return the activity that serves a step."""
+        """Return the activity for a step."""
         match step:
             case Install():
                 return InstallWheel(step, self.reference_tare)
@@ -89,7 +89,7 @@ class WheelProcedures(Procedures[Context]):
                 raise TypeError(f"{step.kind}: no step of this machine")
 
     def before(self, step: Step, ctx: Context) -> Unforeseen[Context] | None:
-        """Return the work before a condition can begin: a wheel changed, a look at it."""
+        """Return the work before a condition: a wheel change, or a person's look at the wheel."""
         if not isinstance(step, WheelCondition):
             return None
         if self._wheel_too_worn(step, ctx):
@@ -102,7 +102,7 @@ class WheelProcedures(Procedures[Context]):
         return Unforeseen(steps=[PromptStep(INSERTED, WEAR_CHECK)])
 
     def after(self, activity: Activity[Context], to_come: Sequence[Step], ctx: Context) -> Unforeseen[Context] | None:
-        """Return the work after a step: a check of the wheel, a contact to be shown, a wheel to be warmed again."""
+        """Return the work after a step: a check of the wheel, a proof of contact, or warming the wheel again."""
         if isinstance(activity, CheckByRolling | CheckByPerson):
             self.unchecked = None
         if isinstance(activity, MeasureWheelCondition | InstallWheel | ShowContact) and activity.failed:
@@ -119,9 +119,9 @@ class WheelProcedures(Procedures[Context]):
 
     def _attended(self, follower: Step) -> Unforeseen[Context]:
         """Return the steps after a person was at the wheel."""
-        # The wheel may have been off, or the belt changed: the contact is shown again before anything else.
+        # The wheel may have been off, or the belt changed: the contact is proved again first.
         shown = self.reference_tare and not isinstance(follower, Install | PromptStep)
-        # It has cooled meanwhile: it is warmed before anything is measured.
+        # The wheel has cooled meanwhile: it is warmed before any measurement.
         surface = follower.setpoint.number("temperature") if isinstance(follower, WheelCondition) else None
         warmed = [Heat(INSERTED, surface)] if surface is not None else []
         return Unforeseen(ShowContact(self.reference_tare) if shown else None, steps=warmed)
@@ -129,7 +129,7 @@ class WheelProcedures(Procedures[Context]):
     # -- checks of the wheel -----------------------------------------------------------------------------------
 
     def _mounted(self, activity: InstallWheel, to_come: Sequence[Step]) -> Unforeseen[Context] | None:
-        """Check a new wheel as it is mounted, before it is ground in: then its diameter is known."""
+        """Check a newly mounted wheel before it is ground in, while its diameter is known."""
         first = next((step for step in to_come if isinstance(step, WheelCondition | Install)), None)
         new = activity.install.worn is None
         if new and isinstance(first, WheelCondition) and first.wear_check == "each_condition":
@@ -137,7 +137,7 @@ class WheelProcedures(Procedures[Context]):
         return None
 
     def _measured(self, step: WheelCondition, to_come: Sequence[Step], ctx: Context) -> Unforeseen[Context] | None:
-        """Note that a condition is over; check the wheel where no check of the next condition will."""
+        """Record that a condition is over; check the wheel if the next condition will not."""
         self._note_measured(step, ctx)
         follower = next((later for later in to_come if isinstance(later, WheelCondition | Install)), None)
         checked_next = isinstance(follower, WheelCondition) and follower.wear_check == step.wear_check
@@ -161,7 +161,7 @@ class WheelProcedures(Procedures[Context]):
     # -- a wheel that the plan did not foresee ----------------------------------------------------------------
 
     def _wheel_too_worn(self, step: WheelCondition, ctx: Context) -> bool:
-        """Return whether what is left of the wheel does not cover this condition's predicted wear."""
+        """Return whether this condition's predicted wear exceeds the wheel's remaining rubber."""
         left_mm = self.plan.replace_after_mm - ctx.wheel.loss_mm
         return ctx.wheel.wheel == self.measured_wheel and self.results.predicted_loss_mm(step, ctx.rig) > left_mm
 
@@ -172,7 +172,7 @@ class WheelProcedures(Procedures[Context]):
 
 
 def _heat(step: Heat, to_come: Sequence[Step], ctx: Context) -> HeatUp:
-    """Heat under the load and at the speed of the condition that follows: it soaks there next."""
+    """Heat at the load and speed of the next condition, which soaks at them."""
     loop = ctx.rig.loops.heat
     for follower in to_come:
         if isinstance(follower, WheelCondition):
@@ -183,7 +183,7 @@ def _heat(step: Heat, to_come: Sequence[Step], ctx: Context) -> HeatUp:
 
 
 def title(step: Step) -> str:
-    """Return a step in words, as a line."""
+    """Return a description of a step, in a line."""
     match step:
         case Install():
             return f"{'mount again' if step.again else 'install'} wheel {step.wheel} ({step.compound})"

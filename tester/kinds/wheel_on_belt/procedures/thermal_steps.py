@@ -14,25 +14,25 @@ from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Power, Sequence
 
 NEAR_AMBIENT_K: Final = 3.0
-"""A setpoint this near to ambient can be neither heated nor cooled to quickly: it soaks to the band [A]."""
+"""A setpoint within this of ambient is reached slowly, by heating or cooling: the soak only reaches the band [A]."""
 HEAT_LOAD_N: Final = 200.0
 """Highest load for heating up in rolling contact [A]: the paper's reference load."""
 HEAT_AT_MOST_S: Final = 5400.0
-"""Longest heating up to a temperature [A]."""
+"""Longest time of heating up to a temperature [A]."""
 COOL_AT_MOST_S: Final = 3 * 3600.0
-"""Longest cooling of a hub before a person may touch it; then a prompt shows how warm it is [A]."""
+"""Longest cooling of a hub for a person's touch; a prompt then shows its temperature [A]."""
 
 SHOW_S: Final = 1.0
 """Period for reporting the progress of a wait, s."""
 
 
 def roll(wheel_speed_m_s: float, load_n: float) -> Sequence:
-    """Return the moves into rolling contact: drives on, straight, matched speeds, load. No slip, hardly any heat."""
+    """Return the moves into rolling contact: drives on, straight, matched speeds, load; no slip and little friction heat."""
     return Sequence(Power(True), Straighten(), Turn(wheel_speed_m_s, wheel_speed_m_s), Load(load_n))
 
 
 class Straighten:
-    """Bring the positioned axes to zero, lifting first if they are not there."""
+    """Bring the positioned axes to zero; lift first if they are not at zero."""
 
     def __init__(self) -> None:
         """Begin without data before the first scan."""
@@ -52,7 +52,7 @@ def soak_within_k(soak: Soak, setpoint_c: float, ambient_c: float, band_k: float
 
 
 class SoakTo:
-    """Hold until the surface has stayed within ``within_k`` of ``target_c`` for ``for_s``, or until time is up."""
+    """Hold until the surface has stayed within ``within_k`` of ``target_c`` for ``for_s``, or time has run out."""
 
     def __init__(self, target_c: float, within_k: float, for_s: float, at_most_s: float) -> None:
         """Temperatures in degC and K, times in s."""
@@ -82,10 +82,10 @@ class SoakTo:
 
 
 class HeatUp:
-    """Bring the surface near a temperature in rolling contact, so that the conditions there only have to soak."""
+    """Bring the surface near a temperature in rolling contact, so that conditions at it only need a soak."""
 
     def __init__(self, step: Heat, wheel_speed_m_s: float, load_n: float, within_k: float, offset_k: float) -> None:
-        """``offset_k``: how far below the setpoint rolling is held (slip pulses then rise through the setpoint)."""
+        """``offset_k``: distance of rolling below the setpoint (slip pulses then rise through the setpoint)."""
         self.target_c = step.temperature_c
         self.soak = SoakTo(step.temperature_c - offset_k, within_k, 0.0, HEAT_AT_MOST_S)
         self.rolling_at = (wheel_speed_m_s, min(load_n, HEAT_LOAD_N))
@@ -117,10 +117,10 @@ class HeatUp:
         return True
 
     def _note_balance(self, ctx: Context) -> None:
-        """Record this heating's evidence on ``observer.thermal``: heat put in over heat shown, where there was enough.
+        """Record this heating as evidence on ``observer.thermal``: heat put in over heat shown, if both are large enough.
 
-        After a hold, or with a person at the wheel, it is not comparable and not reported. With its data it is evidence
-        for runs to come (tester.kinds.wheel_on_belt.run.past_runs).
+        A heating with a hold, or with a person at the wheel, is not comparable and not recorded. Later runs use the
+        event's data as evidence (tester.kinds.wheel_on_belt.run.past_runs).
         """
         start, end = self.start, _heat(ctx)
         if start is None or end is None or start.begun != end.begun:
@@ -132,7 +132,7 @@ class HeatUp:
 
 
 class _Heat(NamedTuple):
-    """The heat balance at a moment: heat put in and shown, J, since its ``begun``th beginning, and the hub, degC."""
+    """The heat balance at a time: heat put in and shown, J, since its ``begun``-th restart, and the hub, degC."""
 
     begun: int
     put_j: float
@@ -148,7 +148,7 @@ def _heat(ctx: Context) -> _Heat | None:
 
 
 class RestStep:
-    """Stand lifted, heat and drives off, for a time and until the surface is cool."""
+    """Stand lifted, with heat and drives off, for a time and until the surface is cool."""
 
     def __init__(self, step: Rest, *, ask_when_late: bool) -> None:
         """``ask_when_late``: a real rig asks a person once the longest time is over."""
@@ -161,7 +161,7 @@ class RestStep:
         self.ask_when_late = ask_when_late
 
     def resume(self, ctx: Context) -> None:
-        """Resume standing, or coming to a stand."""
+        """Resume standing, or stopping."""
         self.moves.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
@@ -178,7 +178,7 @@ class RestStep:
             self.shown_s = ctx.now + SHOW_S
             minutes = f"{waited / 60:.0f} of {self.rest.at_least_s / 60:.0f} min"
             ctx.progress.phase = f"rest {minutes}, surface {surface:.1f} degC"
-        # Resting only cools: a laboratory colder than `until` is not a reason to wait.
+        # Resting only cools: a surface colder than `until`, in a cold laboratory, is no reason to wait.
         cool = until is None or surface <= until + self.rest.within_k
         if waited >= self.rest.at_least_s and cool:
             return True
@@ -192,7 +192,7 @@ class RestStep:
 
 
 class CoolDown:
-    """Turn unloaded, heat off, until the hub is cool enough to touch."""
+    """Turn unloaded, with heat off, until the hub is cool enough to touch."""
 
     def __init__(self, step: Cool, creep_m_s: float) -> None:
         """``creep_m_s``: line speed while cooling."""
@@ -203,11 +203,11 @@ class CoolDown:
         self.shown_s = float("-inf")
 
     def resume(self, ctx: Context) -> None:
-        """Resume turning, or beginning to."""
+        """Resume turning, or starting to turn."""
         self.moves.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
-        """Done when cool, or out of time (the prompt to install follows and shows the temperature)."""
+        """Done when cool, or out of time (the following prompt to install shows the temperature)."""
         ctx.demand.surface_c = float("nan")
         if not self.turning:
             self.turning = self.moves.step(ctx)

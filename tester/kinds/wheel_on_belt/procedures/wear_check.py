@@ -1,10 +1,10 @@
-"""Checks of the wheel's diameter: by rolling at a light load, or a number that a person has measured.
+"""Checks of the wheel's diameter: by rolling at a light load, or by a person's measurement.
 
-Rolling, at equal load, the press is deeper by the lost radius. Other causes of its motion are subtracted or stated:
-the load in the check (its mean is corrected to the nominal one by the contact's stiffness), the cell's zero (a tare
-just before), runout (whole turns), and heat, which makes the wheel grow: every check is brought back to the reference
-temperature with the rig file's ``wear.growth``, so that cold is compared with cold. A wheel's first roll check is the
-reference of those after it.
+In rolling at equal load, the press is deeper by the lost radius. Other causes of its motion are corrected or limited:
+the load in the check (its mean is corrected to the nominal load by the contact's stiffness), the cell's zero (a tare
+just before), runout (whole turns), and growth by heat: every check is corrected to the reference temperature with the
+rig file's ``wear.growth``, so that cold diameters are compared. A wheel's first roll check is the reference of its
+later checks.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, Whe
 from tester.machine.motions import Power, Sequence, Settle
 
 TARE_WAIT_S: Final = 0.4
-"""From lifted to the first reading of the tare, s [A]: the cell's filter."""
+"""Time from lifted to the first reading of the tare, s [A]: the cell's filter."""
 TARE_S: Final = 1.0
 LARGER_BY: Final = 3.0
-"""A wheel that measures larger than at the check before by more than this many standard uncertainties has not grown:
-that check is not used [A]."""
+"""A check is not used if the wheel measures larger than at the previous check by more than this many standard
+uncertainties [A]."""
 CLEAR_BY: Final = 4.0
-"""A loss of this many standard uncertainties gives a usable rate of the wheel [A]: to 25 %."""
+"""A loss of this many standard uncertainties gives a usable wear rate, to 25 % [A]."""
 QUESTION: Final = "measure the wheel's diameter and answer with it, such as 89.62 mm (yes: not measured)"
 
 
 class RollCheck:
-    """Measure the loss of diameter by rolling, corrected for load and temperature; ``before``: the condition to come.
+    """Measure the loss of diameter by rolling, corrected for load and temperature; ``before``: the next condition.
 
-    Done when the check is in the record and the wheel's estimated loss is corrected by it.
+    Done when the check is in the record and has corrected the wheel's estimated loss.
     """
 
     def __init__(self, before: int = NO_CONDITION) -> None:
@@ -106,7 +106,7 @@ class CheckByRolling:
         """Done when the check is in the record."""
         if self.moves is None:
             speed = self.wheel_speed_m_s
-            # A zero that has wandered too far is not taken: the tare of the repeat that follows ends the run with it.
+            # A zero that has drifted too far is not taken: the tare of the next repeat then ends the run.
             tare = TakeTare(TARE_S, self.reference_tare, ends_run=False)
             self.moves = Sequence(
                 Power(True), Lift(), Straighten(), Turn(speed, speed), Settle(TARE_WAIT_S), tare, Load(ROLL_CHECK_N),
@@ -116,19 +116,19 @@ class CheckByRolling:
 
 
 class CheckByPerson:
-    """Ask for the wheel's diameter; an answer with a number is a check, any other means that none was measured."""
+    """Ask for the wheel's diameter; an answer with a number is a check, any other answer means no measurement."""
 
     def __init__(self, before: int = NO_CONDITION) -> None:
-        """``before``: the condition to come."""
+        """``before``: the next condition."""
         self.before = before
         self.ask = AskAtRest(QUESTION)
 
     def resume(self, ctx: Context) -> None:
-        """Resume coming to rest."""
+        """Resume stopping."""
         self.ask.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
-        """Done when it is answered; an answer that cannot be the diameter is asked for again."""
+        """Done when it is answered; after an impossible diameter the question is repeated."""
         if not self.ask.step(ctx):
             return False
         asked = self.ask.ask
@@ -156,11 +156,11 @@ class CheckByPerson:
 
 
 MORE_THAN_NEW_MM: Final = 2.0
-"""A wheel may measure this much more than a new one of the rig file, mm [A]: moulds differ."""
+"""Greatest excess of a wheel over the rig file's new wheel, mm [A]: moulds differ."""
 
 
 def measured_mm(answer: str) -> float | None:
-    """Return the number of an answer such as ``89.62 mm`` or ``89,62``; None where there is none."""
+    """Return the number in an answer such as ``89.62 mm`` or ``89,62``; None without a number."""
     match = re.fullmatch(r"\s*(\d{1,4}(?:[.,]\d{1,6})?)\s*(?:mm)?\s*", answer, re.ASCII)
     return float(match[1].replace(",", ".")) if match is not None else None
 
@@ -169,7 +169,7 @@ def conclude(
     ctx: Context, before: int, method: str, loss_mm: float, u_mm: float, *, reference_s: float, rubber_c: float,
     press_mm: float = NAN, load_n: float = NAN,
 ) -> None:  # fmt: skip
-    """Record a check, and use its loss of diameter from now on if it is trustworthy.
+    """Record a check, and use its loss of diameter from now on if the check is trustworthy.
 
     ``loss_mm``, ``u_mm``: loss of diameter since ``reference_s``, and its standard uncertainty.
     """
@@ -209,10 +209,9 @@ def conclude(
 
 
 def _learn_rate(wheel: WheelLife, check: WearCheck) -> None:
-    """Use the rate that two checks have shown, where it is clear of their uncertainty.
+    """Use the wear rate between two checks if the loss clearly exceeds their uncertainty.
 
-    A wrong rate makes the wheel slip unseen where its speed is to match the belt's: the line speed is computed from
-    the estimated diameter.
+    A wrong rate causes unseen slip at matched speeds, because the line speed is computed from the estimated diameter.
     """
     last = wheel.last_check
     if last is None or last.reference_s != check.reference_s or check.exposure_n_m <= last.exposure_n_m:

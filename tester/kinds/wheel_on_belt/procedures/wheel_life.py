@@ -1,9 +1,8 @@
 """The wheel on the rig, and its two diameters.
 
-*Cold* is the diameter at ``wear.reference``, as a calliper finds it there: that of the rig file, of every record and
-of every check. Only wear changes it. *Warm* is the diameter it runs with, grown by its heat: rim speed, slip, distance
-slid and the place of touch follow from it. ``Readings`` has them as ``cold_mm`` and ``diameter_mm``, updated here in
-every scan.
+*Cold* is the diameter at ``wear.reference``, as a calliper measures it there. The rig file, every record and every check
+use it; only wear changes it. *Warm* is the running diameter, grown by heat: rim speed, slip, distance slid and the place
+of touch follow from it. ``Readings`` has them as ``cold_mm`` and ``diameter_mm``, updated here in every scan.
 """
 
 from __future__ import annotations
@@ -18,27 +17,27 @@ from tester.kinds.wheel_on_belt.rig.sections import GeometryConfig, WearConfig
 
 _INF: Final = inf
 SAME_SIZE_K: Final = 0.25
-"""A change of the rubber's temperature that is waited for, K [A]: 2 um, 0.02 mm/s at 0.8 m/s. The thermometer's noise
-would otherwise send the drives a new command in every scan."""
+"""Least change of the rubber's temperature that updates the diameter, K [A]: 2 um, 0.02 mm/s at 0.8 m/s. Otherwise the
+thermometer's noise would change the drives' commands in every scan."""
 
 
 def rubber_c(hub_c: float, surface_c: float) -> float:
-    """Return the rubber's mean temperature, degC, from those of hub and surface by halves.
+    """Return the rubber's mean temperature, degC: half hub and half surface.
 
-    In steady heat flow temperature falls nearly evenly through the layer. Friction warms the surface before the layer,
-    the jacket the hub: over the recipe ``wear`` on the simulated rig this mean explains the loaded wheel's growth to
-    0.009 mm (rms; 0.03 mm at most). Weights of 0.4 or 0.6 leave 0.02 mm; a lag of half a minute gains little.
+    In steady heat flow temperature falls nearly evenly through the layer. Friction warms the surface first, and the
+    jacket the hub; still, over the recipe ``wear`` on the simulated rig this mean explains the loaded wheel's growth
+    to 0.009 mm (rms; 0.03 mm at most). Weights of 0.4 or 0.6 leave 0.02 mm; a lag of half a minute helps little.
     """
     return 0.5 * (hub_c + surface_c)
 
 
 @dataclass(frozen=True, slots=True)
 class CheckReference:
-    """The first roll check of a wheel: its time, the press's position, and the estimated loss by then."""
+    """The first roll check of a wheel: its time, the press's position, and the estimated loss at that time."""
 
     at_s: float
     press_mm: float
-    """Where it would have stood at the nominal load with the wheel cold."""
+    """The press's position, corrected to the nominal load and a cold wheel."""
     loss_mm: float
 
 
@@ -55,26 +54,26 @@ class WheelLife:
     wheel: int = 0
     compound: str = ""
     installed_mm: float = nan
-    """Cold, as new."""
+    """Cold diameter of the wheel when new."""
     width_mm: float = 30.0
     loss_mm: float = 0.0
     """Estimated loss of diameter since installation, mm."""
     grown_mm: float = 0.0
-    """What the diameter has gained by heat, mm; below 0 under the reference temperature. 0 until a temperature is
-    known: without one nothing is started."""
+    """Growth of the diameter by heat, mm; below 0 under the reference temperature; 0 until a temperature is known
+    (nothing starts before that)."""
     rubber_c: float = nan
-    """Mean temperature of the rubber that this is for."""
+    """Mean temperature of the rubber for this growth."""
     sliding_m: float = 0.0
     rate_mm3_per_n_m: float = 0.0
     """Wear rate from checks of this wheel; 0: none yet, the rig file's rate is used."""
     exposure_n_m: float = 0.0
-    """Normal force times distance slid since installation: what wear is proportional to."""
+    """Normal force times distance slid since installation; wear is proportional to it."""
     condition: int = 0
-    """The last condition that was measured with it; 0: none yet."""
+    """The last condition measured with this wheel; 0: none yet."""
     reference: CheckReference | None = None
-    """The first roll check since the wheel was put on, which later ones are held against."""
+    """The first roll check since the wheel was mounted: the reference for later checks."""
     by_hand_s: float = nan
-    """When a person measured it first."""
+    """Time of a person's first measurement."""
     last_check: WearCheck | None = None
 
     @property
@@ -93,7 +92,7 @@ class WheelLife:
     def show(self, r: Readings, wear: WearConfig) -> None:
         """Write both diameters, from the newest temperatures, to the process image.
 
-        While hub or surface is not known, the wheel keeps what it had gained: rubber cools slowly.
+        While hub or surface is unknown, the wheel keeps its growth: rubber cools slowly.
         """
         if r.surface_valid and r.jacket_valid:
             mean_c = rubber_c(r.hub_c, r.surface_c)
@@ -108,7 +107,7 @@ def wheel_of(
     geometry: GeometryConfig, specimen: int = 0, replicate: int = 0, wheel: int = 0, compound: str = "",
     diameter_mm: float = nan,
 ) -> WheelLife:  # fmt: skip
-    """Return a wheel of a rig's size; ``diameter_mm``: cold, where it is worn already."""
+    """Return a wheel of a rig's size; ``diameter_mm``: the cold diameter of a worn wheel."""
     new_mm = geometry.wheel_diameter_mm
     loss_mm = new_mm - diameter_mm if isfinite(diameter_mm) else 0.0
     return WheelLife(specimen, replicate, wheel, compound, new_mm, geometry.wheel_width_mm, loss_mm)

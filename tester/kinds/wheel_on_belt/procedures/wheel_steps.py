@@ -1,4 +1,4 @@
-"""Steps around a wheel: install it, show its contact, grind it in."""
+"""Steps around a wheel: install it, check its contact, grind it in."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ REFERENCE_TARE_S: Final = 2.0
 
 
 class ShowContact:
-    """Take the zero and sweep the first contact: a person has mounted the wheel, or been at it or at the belt."""
+    """Take the zero and sweep the first contact after a person was at the wheel or the belt."""
 
     def __init__(self, reference_tare: list[float]) -> None:
         """``reference_tare``: the wheel's first zero; filled where it is empty."""
@@ -35,7 +35,7 @@ class ShowContact:
         self.tare = None
 
     def step(self, ctx: Context) -> bool:
-        """Done when shown, or when the zero is not to be trusted: nothing is pressed by it."""
+        """Done when the contact is checked, or when the zero is not trustworthy: no load is applied with it."""
         ctx.demand.surface_c = float("nan")
         if self.tare is None:
             self.tare = TakeTare(REFERENCE_TARE_S, self.reference)
@@ -72,7 +72,7 @@ class InstallWheel:
             self._begin_contact()
 
     def step(self, ctx: Context) -> bool:
-        """Done when mounted and tared."""
+        """Done when the wheel is mounted and the cell tared."""
         ctx.demand.surface_c = float("nan")
         if not self.mounted:
             self.mounted = self.ask.step(ctx)
@@ -115,19 +115,19 @@ class InstallWheel:
         )  # fmt: skip
 
     def _back_on(self, ctx: Context) -> bool:
-        """Put the last wheel of the specimen back on and return True; return False without one."""
+        """Mount the specimen's last wheel again and return True; return False without a wheel."""
         step = self.install
         wheel = ctx.shelf.pop((step.specimen, step.replicate), None)
         if wheel is None:
             return False
         ctx.attendant.mount_again(wheel.specimen, wheel.wheel, wheel.compound, wheel.cold_mm, wheel.sliding_m)
-        # The press's place at its first check does not apply to a wheel that was off.
+        # Remounting invalidates the press's position from the first check.
         ctx.put_on(replace(wheel, reference=None, last_check=None))
         ctx.view.wheel_changed(ctx.now)
         return True
 
     def _remount(self, ctx: Context, worn: Mounted) -> None:
-        """Resume with a wheel as the store knows it: its record, its first tare and its number stay."""
+        """Resume with a wheel from the store: it keeps its record, its first tare and its number."""
         step = self.install
         ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
         wheel = wheel_of(
@@ -148,7 +148,7 @@ class Grind:
         self.counting = False
 
     def step(self, ctx: Context) -> bool:
-        """Done when the whole time has been ground."""
+        """Done when the whole grinding time has passed."""
         ctx.moving = True
         ready = speeds_reached(ctx) and abs(ctx.gates.load.value - self.load_n) <= 0.02 * self.load_n
         if ready and self.counting:
@@ -159,7 +159,7 @@ class Grind:
 
 
 class PreGrindStep:
-    """Run a new wheel in: 4 min at 0.8 / 0.6 m/s and 200 N in the paper (its section 2.2.2)."""
+    """Grind a new wheel in: 4 min at 0.8 / 0.6 m/s and 200 N in the paper (its section 2.2.2)."""
 
     def __init__(self, step: PreGrind, reference_tare: list[float] | None = None) -> None:
         """The step of the plan; ``reference_tare``: the wheel's first zero, None where it has none."""
@@ -183,7 +183,7 @@ class PreGrindStep:
         )
 
     def resume(self, ctx: Context) -> None:
-        """Touch again and grind for what is left of the time."""
+        """Touch again and grind for the remaining time."""
         self.grind.counting = False
         self.moves = self._moves()
 

@@ -1,6 +1,6 @@
 """A check of the load cell's zero after long contact: between two steps in contact, never in a repeat or a soak.
 
-Every repeat lifts and takes its zero first; heating up, soaks and pre-grinding keep the contact all the time.
+Every repeat lifts and takes its zero first; heating up, soaks and pre-grinding keep the contact throughout.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from tester.machine.motions import Sequence, Settle
 TARE_S: Final = 1.0
 """Averaging time of the zero, s [A]: about three turns."""
 SETTLE_S: Final = 0.4
-"""The cell settles this long after lifting, s [A]."""
+"""Settling time of the cell after lifting, s [A]."""
 
 
 def contact_s(ctx: Context) -> float:
-    """Return for how long the wheel has been in contact without a break, s; 0 where it is not."""
+    """Return the time of uninterrupted contact so far, s; 0 without contact."""
     return max(0.0, ctx.now - ctx.gates.touched_s)
 
 
@@ -41,7 +41,7 @@ class ZeroCheck:
         self.moves = Sequence()
 
     def step(self, ctx: Context) -> bool:
-        """Done when lifted with the new zero; raises MoveFailedError where it has moved further than it may."""
+        """Done when lifted with the new zero; raises MoveFailedError if the zero has drifted too far."""
         if self.tare is None:
             self.after_s = contact_s(ctx)
             speed = self.wheel_speed_m_s

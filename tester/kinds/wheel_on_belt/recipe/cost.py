@@ -1,7 +1,7 @@
-"""Cost of measuring one condition: closed formulas, looked up again by setpoint and settings.
+"""Cost of measuring one condition: closed formulas, cached by setpoint and settings.
 
-How long a slip pulse may last follows from the rise of a half-space under friction, which goes with the square root
-of time (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: 2 q sqrt(t / pi) / sqrt(k rho c)).
+The length of a slip pulse follows from the rise of a half-space under friction, proportional to the square root of
+time (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: 2 q sqrt(t / pi) / sqrt(k rho c)).
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
 
 ROLLING_M_S = 1e-9
-"""Slower slip than this is none: the wheel rolls, in one contact a repeat."""
+"""Slower slip counts as none: the wheel rolls, in one contact per repeat."""
 
 
 class ConditionMotion(NamedTuple):
-    """Speeds and times of a condition, whatever its load and temperature: a grid has few of them."""
+    """Speeds and times of a condition that do not depend on load and temperature: a grid has few of them."""
 
     model: laws.FrictionLaw | None
     cornering: float
     """Factor of the coefficient at the sideslip angle."""
     slip_m_s: float
-    """Resultant."""
+    """Resultant slip speed."""
     turn_s: float
     soak_s: float
-    """Before the first repeat."""
+    """Soak before the first repeat."""
     window_s: float
-    """Collected a repeat, extensions included."""
+    """Time collected per repeat, extensions included."""
     edge_s: float
     """Sliding in a pulse that does not count."""
     repeat_s: float
@@ -49,15 +49,15 @@ class ConditionMotion(NamedTuple):
     moves_s: float
     """Moves around a pulse, beyond those around a repeat."""
     repeats: float
-    """Expected, with those made up for."""
+    """Expected number of repeats, with replacements."""
     run_in_s: float
-    """Sliding after reversals, of a repeat in the mean."""
+    """Mean sliding after reversals, per repeat."""
     swing_k: float
     """Rise during a pulse that starts below the setpoint and ends as far above it."""
 
 
 def _run_in_s(how: WheelSettings, repeats: float, slip_m_s: float) -> float:
-    """Return the sliding, s a repeat, that goes before a repeat after each reversal: once a pair, and once more."""
+    """Return the mean run-in sliding per repeat, s: one reversal per pair of repeats, and once more."""
     if not how.run_in_m or slip_m_s < ROLLING_M_S:
         return 0.0
     return how.run_in_m / slip_m_s * (0.5 * repeats + 1.0) / repeats
@@ -69,7 +69,7 @@ class ConditionCosts:
     def __init__(
         self, rig: RigConfig, constants: EstimateConstants, repeatability: Mapping[str, float] | None = None
     ) -> None:
-        """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
+        """Compute all that depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
         self.repeatability = repeatability or {}
         believed = rig.observer
         thermal = believed.thermal
@@ -91,18 +91,18 @@ class ConditionCosts:
         self._motions: dict[tuple[object, ...], ConditionMotion] = {}
 
     def mu(self, compound: str, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> float:
-        """Return the friction coefficient expected; a round figure for a compound without a model."""
+        """Return the expected friction coefficient; a round figure for a compound without a model."""
         model = self.models.get(compound)
         if model is None:
             return self.constants.unknown_mu
         return model.mu(temperature_c, load_n, slip_m_s) * cornering_factor(compound, sideslip_deg)
 
     def s_percent(self, compound: str) -> float:
-        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        """Return the expected standard deviation between repeats, per cent of the coefficient."""
         return self.repeatability.get(compound, HISTORIC_PERCENT)
 
     def ground_mm(self, load_n: float, sliding_m: float) -> float:
-        """Return the loss of diameter, mm, of sliding a distance (m) under a load (N)."""
+        """Return the loss of diameter, mm, from sliding a distance (m) under a load (N)."""
         return self.loss_mm_per_nm * load_n * sliding_m
 
     def of(self, setpoint: Setpoint, how: WheelSettings) -> StepEstimate:
@@ -178,7 +178,7 @@ class ConditionCosts:
         )
 
     def _cooling(self, temperature_c: float, heat_w: float) -> float:
-        """Return the seconds of waiting per second of sliding, in which the surface comes back below the setpoint."""
+        """Return the seconds of cooling below the setpoint, per second of sliding."""
         c = self.constants
         above_k = max(temperature_c - self.offset_k - self.ambient_c, 1.0)
         heat_w -= c.carried_w + c.near_carried_wk / above_k
@@ -189,7 +189,7 @@ class ConditionCosts:
         return c.cooling_per_j * heat_w * (1.0 + c.near_k / (above_k + c.near_shift_k))
 
     def _bursts(self, motion: ConditionMotion, how: WheelSettings, rise_k: float) -> tuple[int, float, bool]:
-        """Return bursts a repeat, seconds counted a repeat, and whether the temperature holds for a revolution.
+        """Return bursts per repeat, seconds counted per repeat, and whether the temperature holds for a revolution.
 
         ``rise_k`` is the surface's rise in K per square root of a second.
         """
@@ -201,13 +201,13 @@ class ConditionCosts:
         each_s = (motion.swing_k / rise_k) ** 2 - edge_s
         few_s = c.few_turns * turn_s
         if each_s < few_s:
-            # ... or, where that is over too soon, from below the band to its top.
+            # ... or, if that is too short, from below the band to its top.
             whole_s = ((2.0 * how.temperature_band_k + c.below_band_k) / rise_k) ** 2
             counted_s = whole_s - max(edge_s, (c.below_band_k / rise_k) ** 2)
             each_s = max(each_s, min(counted_s, few_s))
         if each_s < turn_s:
             return c.bursts_tried, 0.0, False
-        # A pulse that warms ends at half the window, so that a second rise tells temperature from time.
+        # A warming pulse ends at half the window, so that a second rise separates temperature from time.
         least_s = window_s / REPEAT_WINDOWS
         if rise_k * math.sqrt(0.5 * least_s) > c.half_rise_k:
             least_s *= 0.5

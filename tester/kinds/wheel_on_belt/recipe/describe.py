@@ -86,7 +86,7 @@ def totals(plan: WheelPlan, estimate: Estimate) -> Iterator[str]:
 
 
 TOLD_APART_PERCENT = (10.0, 5.0)
-"""Differences of two compounds for which a plan says beforehand what they take."""
+"""Differences of two compounds for which a plan states the number of wheels beforehand."""
 
 
 def _telling(plan: WheelPlan) -> Iterator[str]:
@@ -112,7 +112,7 @@ def _both_directions(plan: WheelPlan) -> Iterator[str]:
 
 
 def _references(plan: WheelPlan) -> Iterator[str]:
-    """Yield how often the reference condition is measured, and at what: its axes may be defaults."""
+    """Yield how often the reference condition is measured, and its setpoint, which may contain defaults."""
     first = next((step for step in plan.conditions() if step.reference), None)
     if first is not None:
         held = condition_words(first.setpoint, compound=False)
@@ -174,7 +174,7 @@ def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
 
 
 def condition_fields(step: ConditionStep, one: StepEstimate) -> dict[str, object]:
-    """Return a condition's fields in a plan's JSON beside those of every kind."""
+    """Return a condition's fields in a plan's JSON, besides those common to all kinds."""
     assert isinstance(step, WheelCondition)
     return {
         "wheel": step.wheel,
