@@ -1,8 +1,8 @@
 """A wheel's first contact: at a small load the belt goes above and below the wheel's speed; friction must reverse.
 
 Friction is zero while the wheel rolls as fast as the belt. If it keeps its sign while the belt goes from slightly
-faster to slightly slower than the wheel, one of the speeds is wrong: a drive turns the wrong way, its scale is wrong, or the
-wheel has another diameter. The check finds each at a load that a hand could hold.
+faster to slightly slower than the wheel, one of the speeds is wrong: a drive turns the wrong way, its scale is wrong,
+or the wheel has another diameter. The check finds each at a load that a hand could hold.
 """
 
 from __future__ import annotations

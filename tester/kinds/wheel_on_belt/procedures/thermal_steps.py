@@ -27,7 +27,7 @@ SHOW_S: Final = 1.0
 
 
 def roll(wheel_speed_m_s: float, load_n: float) -> Sequence:
-    """Return the moves into rolling contact: drives on, straight, matched speeds, load; no slip and little friction heat."""
+    """Return the moves into rolling contact: drives on, straight, matched speeds, load; little friction heat."""
     return Sequence(Power(True), Straighten(), Turn(wheel_speed_m_s, wheel_speed_m_s), Load(load_n))
 
 
@@ -117,7 +117,7 @@ class HeatUp:
         return True
 
     def _note_balance(self, ctx: Context) -> None:
-        """Record this heating as evidence on ``observer.thermal``: heat put in over heat shown, if both are large enough.
+        """Record this heating as evidence on ``observer.thermal``: heat put in over heat shown, if it is large enough.
 
         A heating with a hold, or with a person at the wheel, is not comparable and not recorded. Later runs use the
         event's data as evidence (tester.kinds.wheel_on_belt.run.past_runs).

@@ -1,8 +1,8 @@
 """The wheel on the rig, and its two diameters.
 
-*Cold* is the diameter at ``wear.reference``, as a calliper measures it there. The rig file, every record and every check
-use it; only wear changes it. *Warm* is the running diameter, grown by heat: rim speed, slip, distance slid and the place
-of touch follow from it. ``Readings`` has them as ``cold_mm`` and ``diameter_mm``, updated here in every scan.
+*Cold* is the diameter at ``wear.reference``, as a calliper measures it there. The rig file, all records and all checks
+use it; only wear changes it. *Warm* is the running diameter, grown by heat: rim speed, slip, distance slid and place of
+touch follow from it. ``Readings`` has them as ``cold_mm`` and ``diameter_mm``, updated here in every scan.
 """
 
 from __future__ import annotations

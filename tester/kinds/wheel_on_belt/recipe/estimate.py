@@ -1,6 +1,6 @@
 """Estimates of a plan's duration, wear and temperatures: closed formulas, no simulation.
 
-The times are sums of the moves that the executor makes; those of a condition are in ``.cost``.
+Times are sums of the executor's moves; the times of conditions are in ``.cost``.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ if TYPE_CHECKING:
 
 
 def predicted_loss_mm(step: WheelCondition, rig: RigConfig) -> float:
-    """Return the loss of diameter, mm, that a condition is expected to cost."""
+    """Return the expected loss of diameter in a condition, mm."""
     return WheelEstimator(rig).condition(step).loss_mm
 
 
 def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float, float]:
-    """Return the time, s, by which precisions that depend on a run's own deviation may be reached sooner and later."""
+    """Return how much sooner and later, s, precisions that depend on a run's own deviation may be reached."""
     sooner_s = later_s = 0.0
     least, most = SURE
     for step, estimate in zip(plan.steps, steps, strict=True):
@@ -56,7 +56,7 @@ def _precision_range_s(plan: Plan, steps: Sequence[StepEstimate]) -> tuple[float
 
 
 class WheelEstimator(Estimator):
-    """Estimates for one rig; the costs of conditions are remembered."""
+    """Estimates for one rig; the costs of conditions are cached."""
 
     def __init__(
         self,
@@ -64,15 +64,15 @@ class WheelEstimator(Estimator):
         constants: EstimateConstants = CONSTANTS,
         repeatability: Mapping[str, float] | None = None,
     ) -> None:
-        """Work out what depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
+        """Compute all that depends on the rig alone. ``repeatability``: s between repeats, per cent, by compound."""
         self.constants = constants
         self.ambient_c = rig.ambient_c
         self.diameter_mm = rig.geometry.wheel_diameter_mm
         self.check_u_mm = math.sqrt(2.0) * roll_check_u_mm(rig)
-        """Of a loss between two roll checks, standard."""
+        """Standard uncertainty of a loss between two roll checks."""
         self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
         self.parts = rig.simulated
-        """Each specimen, and each replicate of it, is a part of the run, on a rig of its own."""
+        """Whether each replicate of each specimen is a part of the run, on its own simulated rig."""
         self.person_s = 0.0 if rig.simulated else constants.person_s
         self.body = Body(rig)
         self.costs = ConditionCosts(rig, constants, repeatability)
@@ -110,7 +110,7 @@ class WheelEstimator(Estimator):
             if place in starts:
                 body_c, before = self.ambient_c, Before(self.ambient_c)
             if cold_rubber and isinstance(step, Rest):
-                estimate = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub below it
+                estimate = StepEstimate(step.at_least_s)  # new rubber is at ambient, whatever the hub's temperature
             else:
                 if isinstance(step, Install):
                     compound = step.compound
@@ -124,8 +124,8 @@ class WheelEstimator(Estimator):
     def _checks_s(self, plan: Plan, place: int, step: Step) -> float:
         """Return the time of a step's roll checks, s.
 
-        A new wheel is checked as it is mounted, each condition at its beginning, and the wheel once more after its
-        last condition (``WheelProcedures``).
+        A new wheel is checked when it is mounted, then before each condition, and once more after its last condition
+        (``WheelProcedures``).
         """
         behind = (plan.steps[at] for at in range(place + 1, len(plan.steps)))
         follower = next((later for later in behind if isinstance(later, WheelCondition | Install)), None)
@@ -142,16 +142,16 @@ class WheelEstimator(Estimator):
         return self.constants.roll_check_s + ROLL_CHECK_TURNS * turn_s
 
     def _in_parts(self, plan: Plan) -> bool:
-        return self.parts and not (isinstance(plan, WheelPlan) and plan.references)  # that of manual mode is plain
+        return self.parts and not (isinstance(plan, WheelPlan) and plan.references)  # manual mode has a plain plan
 
     def _part_starts(self, plan: Plan) -> set[int]:
-        """Return the positions of the steps with which further parts begin: each is on a rig of its own, at ambient."""
+        """Return the positions of the first steps of further parts: each is on its own rig, at ambient."""
         if not self._in_parts(plan):
             return set()
         return set(starts_of(plan.steps, lambda install: (install.specimen, install.replicate))[1:])
 
     def _until(self, before: Before, step: WheelCondition, estimate: StepEstimate) -> StepEstimate:
-        """Return an estimate with the repeats that a precision takes early in a run, when few repeats are pooled."""
+        """Return an estimate with the repeats for a precision early in a run, when few repeats are pooled."""
         repeats, each = estimate.repeats, step.scheme.repeats_each
         if estimate.held and before.pooled < POOLED_DF:
             repeats = each * expected(step, self.costs.s_percent(step.setpoint.compound), before.pooled)
@@ -170,10 +170,10 @@ class WheelEstimator(Estimator):
         )
 
     def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        """Return the range of the rig time, s, that is to hold 95 % of runs.
+        """Return the expected range of rig time, s, for 95 % of runs.
 
-        Waits for temperatures follow the thermometer's bias, which is the same all session, so they add up. Repeats
-        made up for are independent (Poisson). A precision's repeats follow the run's own deviation.
+        Waits for temperatures depend on the thermometer's bias, which is constant in a session, so their deviations add
+        up. Replacement repeats are independent (Poisson). A precision's repeats depend on the run's own deviation.
         """
         seconds, waits_s, scattered = 0.0, down_s, 0.0
         for estimate in steps:
@@ -188,11 +188,11 @@ class WheelEstimator(Estimator):
         return low, seconds + (self.constants.waits_most - 1.0) * waits_s + later_s + 2.0 * math.sqrt(scattered)
 
     def s_percent(self, compound: str) -> float:
-        """Return the standard deviation between repeats that is expected, per cent of the coefficient."""
+        """Return the expected standard deviation between repeats, per cent of the coefficient."""
         return self.costs.s_percent(compound)
 
     def mu(self, setpoint: Setpoint) -> float | None:
-        """Return the coefficient expected at a setpoint; None where it rolls."""
+        """Return the expected coefficient at a setpoint; None without slip."""
         sp = held_by(setpoint)
         slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
         if slip_m_s < ROLLING_M_S:
@@ -200,7 +200,7 @@ class WheelEstimator(Estimator):
         return self.costs.mu(sp.compound, sp.temperature_c, sp.load_n, slip_m_s, sp.sideslip_deg)
 
     def outlooks(self, plan: Plan, steps: Sequence[StepEstimate]) -> Iterator[Outlook]:
-        """Yield how worn the wheel will be in the middle of each condition, and whether it is checked around it."""
+        """Yield the wheel's expected wear in the middle of each condition, and whether a check is next to it."""
         worn: dict[int, float] = {}
         wheel = 0
         for step, estimate in zip(plan.steps, steps, strict=True):
@@ -212,12 +212,12 @@ class WheelEstimator(Estimator):
                 yield Outlook(before_mm + 0.5 * estimate.loss_mm, checked=step.wear_check != "never")
 
     def reversible(self, step: ConditionStep) -> bool:
-        """Return whether a condition could be measured in both directions: it slides, and no angle is set."""
+        """Return whether a condition can be measured in both directions: it slides, without an angle."""
         slides = held_by(step.setpoint).slip_velocity_m_s != 0.0
         return slides and not any(step.setpoint.number(axis.name) for axis in POSITIONED)
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
-        """Return the coefficient expected, and what the instruments add to its uncertainty; None where it rolls."""
+        """Return the expected coefficient, and the instruments' part of its uncertainty; None without slip."""
         sp, mu = held_by(step.setpoint), self.mu(step.setpoint)
         if mu is None:
             return None
@@ -228,7 +228,7 @@ class WheelEstimator(Estimator):
         return mu, instruments_budget(sp, mu, slip_m_s, size, outlook.slope, both_directions=both)
 
     def shut_down_s(self, plan: Plan) -> float:
-        """Return the seconds from the last step to standstill: a hot jacket is cooled turning."""
+        """Return the seconds from the last step to standstill: a hot jacket cools while turning."""
         last: dict[tuple[int, int], WheelCondition] = {}
         parts = self._in_parts(plan)
         for step in plan.steps:
@@ -250,9 +250,9 @@ class WheelEstimator(Estimator):
     def _after_person(
         self, estimate: StepEstimate, step: WheelCondition, body_c: float, *, asked: bool
     ) -> StepEstimate:
-        """Return a condition's estimate with what a person at the wheel costs: cooling, their time, warming again.
+        """Return a condition's estimate with the cost of a person at the wheel: cooling, their time, warming again.
 
-        ``asked``: the cooling and the person are not in a prompt's step before it, but in the condition's own check.
+        ``asked``: cooling and person belong to the condition's own check, not to a prompt step before it.
         """
         seconds = estimate.seconds
         if asked:
@@ -262,7 +262,7 @@ class WheelEstimator(Estimator):
         return estimate._replace(seconds=seconds + warmed.seconds)
 
     def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
-        """Return the estimate of a question at the wheel: cooling while it turns, and its contact again."""
+        """Return the estimate of a question at the wheel: cooling while it turns, and its first contact again."""
         cool, body_c = self._preparation(TOUCH, "", body_c)
         return StepEstimate(cool.seconds + self.person_s + self.constants.install_s), body_c
 

@@ -1,7 +1,7 @@
-"""A recipe to a plan: conditions in their order (tester.inputs.recipe.conditions), with a wheel under each of them.
+"""Expansion of a recipe into a plan: ordered conditions (tester.inputs.recipe.conditions), each with its wheel.
 
-Wheels are changed only between conditions, before one whose predicted wear exceeds what is
-left, and at a temperature boundary where that costs no further wheel.
+Wheels are changed only between conditions: before a condition with more predicted wear than is left, and at a change
+of temperature if that needs no further wheel.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ if TYPE_CHECKING:
 def expand(recipe: WheelRecipe, rig: RigConfig, estimator: WheelEstimator | None = None) -> WheelPlan:
     """Return the plan of a valid recipe on a rig (its wear rate and geometry decide the wheel changes).
 
-    ``estimator``: for this rig, if the caller also estimates the plan; it remembers every condition.
+    ``estimator``: for this rig, if the caller also estimates the plan; it caches every condition.
     """
     return _Expansion(recipe, rig, estimator or WheelEstimator(rig)).plan()
 
 
 def change_points(losses: Sequence[Sequence[float]], first_mm: float, limit_mm: float) -> list[set[int]]:
-    """Return, for every block of conditions, the positions in it before which a new wheel is mounted.
+    """Return the positions of wheel changes in every block; the new wheel is mounted before that condition.
 
-    ``losses``: predicted loss of diameter (mm) of the conditions, block by block; ``first_mm``: what preparing a
-    wheel costs; ``limit_mm``: loss after which a wheel is replaced. A wheel always takes at least one condition.
+    ``losses``: predicted loss of diameter (mm) of the conditions, block by block; ``first_mm``: loss in a wheel's
+    preparation; ``limit_mm``: loss after which a wheel is replaced. A wheel always takes at least one condition.
     """
     sums = [0.0, *accumulate(loss for block in losses for loss in block)]
     fresh = limit_mm - first_mm
@@ -55,7 +55,7 @@ def change_points(losses: Sequence[Sequence[float]], first_mm: float, limit_mm: 
     for block in losses:
         points: set[int] = set()
         fits = sums[start + len(block)] - sums[start] <= room
-        # A block that does not fit: change at its beginning, where that costs no more wheels in the end.
+        # The block does not fit: change at its start if that needs no more wheels in total.
         if used and not fits and _changes(sums, start, fresh, fresh) < _changes(sums, start, room, fresh):
             points.add(0)
             room, used = fresh, False
@@ -97,7 +97,7 @@ class _Expansion:
         self.wheels: list[WheelWear] = []
         self.count = 0
         self.at_c: float | None = None
-        """Surface of the wheel that is on, as the last steps left it; None of a new one."""
+        """Surface temperature of the mounted wheel after the last steps; None for a new wheel."""
         self.every_condition = _prompts(recipe, "condition")
         self.every_temperature = _prompts(recipe, "temperature")
 
@@ -133,13 +133,13 @@ class _Expansion:
     def _replicate(
         self, specimen: Specimen, replicate: int, setpoints: list[Setpoint], costs: list[StepEstimate]
     ) -> None:
-        """Add all conditions of one replicate, on as many wheels as they wear; both lists go by row."""
+        """Add all conditions of one replicate, on as many wheels as they need; both lists are indexed by row."""
         blocks = ordered(self.conditions, self.held, self.recipe.order, specimen.index, replicate)
         watch = self.references.on_wheels
         if watch is not None:
             blocks = self.references.inserted(blocks, specimen.index, replicate)
             setpoint = Setpoint(specimen.compound, watch.values, self.recipe.axes)
-            # Row 0, where the lists wrap round: the reference is the last of both.
+            # Row 0 is the reference, the last entry of both lists (index -1).
             setpoints, costs = [*setpoints, setpoint], [*costs, self.estimator.costs.of(setpoint, watch.settings)]
         losses = [[costs[condition.row - 1].loss_mm for condition in block] for block in blocks]
         wheel = self._new_wheel(specimen, replicate, None)
@@ -181,7 +181,7 @@ class _Expansion:
         return wheel
 
     def _on_reserved(self, reserved: ReservedWheel) -> None:
-        """Measure the reference condition on the wheel that is reserved for it."""
+        """Measure the reference condition on its reserved wheel."""
         condition, specimen = self.references.condition, self.references.specimens[0]
         assert condition is not None
         held_c = self.held(condition.values)
@@ -195,7 +195,7 @@ class _Expansion:
         self._measure(wheel, condition, setpoint, self.estimator.costs.of(setpoint, condition.settings), reference=True)
 
     def _exchanged(self, wheel: WheelWear, specimen: Specimen, held_c: float) -> None:
-        """Put the reserved wheel on for a reference, then the present one again."""
+        """Mount the reserved wheel for a reference, then the present wheel again."""
         assert self.references.reserved is not None
         self._on_reserved(self.references.reserved)
         self._remount(wheel, specimen, held_c)
@@ -232,7 +232,7 @@ class _Expansion:
         )  # fmt: skip
 
     def _add(self, steps: Iterable[WheelStep]) -> None:
-        """Add steps, numbered by their places."""
+        """Add steps, numbered in order."""
         self.steps += [replace(step, index=place) for place, step in enumerate(steps, start=len(self.steps))]
 
 

@@ -1,7 +1,7 @@
 """Checks of a recipe against the rig's limits; each problem has the position of the value and the source of the limit.
 
-It checks the file's tree, value by value, instead of the validated recipe: a recipe with a misspelt key also gets its
-load beyond the limit reported, so that all problems come at once. The schema reports unreadable values itself.
+It checks the file's tree, value by value, instead of the validated recipe: even with a misspelt key, a load beyond the
+limit is reported, so that all problems come at once. The schema reports unreadable values itself.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
 
 DEFAULT_BAND_K = 2.0
-"""Temperature band of a recipe that names none (``tester.inputs.recipe.recipe_schema.MeasureModel``)."""
+"""Default temperature band of a recipe (``tester.inputs.recipe.recipe_schema.MeasureModel``)."""
 TOUCHES = 1.5
 """The least load is this times the touching force [A]: the press moves until it feels that force, and runout and noise
-add some 12 N. On the simulated rig 10 N trip "load overshoot", 12 N sometimes do, 15 N do not.
+add some 12 N. On the simulated rig 10 N trips "load overshoot", 12 N sometimes does, 15 N does not.
 """
 OVERHEAT_K = 3.0
-"""Rubber gets hotter than its band by this [A]: a burst that has to end lasts until the press has lifted, and the
-thermometer shows it late (gates.ir_lag) and off by its bias. On the simulated rig it is 1.2 K, and its bias 1 K.
+"""Greatest excess of the rubber over its band [A]: a burst ends only once the press has lifted, and the thermometer
+lags (gates.ir_lag) and has a bias. On the simulated rig the excess is 1.2 K, and the bias 1 K.
 """
 POWER_SCATTER = 0.15
-"""Friction is greater than the model's by this share [A]: two standard deviations of wheel, condition and repeat."""
+"""Greatest excess of friction over the model's, a share [A]: two standard deviations of wheel, condition and repeat."""
 
 
 def least_load_n(rig: RigConfig) -> float:
@@ -45,14 +45,14 @@ def least_load_n(rig: RigConfig) -> float:
 
 
 class PlacedValue(NamedTuple):
-    """A quantity in the file: its value in the requested unit, and its place."""
+    """A quantity in the file: its value in the requested unit, and its position."""
 
     value: float
     at: Location
 
 
 class Motion(NamedTuple):
-    """A wheel and a belt speed in m/s at a sideslip angle, with the resultant slip speed."""
+    """Wheel and belt speeds in m/s at a sideslip angle, with the resultant slip speed."""
 
     wheel: float
     belt: float
@@ -61,7 +61,7 @@ class Motion(NamedTuple):
 
 
 class _Case(NamedTuple):
-    """A compound at the temperature at which it rubs most, at one slip speed."""
+    """A compound at its temperature of greatest friction, at one slip speed."""
 
     compound: str
     model: laws.FrictionLaw
@@ -71,7 +71,7 @@ class _Case(NamedTuple):
 
 
 def limit_problems(tree: Tree, rig: RigConfig) -> list[Problem]:
-    """Return values beyond the rig's limits, as far as the tree's values can be read."""
+    """Return values beyond the rig's limits, for all readable values of the tree."""
     return sorted(set(_Limits(tree, rig).problems()))
 
 
@@ -90,7 +90,7 @@ class _Limits:
         self.models = {name: laws.make(rig.sim.friction_model, name) for name in self.compounds if name in KNOWN}
 
     def problems(self) -> Iterator[Problem]:
-        """Yield every problem, in no order, perhaps twice."""
+        """Yield every problem, unordered, possibly twice."""
         for index in self._indices(("specimens",)):
             yield from self._compound(("specimens", index, "compound"))
         yield from self._pre_grind()
@@ -123,7 +123,7 @@ class _Limits:
         """Return the readable quantities of an axis or a single value; an empty list where there is none."""
         node = self._node(at)
         if node is None:
-            # A reference condition has defaults, which a rig may not be able to hold either.
+            # The defaults of a reference condition may also be beyond a rig's limits.
             return [PlacedValue(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
         quantity = Quantity(unit)
         places = [((*at, index), item) for index, item in enumerate(node)] if isinstance(node, list) else [(at, node)]
@@ -136,7 +136,7 @@ class _Limits:
         return quantities
 
     def _beyond(self, entry: PlacedValue, text: str, key: str, limit: float, unit: str) -> Problem:
-        """Return the problem of a value that is beyond the rig's limit ``key``."""
+        """Return the problem of a value beyond the rig's limit ``key``."""
         return self.tree.problem(entry.at, f'{text} (limit {show(limit, unit)}: {key} of rig "{self.rig.name}")')
 
     def _above(self, entry: PlacedValue, limit: float, unit: str, key: str) -> Iterator[Problem]:
@@ -147,7 +147,7 @@ class _Limits:
             yield self._beyond(entry, message, key, limit, unit)
 
     def _too_light(self, entry: PlacedValue) -> Iterator[Problem]:
-        """Yield a problem for a load too near to touching to be held; the schema reports a value that is no load."""
+        """Yield a problem for a load too close to touching to be held; the schema reports a value that is no load."""
         touch_n = self.rig.loops.load.touch_load_n
         least_n = least_load_n(self.rig)
         if 0.0 < entry.value < least_n:
@@ -157,7 +157,7 @@ class _Limits:
             yield self.tree.problem(entry.at, f"{message} (expected at least {show(least_n, 'N')}: {source})")
 
     def _too_heavy(self, entry: PlacedValue) -> Iterator[Problem]:
-        """Yield a problem for a load that is beyond its limit, or gets there with every turn of the wheel."""
+        """Yield a problem for a load beyond its limit, or beyond it at each turn of the wheel."""
         limit_n = self.rig.limits.load_n
         most_n = limit_n - RIPPLE_N  # with the tread's runout the load stays below limits.load
         yield from self._above(entry, limit_n, "N", "limits.load")
@@ -167,7 +167,7 @@ class _Limits:
             yield self.tree.problem(entry.at, f"{message} (expected at most {show(most_n, 'N')}: {source})")
 
     def _by_hand(self, entry: PlacedValue, axis: Axis, *, driven: bool) -> Iterator[Problem]:
-        """Yield a problem for an angle on an axis that a person sets: every burst turns it in and out."""
+        """Yield a problem for an angle on an axis that a person sets: it would have to move in every burst."""
         if entry.value != 0.0 and not driven:
             asked = show(entry.value, axis.recipe_unit)
             message = f"{axis.name}: {asked} needs a driven axis; this rig's is set by hand"
@@ -226,7 +226,7 @@ class _Limits:
         yield from self._slips(at)
         motions = self._motions(at)
         band_k = self._band_k(at)
-        # Within its band rubber may be colder, and friction the greater by several per cent a kelvin.
+        # Within its band rubber may be colder, and friction greater by several per cent per kelvin.
         temperatures = [
             max(entry.value + off_k, self.ambient_c)
             for entry in self._entries((*at, "temperature"), "degC")
@@ -295,13 +295,13 @@ class _Limits:
         return motions
 
     def _powers(self, loads: list[PlacedValue], motions: list[Motion], temperatures: list[float]) -> Iterator[Problem]:
-        """Yield a problem for every load that makes too much friction heat somewhere, naming the worst place."""
+        """Yield a problem for every load with too much friction heat; it names the worst conditions."""
         pressing = [load for load in loads if load.value > 0.0]
         if not motions or not temperatures or not pressing:
             return
         cases: list[_Case] = []
         for name, model in self.models.items():
-            # Both friction models are a factor of temperature times one of load and slip: the worst temperature
+            # Both friction models are a temperature factor times a factor of load and slip: the worst temperature
             # is the same everywhere.
             hottest = max(temperatures, key=lambda at_c: model.mu(at_c, pressing[0].value, motions[0].slip))
             cases += [

@@ -1,6 +1,6 @@
 """Heat of hub and rubber as one store, and the cost of the order of steps: heating up, the hub's lead, heat left over.
 
-Closed formulas; their constants show what simulated runs do (``tester.kinds.wheel_on_belt.recipe.constants``).
+These are closed formulas with constants from simulated runs (``tester.kinds.wheel_on_belt.recipe.constants``).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class Body:
     """Hub and rubber as one heat store; temperatures are its mean, degC."""
 
     def __init__(self, rig: RigConfig) -> None:
-        """Work out heat capacities (J/K) and losses (W/K) from the rig file's parameters of the wheel."""
+        """Compute heat capacities (J/K) and losses (W/K) from the rig file's parameters of the wheel."""
         believed = rig.observer
         thermal, wheel = believed.thermal, believed.wheel
         outer, inner = 0.5e-3 * wheel.outer_diameter, 0.5e-3 * (wheel.outer_diameter - 2.0 * wheel.rubber_layer)
@@ -48,15 +48,15 @@ class Body:
         return self.ambient_c + self.mean_ratio * (surface_c - self.ambient_c)
 
     def surface_c(self, mean_c: float) -> float:
-        """Return the surface temperature that belongs to a mean temperature."""
+        """Return the surface temperature for a mean temperature."""
         return self.ambient_c + (mean_c - self.ambient_c) / self.mean_ratio
 
     def mean_at_hub_c(self, hub_c: float) -> float:
-        """Return the mean temperature at which the hub, the warmest part, has come down to a temperature."""
+        """Return the mean temperature at which the hub, the warmest part, has cooled to a temperature."""
         return self.ambient_c + (hub_c - self.ambient_c) * self.mean_ratio / self.hub_ratio
 
     def with_new_rubber(self, mean_c: float) -> float:
-        """Return the mean after new rubber, at ambient, came onto the hub."""
+        """Return the mean after mounting new rubber at ambient."""
         share = self.hub_j_k / (self.hub_j_k + self.rubber_j_k)
         return self.ambient_c + share * (mean_c - self.ambient_c)
 
@@ -81,7 +81,7 @@ class Body:
 
 
 NEAR_K = 2.0
-"""Nearer than this to its temperature the wheel needs no heating: a short roll does."""
+"""Within this of its temperature the wheel needs no heating: a short roll is enough."""
 
 
 class Before:
@@ -94,14 +94,14 @@ class Before:
         self.heat(surface_c)
 
     def heat(self, surface_c: float) -> None:
-        """Note that the wheel is heated from a surface temperature, degC."""
+        """Record that the wheel is heated from a surface temperature, degC."""
         self.from_c: float | None = surface_c
         self.heat_w = 0.0
         self.rolled = False
 
 
 class OrderCosts:
-    """Extra cost of a condition for its place in the plan."""
+    """Extra cost of a condition due to its place in the plan."""
 
     def __init__(self, rig: RigConfig, constants: EstimateConstants, body: Body) -> None:
         """Take the formulas' parameters from the rig."""
@@ -111,7 +111,7 @@ class OrderCosts:
         self.offset_k = rig.loops.heat.rolling_offset_k
 
     def heat_s(self, from_c: float, to_c: float) -> float:
-        """Return the seconds of heating up from a surface temperature, degC, until it is nearly there."""
+        """Return the seconds of heating up from a surface temperature, degC, to nearly the target."""
         c = self.constants
         rise_k = to_c - self.offset_k - from_c
         if rise_k <= NEAR_K:
@@ -119,7 +119,7 @@ class OrderCosts:
         return c.heat_s + c.heat_per_k_s * (rise_k - 1.0) + c.heat_level_s * max(from_c - self.ambient_c, 0.0)
 
     def after(self, before: Before, sp: Setpoint, estimate: StepEstimate) -> StepEstimate:
-        """Return a condition's estimate with what its place costs, and note what it leaves to the next."""
+        """Return a condition's estimate with the cost of its place; update ``before`` for the next condition."""
         c = self.constants
         heat_w, from_c = estimate.heat_w, before.from_c
         if from_c is not None:

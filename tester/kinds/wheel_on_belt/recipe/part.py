@@ -43,7 +43,7 @@ KEY = "both_directions"
 
 
 def reversal_problems(measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
-    """Yield why a grid's conditions cannot be measured in both directions, if that is asked for."""
+    """Yield why a grid's conditions cannot be measured in both directions, if the grid requests it."""
     if not isinstance(measure, WheelMeasure) or not isinstance(grid, WheelGrid):
         return
     settings = wheel_settings(measure, grid)
@@ -74,7 +74,7 @@ def reversal_problems(measure: MeasureModel, grid: GridModel, at: Location, tree
 def _belt_stands(
     wheel: float, slip: float, place: Location, tree: Tree, *, turned: bool = False
 ) -> Iterator[Problem]:
-    """Yield that the belt would stand or run backwards at a slip, or at its reverse (``turned``)."""
+    """Yield a problem if the belt would stand or run backwards at a slip, or at its reverse (``turned``)."""
     belt = round(wheel + slip if turned else wheel - slip, 9)
     if belt < LEAST_SPEED_M_S:
         asked = f"slip_velocity: {show(slip, 'm/s')}" + (f", reversed by {KEY}," if turned else "")
@@ -108,14 +108,14 @@ class WheelPart(RecipePart):
         "rest: {at_least: 20 min, until: 25 degC, within: 2 degC}\n"
         "measure: {wheel_speed: 0.8 m/s, repeats: REPEATS, window: 30 rev, temperature_band: 2 degC}"
     )
-    """As in the recipes of the paper's tables."""
+    """The start of a new recipe, as in the recipes of the paper's tables."""
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> WheelSettings:
         """Return the settings of a grid's conditions."""
         return wheel_settings(measure, grid)
 
     def whole(self, recipe: Recipe | None, tree: Tree) -> Iterator[Problem]:
-        """Yield that there is nothing to do (grinding a wheel alone is something), and faults of the reference."""
+        """Yield a problem for an empty recipe (grinding a wheel alone is not empty), and faults of the reference."""
         top = tree.data if isinstance(tree.data, dict) else {}
         if not top.get("grids") and top.get("pre_grind") is None:
             yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
@@ -144,7 +144,7 @@ class WheelPart(RecipePart):
         return not rig.simulated or RigConfig.of(rig).sim.friction_model in MODEL_NAMES
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield conditions that wear a wheel beyond ``wheel.replace_after`` in one go."""
+        """Yield conditions that each wear a wheel beyond ``wheel.replace_after``."""
         yield from wear_problems(for_wheels(recipe), tree, RigConfig.of(rig))
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> WheelEstimator:
@@ -157,15 +157,15 @@ class WheelPart(RecipePart):
         return expand(for_wheels(recipe), RigConfig.of(rig), wheels)
 
     def remaining(self, plan: Plan, stand: Stand) -> WheelPlan:
-        """Return the plan of what is left to do after an interruption."""
+        """Return the plan of the remaining work after an interruption."""
         return remaining(WheelPlan.of(plan), stand)
 
     def words(self, step: Step, one: StepEstimate) -> str:
-        """Return a step in words, as a line."""
+        """Return a description of a step, in a line."""
         return describe.words(step, one)
 
     def heading(self, plan: Plan, step: Step) -> str:
-        """Return a wheel's compound and predicted loss, where it is installed."""
+        """Return the compound and predicted loss of a wheel that a step installs."""
         return describe.heading(WheelPlan.of(plan), step) if isinstance(step, Install) else ""
 
     def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:

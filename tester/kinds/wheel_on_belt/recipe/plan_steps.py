@@ -1,4 +1,4 @@
-"""Steps and plan of this machine: wheels are mounted, ground, rested, heated, measured in slip pulses, cooled.
+"""Steps and plan of this machine: mount, grind, rest, heat, measure in slip pulses, and cool wheels.
 
 Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature difference in K), _s.
 """
@@ -19,8 +19,8 @@ WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
 class Install(Step):
     """A person mounts a wheel. ``wheel`` counts from 1 in the plan, ``replicate`` from 1 in a specimen.
 
-    ``worn``: the wheel is still on, as an interruption left it; None for a new one. ``again``: it was on before, and
-    comes back as it was taken off.
+    ``worn``: the state of a wheel that an interruption left mounted; None for a new wheel. ``again``: an earlier
+    wheel is mounted again, with its wear.
     """
 
     kind: ClassVar[str] = "install"
@@ -49,8 +49,8 @@ class PreGrind(Step):
 class Rest(Step):
     """Stand lifted for ``at_least_s`` and until the surface is within ``within_k`` of ``until_c``.
 
-    ``until_c`` None: only the time counts. Past ``at_most_s`` it is a prompt on hardware, "not reached"
-    otherwise.
+    ``until_c`` None: only the time counts. After ``at_most_s`` hardware asks a person; a simulated rig records "not
+    reached".
     """
 
     kind: ClassVar[str] = "rest"
@@ -76,13 +76,13 @@ class WheelSettings(Settings):
     max_bursts: int
     wear_check: WearCheck
     run_in_m: float
-    """Sliding after a reversal of the slip that does not count, m [A]: how far rubber takes to turn its abrasion
-    pattern round is not published for these compounds."""
+    """Sliding that does not count after a reversal of the slip, m [A]: no data is published on the distance in which
+    these compounds reverse their abrasion pattern."""
 
 
 @dataclass(frozen=True, slots=True)
 class WheelCondition(WheelSettings, ConditionStep):
-    """A condition on a wheel. ``reference``: it watches the belt and is none of the recipe's own conditions."""
+    """A condition on a wheel. ``reference``: the reference condition, which watches the belt, not one of the grids'."""
 
     wheel: int
     reference: bool = False
@@ -90,7 +90,7 @@ class WheelCondition(WheelSettings, ConditionStep):
 
 @dataclass(frozen=True, slots=True)
 class Cool(Step):
-    """Turn unloaded, without heat, until the hub is below ``hub_below_c`` [A]: safe to touch."""
+    """Turn unloaded, without heat, until the hub is below ``hub_below_c`` [A] and safe to touch."""
 
     kind: ClassVar[str] = "cool"
     hub_below_c: float = 45.0
@@ -101,7 +101,7 @@ WheelStep: TypeAlias = Install | PreGrind | Rest | Heat | WheelCondition | Cool 
 
 @dataclass(slots=True)
 class WheelWear:
-    """Predicted wear of a wheel in the plan: loss of diameter in mm, sliding distance in m; it grows with the plan."""
+    """Predicted wear of a wheel: loss of diameter in mm, sliding distance in m; it grows as the plan is built."""
 
     wheel: int
     specimen: int
@@ -113,10 +113,10 @@ class WheelWear:
 
 @dataclass(frozen=True, slots=True)
 class PreparePolicy:
-    """Preparation of a new wheel before it measures; None if the recipe leaves a step out.
+    """Preparation of a new wheel before it measures; None for a step that the recipe leaves out.
 
     ``person_steps`` are prompts after every installation, in the recipe's order. ``ready_c`` and
-    ``ready_within_k``: the surface is this near to ambient before pre-grinding.
+    ``ready_within_k``: the surface's target before pre-grinding, ambient, and its tolerance.
     """
 
     pre_grind: PreGrind | None = None
@@ -130,7 +130,7 @@ class PreparePolicy:
 class WheelPlan(Plan):
     """A whole recipe for wheels. ``replace_after_mm``: loss of diameter after which a wheel is replaced.
 
-    ``references``: how many of its conditions are references; they watch one belt through all of them.
+    ``references``: number of reference conditions; they watch one belt through the whole plan.
     """
 
     steps: tuple[WheelStep, ...]
@@ -154,7 +154,7 @@ class WheelPlan(Plan):
 
 
 def starts_of(steps: Sequence[Step], part: Callable[[Install], object]) -> list[int]:
-    """Return the positions at which another part of a plan begins: its first Install, or a Cool before it; first 0."""
+    """Return the start positions of a plan's parts, the first at 0: each part's first Install, or a Cool before it."""
     starts = [0]
     before: object = None
     for position, step in enumerate(steps):

@@ -1,8 +1,8 @@
 """The reference condition of this machine: its setpoint, checks of it, and when it is due in a plan.
 
-It is due at the start, after every so many conditions, and at the end. On the present wheel it is one of the
-conditions, and its wear counts with theirs. A wheel that is reserved for it has to be put on each time: it is due at
-every change of the wheel as well, where that costs one change more instead of two, and the count begins anew."""
+It is due at the start, after every ``every`` conditions, and at the end. On the present wheel it is one of the
+conditions, and its wear counts with theirs. A reserved wheel must be mounted each time. It is therefore also due at
+every change of the wheel, which costs one more change instead of two; the count then restarts."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from tester.kinds.wheel_on_belt.recipe.schema import (
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED
 
 AT: Final[Location] = (REFERENCE,)
-"""Its place in a recipe."""
+"""Position of the reference in a recipe."""
 
 
 def as_grid(reference: ReferenceModel, recipe: WheelRecipe) -> WheelGrid:
@@ -43,13 +43,13 @@ def as_grid(reference: ReferenceModel, recipe: WheelRecipe) -> WheelGrid:
 
 
 def reference_condition(recipe: WheelRecipe) -> Condition[WheelSettings] | None:
-    """Return a recipe's reference condition; None where it has none. Its row is for the plan to give."""
+    """Return a recipe's reference condition, None without one; the plan sets its row."""
     if recipe.reference is None or recipe.measure is None or not recipe.grids:
         return None
     grid = as_grid(recipe.reference, recipe)
     (values,) = zip(*axis_values(recipe.measure, grid).values(), strict=True)
     how = wheel_settings(recipe.measure, grid)
-    # It is there to be compared with itself: fewer repeats are no reason for a flag, and each gets as many.
+    # References are compared with each other: few repeats cause no flag, and each has the same number.
     how = replace(how, min_valid=min(how.min_valid, how.repeats), until_percent=None)
     return Condition(values, 0, REFERENCE, how)
 
@@ -76,7 +76,7 @@ def reference_problems(recipe: WheelRecipe, tree: Tree) -> Iterator[Problem]:
 
 
 ABOVE_AMBIENT_K = 2.0
-"""A hub turning in the air comes this near to ambient in a time worth waiting for [A]."""
+"""A turning hub cools to within this of ambient in a reasonable time [A]."""
 
 
 @dataclass(slots=True)
@@ -88,7 +88,7 @@ class ReservedWheel:
 
 
 class ReferenceRounds:
-    """The references of one plan, handed out one after the other."""
+    """The references of one plan, in order."""
 
     def __init__(self, recipe: WheelRecipe, ambient_c: float, conditions: int) -> None:
         """``conditions``: of one replicate; ``ambient_c``: at the rig, degC."""
@@ -113,11 +113,11 @@ class ReferenceRounds:
 
     @property
     def on_wheels(self) -> Condition[WheelSettings] | None:
-        """Return the reference condition where it is measured on whichever wheel is on."""
+        """Return the reference condition if it uses the present wheel, else None."""
         return self.condition if self.reserved is None else None
 
     def due_on_reserved(self) -> bool:
-        """Return whether the reserved wheel is to come on before the next condition."""
+        """Return whether to mount the reserved wheel before the next condition."""
         return self.reserved is not None and self.since >= self.every
 
     def inserted(
@@ -141,7 +141,7 @@ class ReferenceRounds:
         return filled_blocks
 
     def next_row(self) -> int:
-        """Return the row of the next reference, behind all of the recipe's own."""
+        """Return the row of the next reference, after all rows of the recipe's own conditions."""
         self.since = 0
         self.made += 1
         return self._first_row + self.made - 1
@@ -149,7 +149,7 @@ class ReferenceRounds:
     def heating(self, from_c: float | None, to_c: float) -> list[WheelStep]:
         """Return the steps to the temperature of a condition, degC; ``from_c`` None: on a new wheel.
 
-        Down, the hub cools first: a surface does not stay colder than the hub below it.
+        To a lower temperature the hub cools first: a surface does not stay colder than its hub.
         """
         if from_c is not None and to_c < from_c:
             return [Cool(INSERTED, self.hub_below_c(to_c)), Heat(INSERTED, to_c)]

@@ -1,9 +1,9 @@
-"""The rest of a plan after an interruption: the fifth reader of the plan's steps.
+"""The remaining plan after an interruption.
 
-It begins at the first condition that is not over. The wheel on the rig stays if that condition belongs to it: it is
-mounted as it is (worn), ground in only where that was not complete, rested where nothing had been measured on it, then
-heated again. Specimens are resumed separately, because a simulated run may measure them at the same time. With
-references, everything behind the first step that is left is left as well.
+It begins at the first condition that is not over. The wheel on the rig stays if that condition belongs to it: it stays
+mounted with its wear, is ground in only if that was incomplete, rests if it has measured nothing, then is heated again.
+Specimens are resumed separately, because a simulated run may measure them at the same time. With references, all steps
+after the first remaining step also remain.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_whe
 
 
 def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
-    """Return the plan of the steps that are left; without steps where none is."""
+    """Return the plan of the remaining steps, possibly without steps."""
     steps: list[WheelStep] = []
     starts = starts_of(plan.steps, lambda install: install.specimen)
     for begin, end in zip(starts, [*starts[1:], None], strict=True):
@@ -37,7 +37,7 @@ def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
 
 
 def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> list[WheelStep]:
-    """Return the steps of one specimen that are left."""
+    """Return the remaining steps of one specimen."""
     places = [place for place, step in enumerate(segment) if isinstance(step, WheelCondition)]
     numbers = {place: step.condition for place, step in enumerate(segment) if isinstance(step, WheelCondition)}
     left = [place for place in places if numbers[place] not in stand.ended]
@@ -66,7 +66,7 @@ def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> lis
 
 
 def _only_prepared(plan: WheelPlan, segment: Sequence[WheelStep], wheel: Mounted, mounted: set[int]) -> list[WheelStep]:
-    """Return the steps that are left where wheels are only ground in."""
+    """Return the remaining steps of a plan that only grinds wheels in."""
     steps = [] if wheel.ground else [_mounted(plan, wheel), *_prepare(plan, wheel)]
     for place, step in enumerate(segment):
         if isinstance(step, Install) and step.wheel not in mounted:

@@ -17,11 +17,11 @@ from tester.kinds.wheel_on_belt.recipe.schema import WheelGrid, WheelRecipe, whe
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 _WORST_AT_MOST = ("load", *(axis.name for axis in AXES if axis.drive))
-"""Axes whose greatest value wears most: the load, and the angles."""
+"""Axes with the greatest wear at their greatest value: the load, and the angles."""
 
 
 def wear_problems(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Problem]:
-    """Return the conditions that wear a wheel beyond ``wheel.replace_after`` in one go, grinding included."""
+    """Return the conditions that each wear a wheel beyond ``wheel.replace_after``, grinding included."""
     costs = WheelEstimator(rig).costs
     allowed = recipe.wheel.replace_after
     layer = rig.observer.wheel.rubber_layer
@@ -48,7 +48,7 @@ def wear_problems(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Probl
 
 
 def _watched(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Problem]:
-    """Return a problem if all references together wear out the wheel that is reserved for them."""
+    """Return a problem if all references together wear out their reserved wheel."""
     if recipe.reference is None or recipe.reference.wheel is None:
         return []
     plan, allowed = expand(recipe, rig), recipe.wheel.replace_after
@@ -62,7 +62,7 @@ def _watched(recipe: WheelRecipe, tree: Tree, rig: RigConfig) -> list[Problem]:
 
 
 def _worst_loss_mm(recipe: WheelRecipe, grid: WheelGrid, compound: str, costs: ConditionCosts) -> float:
-    """Return the greatest predicted wear of a grid's conditions, which is at its highest load and widest angles."""
+    """Return the greatest predicted wear of a grid's conditions: at its highest load and widest angles."""
     if recipe.measure is None:
         return 0.0
     settings = wheel_settings(recipe.measure, grid)

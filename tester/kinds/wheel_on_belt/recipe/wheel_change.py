@@ -18,17 +18,17 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
 )
 
 INSERTED = -1
-"""``index`` of steps that are not in the plan."""
+"""The ``index`` of steps that are not in the plan."""
 
 TOUCH = Cool(INSERTED)
-"""The cool-down to a hub that a person may touch [A]: before every question at the wheel."""
+"""The cool-down to a hub that a person may touch [A], before every question at the wheel."""
 
 READY_AT_MOST_S = 5400.0
 """Longest wait for a new wheel to come to ambient before it is ground [A]."""
 
 
 def wheel_change(plan: WheelPlan, step: WheelCondition, specimen: Specimen, wheel: int) -> tuple[WheelStep, ...]:
-    """Return the steps that put a new wheel on before a condition that the worn one would not outlast.
+    """Return the steps that mount a new wheel before a condition that would wear out the present wheel.
 
     ``wheel`` is the new wheel's number. The steps are not in the plan: their ``index`` is ``INSERTED``.
     """
@@ -41,9 +41,9 @@ def prepare_wheel(
 ) -> tuple[WheelStep, ...]:
     """Return the steps of a new wheel, each with the ``index`` INSERTED.
 
-    ``cool`` where the hub may be hot from what was measured before: then the new rubber, which takes the hub's
-    temperature, also waits until its surface is near ambient before it is ground. ``heat_c``
-    brings it back to the temperature of the conditions that follow; None where a Heat follows anyway.
+    ``cool``: the hub may be hot from earlier conditions. The new rubber takes the hub's temperature, so it also waits
+    until its surface is near ambient before it is ground. ``heat_c``: temperature of the next conditions, to heat to;
+    None if a Heat follows anyway.
     """
     grind, rest = prepare.pre_grind, prepare.rest
     steps: list[WheelStep] = [Cool(INSERTED)] if cool else []
@@ -63,9 +63,9 @@ def prepare_wheel(
 def mount_again(
     specimen: Specimen, replicate: int, wheel: int, heat_c: float, hub_below_c: float
 ) -> tuple[WheelStep, ...]:
-    """Return the steps that put a wheel back on that was taken off before, and warm it: it has been ground in.
+    """Return the steps that mount an earlier wheel again and warm it: it is already ground in.
 
-    ``hub_below_c``: what the hub has to come down to so that the wheel can be held at ``heat_c``, degC.
+    ``hub_below_c``: highest hub temperature from which the wheel can be held at ``heat_c``, degC.
     """
     install = Install(INSERTED, specimen.index, wheel, specimen.compound, specimen.note, replicate, again=True)
     return Cool(INSERTED, min(TOUCH.hub_below_c, hub_below_c)), install, Heat(INSERTED, heat_c)

@@ -1,7 +1,7 @@
-"""The sections that only a rig of this kind has; each section alone is checked by its types.
+"""The sections that only a rig of this kind has; the types check each section separately.
 
-The numbers and their sources stand in the packaged file of the simulated rig, ``sim/rig.yaml``. The keys of the section
-``interlocks`` are declared each beside the interlock that it belongs to.
+The numbers and their sources are in the packaged file of the simulated rig, ``sim/rig.yaml``. Each key of the section
+``interlocks`` is declared beside its interlock.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 
 HARMFUL_N: Final = 500.0
-"""From here on a force on the wheel counts as harm (sim.harm)."""
+"""A force on the wheel from this value up counts as harm (sim.harm)."""
 
 VELOCITY_AXES: Final = ("wheel", "belt", "press")
-"""The drives that every rig of the kind has; the others position an axis each (``axes.POSITIONED``)."""
+"""The drives of every rig of the kind; each other drive positions an axis (``axes.POSITIONED``)."""
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)
@@ -45,7 +45,7 @@ class GeometryConfig:
 
 
 def _with(base: type, further: Iterable[tuple[str, object]]) -> Any:
-    """Return a section with further fields: those of the axes that a drive positions."""
+    """Return a section with further fields for the positioned axes."""
     name = base.__name__.removeprefix("_")
     namespace = {"__module__": __name__, "__doc__": base.__doc__}
     return make_dataclass(name, list(further), bases=(base,), frozen=True, slots=True, namespace=namespace)
@@ -53,17 +53,17 @@ def _with(base: type, further: Iterable[tuple[str, object]]) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class _LimitsConfig:
-    """Hard limits: no recipe and no loop gets past them."""
+    """Hard limits: no recipe and no loop exceeds them."""
 
     load_n: Annotated[float, "N", Range(gt=0.0, le=HARMFUL_N)]
-    """At most 500 N: above it docs/kinds/wheel-on-belt.md counts harm."""
+    """At most 500 N: above it is harm (docs/kinds/wheel-on-belt.md)."""
     wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
     slip_power_w: Annotated[float, "W", _POSITIVE]
     jacket_c: Annotated[float, "degC", Range(gt=0.0, le=155.0)]
-    """At most 155 degC: above it docs/kinds/wheel-on-belt.md counts harm."""
+    """At most 155 degC: above it is harm (docs/kinds/wheel-on-belt.md)."""
     surface_c: Annotated[float, "degC", Range(gt=0.0, le=130.0)]
-    """At most 130 degC: above it docs/kinds/wheel-on-belt.md counts harm."""
+    """At most 130 degC: above it is harm (docs/kinds/wheel-on-belt.md)."""
 
     def positions(self) -> dict[str, float]:
         """Return the limits of the positioned axes to either side, by name."""
@@ -87,14 +87,14 @@ class _AxesConfig:
 if TYPE_CHECKING:
 
     class LimitsConfig(_LimitsConfig):
-        """Limits, with one for each positioned axis."""
+        """Limits, including those of each positioned axis."""
 
         def __getattr__(self, name: str) -> float:
             """Return the limit of a positioned axis, by the axis's field."""
             ...
 
     class AxesConfig(_AxesConfig):
-        """Drives, with that of each positioned axis."""
+        """Drives, including that of each positioned axis."""
 
         def __getattr__(self, name: str) -> AxisConfig | None:
             """Return the drive of a positioned axis, by the axis's name."""
@@ -112,24 +112,24 @@ class LoadLoopConfig:
 
     bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
     rolling_bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
-    """While holding in band: too slow to chase the wheel's runout."""
+    """Bandwidth while holding in band: too slow to follow the wheel's runout."""
     error_filter_s: Annotated[float, "s", _POSITIVE]
-    """The load error is averaged over this time before it decides between the two bandwidths."""
+    """Averaging time of the load error that decides between the two bandwidths."""
     stiffness_n_per_mm: Annotated[float, "N/mm", _POSITIVE]
     """Tangent stiffness of the contact at 200 N."""
     integral_s: Annotated[float, "s", _POSITIVE]
     touch_load_n: Annotated[float, "N", _POSITIVE]
     open_share: Annotated[float, "1", _SHARE]
-    """Below this share of the touching force the contact was seen open: only then is the next touch a first one."""
+    """Share of the touching force below which the contact was open: only then is the next touch a first touch."""
     follow_rate_n_s: Annotated[float, "N/s", _POSITIVE]
-    """A change of load is expected to be followed at this rate at least: what the load is watched against."""
+    """Least expected rate of following a change of load: the interlocks' limits of the load move at it."""
     touch_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
     loading_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
     lift_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
     acceleration_mm_s2: Annotated[float, "mm/s2", _POSITIVE]
-    """Profiles to a position are planned with it: at most ``axes.press.acceleration``, which is what a lift takes."""
+    """Acceleration of profiles to a position: at most ``axes.press.acceleration``, which a lift uses."""
     clearance_mm: Annotated[float, "mm", _POSITIVE]
-    """Lifted means this far off the last contact."""
+    """Distance of the lifted position from the last contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,13 +140,13 @@ class HeatLoopConfig:
     """Kelvin of hub setpoint per kelvin of surface error."""
     outer_integral_s: Annotated[float, "s", _POSITIVE]
     integral_band_k: Annotated[float, "K", _POSITIVE]
-    """The integral moves only inside this error."""
+    """The integral changes only within this error."""
     integral_limit_k: Annotated[float, "K", _NOT_NEGATIVE]
     hub_min_c: Annotated[float, "degC"]
     hub_max_c: Annotated[float, "degC"]
     period_s: Annotated[float, "s", _POSITIVE]
     rolling_offset_k: Annotated[float, "K", _NOT_NEGATIVE]
-    """While rolling between slip pulses the target is this much below the setpoint."""
+    """Distance of the target below the setpoint while rolling between slip pulses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,53 +192,53 @@ class ArmingConfig:
     listen_s: Annotated[float, "s", _NOT_NEGATIVE]
     """Time of listening before anything is sent, to detect another master on the bus."""
     bump_test: bool
-    """Turn wheel and belt a little, one after the other: each must follow, and only it."""
+    """Turn wheel and belt a little, one after the other: each must follow alone."""
     watchdog_proof: bool
     """Withhold the PC's heartbeat with the drives enabled and creeping: every drive must report it and stop."""
     withhold_s: Annotated[float, "s", _POSITIVE]
     creep_m_s: Annotated[float, "m/s", _POSITIVE]
-    """Wheel and belt, unloaded, in the bump test and in the proof."""
+    """Speed of wheel and belt, unloaded, in the bump test and in the watchdog proof."""
     unloaded_n: Annotated[float, "N", Range(gt=0.0, le=50.0)]
-    """Normal force and friction of an unloaded load cell without tare, at most: at connecting and at a reference tare.
+    """Greatest normal force and friction of an unloaded cell without tare, at connecting and at a reference tare.
 
-    At most 50 N: a contact firmer than that must not pass for the cell's zero.
+    At most 50 N: a greater contact force must not be taken for the cell's zero.
     """
 
 
 @dataclass(frozen=True, slots=True)
 class WearConfig:
-    """Wear law V = k F s: what the plan predicts and the current diameter is estimated with.
+    """Wear law V = k F s, for the plan's predictions and the current diameter.
 
-    Also the parameters of a check of the diameter (procedures.wear_check); uncertainties are standard ones.
+    The section also has the parameters of a diameter check (procedures.wear_check); uncertainties are standard.
     """
 
     rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
     growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE]
-    """The diameter, rubber and hub together, grows by this per K of the rubber's mean temperature."""
+    """Growth of the diameter, rubber and hub together, per K of the rubber's mean temperature."""
     reference_c: Annotated[float, "degC", Range(ge=0.0, le=40.0)]
-    """At which a diameter is called cold: that of a new wheel, of every check and of the record."""
+    """Temperature of cold diameters: of a new wheel, of every check and of the record."""
     growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE]
     check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE]
-    """Of the press's position in a roll check, apart from the effects of load and heat."""
+    """Uncertainty of the press's position in a roll check, without the effects of load and heat."""
     check_load_n: Annotated[float, "N", _NOT_NEGATIVE]
-    """Of the mean load in a roll check, from one check to another."""
+    """Uncertainty of the mean load in a roll check, between checks."""
     check_stiffness_percent: Annotated[float, "%", _NOT_NEGATIVE]
-    """Of the contact's stiffness, with which a load off its nominal value is corrected."""
+    """Uncertainty of the contact's stiffness, which corrects for a load off its nominal value."""
     check_rubber_k: Annotated[float, "K", _NOT_NEGATIVE]
-    """Of the rubber's mean temperature, taken as that of hub and surface by halves."""
+    """Uncertainty of the rubber's mean temperature, taken as half hub and half surface."""
     gauge_mm: Annotated[float, "mm", _NOT_NEGATIVE]
-    """Of a diameter that a person measures on rubber."""
+    """Uncertainty of a diameter that a person measures on rubber."""
     rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE]
-    """Of a wear rate from load, slip and width of the tread."""
+    """Uncertainty of a wear rate from load, slip and width of the tread."""
 
     def growth_mm(self, rubber_c: float) -> float:
-        """Return the growth of the diameter over the cold one, mm, at a mean temperature of the rubber, degC."""
+        """Return the growth over the cold diameter, mm, at a mean temperature of the rubber, degC."""
         return self.growth_mm_per_k * (rubber_c - self.reference_c)
 
 
 @dataclass(frozen=True, slots=True)
 class CertificatesConfig(CalibrationConfig):
-    """The sensors that have a certificate, and what hung weights have shown of the load cell."""
+    """The sensors that have a certificate, and the load cell's calibration with hung weights."""
 
     certificates: ClassVar[tuple[str, ...]] = ("load_cell", "thermometer", "jacket")
 
@@ -246,7 +246,7 @@ class CertificatesConfig(CalibrationConfig):
     thermometer: str = ""
     jacket: str = ""
     cell_sensitivity: Annotated[float, "1", Range(ge=0.0, le=0.05)] = 0.0
-    """Of Fx over Fz, as found and with its standard uncertainty (commission.weights); 0: not in the budget."""
+    """Measured error of Fx over Fz, with its standard uncertainty (commission.weights); 0: not in the budget."""
     record: str = ""
     """Name of the entry with that value: the SHA-256 of the step ``cell`` in the record of the commissioning."""
 
@@ -259,10 +259,10 @@ class ObserverConfig:
     """
 
     ambient_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
-    """The air around a real rig; a simulated one has its own (``RigConfig.ambient_c``)."""
+    """Air temperature around a real rig; a simulated rig has its own (``RigConfig.ambient_c``)."""
     friction_heat_fraction: Annotated[float, "1", Range(ge=0.0, le=1.0)]
     """The rubber's share of friction heat."""
     belt_conductance: Annotated[float, "W/K", _NOT_NEGATIVE]
-    """Rubber to belt, in contact."""
+    """Thermal conductance from rubber to belt, in contact."""
     wheel: WheelParameters
     thermal: ThermalParameters

@@ -1,6 +1,6 @@
 """Ceilings of this rig's safety keys: direction, hardest value, and the reason.
 
-The parameters of interlocks carry their own (tester.inputs.rig.parameter); the keys of the other sections are here.
+Interlock parameters have their own ceilings (tester.inputs.rig.parameter); those of other sections are here.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ _Found = Iterator[tuple[Location, str]]
 
 
 def _speeds(rig: RigConfig) -> _Found:
-    """A drive that clamps below the rig's limit would silently run slower than commanded."""
+    """Yield drives that cannot follow the rig's limits or loops: they would silently run slower than commanded."""
     wheel = rig.axes.wheel.max_speed * 0.5e-3 * rig.geometry.wheel_diameter_mm
     if wheel < rig.limits.wheel_speed_m_s:
         yield ("axes", "wheel", "max_speed"), f"gives {wheel:.3f} m/s, less than limits.wheel_speed"
@@ -90,7 +90,7 @@ def _skew(rig: RigConfig) -> _Found:
 
 
 def _heat_off(rig: RigConfig) -> _Found:
-    """The heat ends without this program: by a lease, or by the machine's substitute that the file names."""
+    """Check that the heat ends without this program: by a lease, or by the substitute that the file names."""
     for name, device in rig.devices.items():
         if device.heat_off and (name != "jacket" or device.heat_off not in HEAT_OFF):
             expected = "it is the jacket's" if name != "jacket" else f"expected {' or '.join(HEAT_OFF)}"
@@ -120,11 +120,11 @@ def _temperatures(rig: RigConfig) -> _Found:
 
 
 RIPPLE_N: Final = 10.0
-"""Load variation from the tread's runout with the press at rest, peak to peak, N [A]: 7 to 10 N at 200 to 400 N."""
+"""Peak-to-peak load variation from the tread's runout with the press at rest, N [A]: 7 to 10 N at 200 to 400 N."""
 
 
 def with_torque_limit(rig: RigConfig) -> RigConfig:
-    """Return a rig whose press drive has the torque for ``limits.load``, or less where the file has less.
+    """Return a rig with its press drive's torque limited to that for ``limits.load``, or to the file's lower value.
 
     A press without ``screw`` keeps the file's value: the effect of its torque is unknown.
     """
@@ -137,7 +137,7 @@ def with_torque_limit(rig: RigConfig) -> RigConfig:
 
 
 def torque_problem(rig: RigConfig) -> str:
-    """Return why the limit of the press's torque is not suitable, or ""; the rig is one of ``with_torque_limit``."""
+    """Return why the limit of the press's torque is unsuitable, or ""; the rig comes from ``with_torque_limit``."""
     press = rig.axes.press
     if press.screw is None:
         return ""
@@ -159,7 +159,7 @@ def torque_problem(rig: RigConfig) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigConfig(Rig):
-    """A rig: everything about the machine that software needs to know, and nothing about a test."""
+    """A rig: everything that the software must know about the machine, and nothing about a test."""
 
     packaged: ClassVar[Mapping[str, str]] = KIND.rigs
     may_lack: ClassVar[tuple[str, ...]] = (
@@ -188,7 +188,7 @@ class RigConfig(Rig):
     }
     quantities: ClassVar[Quantities] = QUANTITIES
     table: ClassVar[InterlockTable] = TABLE
-    """The rows that control evaluates; a laboratory's own kind may have more."""
+    """The interlock rows that control evaluates; a laboratory's own kind may have more."""
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
     watched: ClassVar[tuple[str, ...]] = TABLE.channels
     ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS

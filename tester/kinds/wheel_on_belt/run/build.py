@@ -32,22 +32,21 @@ from tester.store.resumable import ResumePoint
 
 
 def take_up(procedures: WheelProcedures, results: WheelResults, point: ResumePoint) -> None:
-    """Hand the procedures of the remaining plan what is committed: repeats, wheels, the load cell's reference
-    zero."""
+    """Give the remaining plan's procedures the committed data: repeats, wheels, the load cell's reference zero."""
     results.earlier = dict(point.conditions)
     results.pool = point.pool
     if point.reference_tare is not None:
         procedures.reference_tare.extend(point.reference_tare[name] for name in CELL)
     wheels = point.stand.mounted
     procedures.wheels = max([procedures.wheels, *(wheel.number for wheel in wheels)])
-    # The wheel that is on has measured before, so that a condition it would not outlast gets a new one. A condition
-    # that is half measured stays on its wheel, as in a run without an interruption.
+    # The present wheel counts as having measured, so that a condition that would wear it out gets a new wheel. A half
+    # measured condition stays on its wheel, as in a run without an interruption.
     if wheels and wheels[-1].last_condition and point.next_repeat is None:
         procedures.measured_wheel = wheels[-1].number
 
 
 def take_up_wheels(ctx: Context, plan: WheelPlan, stand: Stand) -> None:
-    """Restore the belt that is on, and the wheels that were, for a plan with references; others have a belt a part."""
+    """Restore the present belt and the earlier wheels for a plan with references; other plans have a belt per part."""
     if not plan.references:
         return
     ctx.belt_travel_m = stand.travel_m
@@ -65,7 +64,7 @@ def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
     load, wheel, belt = ROLL_CHECK_N, rig.interlocks.cooldown_speed_m_s, 0.0
     surface, positions = rig.ambient_c, straight()
     conditions = False
-    grind = plan.prepare.pre_grind if isinstance(plan, WheelPlan) else None  # by hand nothing is planned
+    grind = plan.prepare.pre_grind if isinstance(plan, WheelPlan) else None  # manual mode plans nothing
     steps = (*plan.steps, grind) if grind is not None else plan.steps
     for step in steps:
         if isinstance(step, WheelCondition):
@@ -83,12 +82,12 @@ def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
             surface = max(surface, step.temperature_c)
             if not conditions:
                 load, wheel = max(load, DEFAULT_LOAD_N), max(wheel, DEFAULT_SPEED_M_S)
-    # Matched speeds: the belt runs as fast as the wheel whenever there is to be no slip.
+    # Matched speeds: without slip the belt runs as fast as the wheel.
     return Bounds(load, wheel, max(belt, wheel), surface, rig_bounds(rig).hub_c, positions)
 
 
 TITLES = {"ir_thermometer": "thermometer"}
-"""Where a screen calls a device otherwise than the record does, by its key in the rig file."""
+"""Screen names of devices that differ from the record's, by the device's key in the rig file."""
 
 
 def build_devices(rig: RigConfig, ports: Ports) -> Devices:
@@ -99,7 +98,7 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
     cell, transmitters = load_cell_of(rig, drivers.links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
     drivers.devices |= transmitters
     thermometer = drivers.sensor("ir_thermometer", SURFACE_CHANNELS)
-    assert thermometer is not None  # the rig file has one, or is refused
+    assert thermometer is not None  # a rig file without it is refused
     return Devices(drivers, WheelDrives(wheel, belt, press, drives), cell, thermometer, drivers.controller("jacket"))
 
 

@@ -28,9 +28,9 @@ from tester.store.run_reader import RunReader
 
 KIND: Final = "heat"
 LEAST_RISE_K: Final = 20.0
-"""A smaller rise of the hub in a heating is no evidence: a sensor that lags by 1 K is 5 % of it [A]."""
+"""Least rise of the hub in a heating that counts as evidence: a sensor's lag of 1 K is 5 % of it [A]."""
 LEAST_J: Final = 10e3
-"""A balance with less heat is no evidence, J [A]: of this much, a late sensor hides 2 %."""
+"""Least heat in a balance that counts as evidence, J [A]: a late sensor hides 2 % of it."""
 _IN_HEAT: Final = frozenset(row.name for row in (*hub.ROWS, *surface.ROWS))
 """Trips after which the run's heat data is not trusted."""
 
@@ -42,7 +42,7 @@ def heating_data(rig: RigConfig, put_j: float, shown_j: float, rise_k: float) ->
 
 
 def beliefs_of(rig: RigConfig) -> str:
-    """Return a fingerprint of what a ratio hangs on: the file's section ``observer`` and, of a twin, its ``sim``."""
+    """Return a fingerprint of a ratio's assumptions: the file's section ``observer``, and a simulated rig's ``sim``."""
     of = (rig.observer, replace(rig.sim, faults=()) if rig.simulated else None)
     return sha256(repr(of).encode()).hexdigest()[:16]
 
@@ -50,7 +50,7 @@ def beliefs_of(rig: RigConfig) -> str:
 def known_heat(runs: Path, rig: RigConfig) -> KnownRatio:
     """Return the facts about a rig's heat balance from the runs in a folder, except runs under way.
 
-    A run that cannot be read is no evidence, nor is one that tripped in heat.
+    An unreadable run, or a run that tripped in heat, is no evidence.
     """
     return known_from([ratio for folder in run_folders(runs) for ratio in _evidence(folder, rig)], rig)
 

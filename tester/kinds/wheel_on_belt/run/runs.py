@@ -38,16 +38,16 @@ def split(plan: Plan) -> tuple[Part, ...]:
     for number, (begin, end) in enumerate(zip(starts, [*starts[1:], len(plan.steps)], strict=True), start=1):
         steps = plan.steps[begin:end]
         if isinstance(steps[0], Cool):
-            steps = steps[1:]  # a rig of its own has nothing to cool
+            steps = steps[1:]  # a separate rig starts cold
         wheels = {step.wheel for step in steps if isinstance(step, Install)}
         parts.append(Part(number, _part_of(plan, steps, wheels), last_wheel))
-        # Every unforeseen wheel measures at least one condition, so two parts never give the same number.
+        # Every unplanned wheel measures at least one condition, so two parts never use the same number.
         last_wheel += sum(1 for step in steps if isinstance(step, ConditionStep))
     return tuple(parts)
 
 
 def _part_of(plan: Plan, steps: tuple[Step, ...], wheels: set[int]) -> Plan:
-    """Return the plan of some of the steps, with the wear of their wheels."""
+    """Return a plan of some steps, with the wear of their wheels."""
     whole = WheelPlan.of(plan)
     return replace(whole, steps=steps, wear=tuple(wear for wear in whole.wear if wear.wheel in wheels))
 
@@ -79,15 +79,15 @@ class WheelRuns(KindRun):
         return build_run(RigConfig.of(rig), plan, ports, attendant, recorder, prompts, point, heat, self.procedures)
 
     def mount(self, attendant: Attendant, compound: str) -> None:
-        """Put a new wheel on; "" is compound 1#."""
+        """Mount a new wheel; "" is compound 1#."""
         attendant.install(0, 0, compound or "1#", new_specimen=True)
 
     def history(self, runs: Path, rig: Rig) -> HeatHistory:
-        """Return the facts about the heat balance from the runs."""
+        """Return the facts about the heat balance from past runs."""
         return HeatHistory(known_heat(runs, RigConfig.of(rig)))
 
     def calibration(self, rig: Rig) -> Iterator[Calibration]:
-        """Yield the diameters that make speeds of turns."""
+        """Yield the diameters that convert turns to speeds."""
         geometry, known = RigConfig.of(rig).geometry, RigConfig.of(rig).calibration
         if known.record:
             yield Calibration("load_cell", "calibration record", known.record, "")
@@ -96,7 +96,7 @@ class WheelRuns(KindRun):
         yield Calibration("belt", "roller diameter", repr(geometry.belt_roller_diameter_mm), "mm")
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
-        """Store how worn the wheel is, and how far belt and wheel have come."""
+        """Store the wheel's wear, and the distances of belt and wheel."""
         ctx = run.engine.ctx
         if ctx.wheel.wheel:
             record_state(recorder, ctx, now_s)

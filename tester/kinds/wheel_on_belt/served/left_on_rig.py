@@ -19,7 +19,7 @@ CELL_ZERO: Final = "zero of the load cell"
 
 @dataclass(frozen=True, slots=True)
 class WheelLeft:
-    """The wheel that a run mounted last, as worn as it left it, and its newest zero of the load cell."""
+    """The last wheel of a run, with its wear, and the run's newest zero of the load cell."""
 
     run: str
     wheel: PieceInfo | None
@@ -32,7 +32,7 @@ class WheelLeft:
         return self.wheel is not None
 
     def usable(self, rig: Rig) -> bool:
-        """Return whether the wheel is not worn below the rig's ``least_diameter``: a smaller one is not used."""
+        """Return whether the wheel has at least the rig's ``least_diameter``."""
         wheel_rig = RigConfig.of(rig)
         return self.wheel is not None and self.wheel.diameter_mm >= wheel_rig.interlocks.least_diameter_mm
 
@@ -44,7 +44,7 @@ class HeatHistory:
     ratio: KnownRatio
 
     def checks(self, rig: Rig, left: object, now_utc: str) -> tuple[Check, ...]:
-        """Return the lines of the pre-flight list that are this kind's. ``now_utc``: the wall clock."""
+        """Return this kind's lines of the pre-flight list. ``now_utc``: the wall clock."""
         wheel_left = left if isinstance(left, WheelLeft) else None
         return wheel_check(wheel_left), zero_check(wheel_left, now_utc), heat_check(self.ratio, RigConfig.of(rig))
 
@@ -56,7 +56,7 @@ def left_by(reader: RunReader, name: str) -> WheelLeft:
 
 
 def _tare_utc(reader: RunReader) -> str:
-    """Return the wall clock of the newest zero: that of the first thing recorded after it."""
+    """Return the wall-clock time of the newest zero: that of the next record after it."""
     at_s = max((tare.t_s for tare in reader.tares() if tare.kind != "check"), default=None)
     if at_s is None:
         return ""
@@ -64,7 +64,7 @@ def _tare_utc(reader: RunReader) -> str:
 
 
 def wheel_check(left: WheelLeft | None) -> Check:
-    """Return the known state of the wheel that is on; a run begins by asking for a fresh one."""
+    """Return the known state of the mounted wheel; a run first asks for a new wheel."""
     wheel = left.wheel if left is not None else None
     if wheel is None or not isfinite(wheel.diameter_mm):
         return Check("wheel", None, "none on record; a fresh one comes")
@@ -86,7 +86,7 @@ def zero_check(left: WheelLeft | None, now_utc: str) -> Check:
 
 
 def heat_check(heat: KnownRatio, rig: RigConfig) -> Check:
-    """Return the limit for unexplained heat; a history that does not tighten it deserves a look."""
+    """Return the limit for unexplained heat; a history that does not tighten it deserves attention."""
     limits = rig.interlocks
     tighter = heat.share(limits.heat_share, limits.heat_share_known) < limits.heat_share
     return Check("heat balance", tighter or None, heat.words(limits.heat_share, limits.heat_share_known))

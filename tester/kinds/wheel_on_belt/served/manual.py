@@ -47,12 +47,12 @@ HAND: Final = (
     *(HandAxis(axis.name, axis.name.capitalize(), f"{axis.step:g}{axis.symbol} a step, lifted") for axis in POSITIONED),
     HandAxis("heat", "Heating", "1 K a step, turning"),
 )
-"""In the order of the screen."""
+"""Axes of manual mode, in the order of the screen."""
 
 
 @dataclass(slots=True)
 class Asked:
-    """The person's requests so far."""
+    """The state that the person has requested."""
 
     wheel_m_s: float = 0.0
     belt_m_s: float = 0.0
@@ -62,10 +62,10 @@ class Asked:
 
 
 class WheelHand:
-    """Turns steps into demands."""
+    """Turns a person's steps into demands."""
 
     def __init__(self, bounds: Bounds) -> None:
-        """Begin at rest and lifted. ``bounds``: the person's and control's."""
+        """Begin at rest and lifted. ``bounds``: for the person and control."""
         self.wanted = Asked()
         self.bounds = bounds
         self.taring: TakeTare | None = None
@@ -75,11 +75,11 @@ class WheelHand:
 
     @property
     def busy(self) -> str:
-        """Why no step is taken at present."""
+        """Reason why no step is possible at present; "" if a step is possible."""
         return "the load cell is being tared" if self.taring is not None else ""
 
     def demand(self, ctx: Context) -> None:
-        """Demand what is wanted."""
+        """Write the demand for the requested state."""
         demand, wanted = ctx.demand, self.wanted
         demand.wheel_speed_m_s, demand.belt_speed_m_s = wanted.wheel_m_s, wanted.belt_m_s
         demand.press = Press.LOAD if wanted.load_n > 0.0 else Press.LIFT
@@ -122,7 +122,7 @@ class WheelHand:
         return ""
 
     def _turn(self, ctx: Context, sign: float) -> str:
-        """Take wheel and belt to another speed together, neither beyond what both can do."""
+        """Bring wheel and belt to another speed together, within the limits of both."""
         wanted, bounds = self.wanted, self.bounds
         step = sign * SPEED_STEP_M_S
         pressed = wanted.load_n > 0.0 or not ctx.readings.force_z_n < STANDING_LOAD_N
@@ -134,7 +134,7 @@ class WheelHand:
         return ""
 
     def _load(self, ctx: Context, sign: float) -> str:
-        """Take another load; from none to the first step that can be held, and from that to none."""
+        """Change the load by a step: from none to the least load that can be held, and back to none."""
         wanted, least_n = self.wanted, least_load_n(ctx.rig)
         if sign > 0.0 and (wanted.wheel_m_s < 2.0 * STANDING_M_S or wanted.wheel_m_s != wanted.belt_m_s):
             return "load only with wheel and belt turning at the same speed"
@@ -176,16 +176,16 @@ class WheelHand:
 def by_hand(
     rig: RigConfig, ports: Ports, attendant: Attendant, record: Recorder, left: WheelLeft | None, heat: KnownRatio
 ) -> ByHand:
-    """Return manual mode on a rig; ``left``: the wheel that is on it, None for a new one."""
+    """Return manual mode on a rig; ``left``: the mounted wheel, None for a new wheel."""
     run = build_run(rig, WheelPlan(NAME, (), (), 1), ports, attendant, record, Prompts(), heat=heat)
     executor = take_over(run, left.wheel if left is not None else None)
     return ByHand(run, executor, taken_for(left, run.engine.ctx.wheel.cold_mm))
 
 
 def take_over(run: Run, worn: PieceInfo | None = None) -> ManualExecutor:
-    """Let a person command the run instead of its recipe; ``worn``: the wheel, None for a new one.
+    """Let a person command the run instead of its recipe; ``worn``: the wheel, None for a new wheel.
 
-    A simulated rig gets such a wheel.
+    A simulated rig gets this wheel.
     """
     ctx, control = run.engine.ctx, run.engine.control
     control.bounds = rig_bounds(ctx.rig)
@@ -208,5 +208,5 @@ def taken_for(left: WheelLeft | None, diameter_mm: float) -> str:
 
 
 def _within(value: float, low: float, high: float) -> float:
-    """Return a value held between two limits, on a grid that steps cannot leave."""
+    """Return a value limited to a range, rounded so that repeated steps stay on their grid."""
     return round(min(max(value, low), high), 6)

@@ -31,7 +31,7 @@ PLOTS: Final = (
     PlotView("load", "load_n", 10.0),
     PlotView("slip", "slip_mm_s", 10.0),
 )
-"""The most important first: a low screen shows two, a narrow one three."""
+"""Plots, the most important first: a low screen shows two, a narrow screen three."""
 BY_HAND: Final = (
     "wheel_speed", "belt_speed", "slip", "load", "press", *(axis.name for axis in POSITIONED), "surface", "hub", "heat",
 )  # fmt: skip
@@ -52,7 +52,7 @@ MACHINE: Final = MachineView(
 
 
 class WheelPanel(RunPanel):
-    """One run on this machine, to look at."""
+    """The view of one run on this machine."""
 
     gates_of: ClassVar[Mapping[str, int]] = {
         "load": GATE_LOAD, "speed": GATE_SPEED, "slip": GATE_SLIP, "temperature": GATE_TEMPERATURE,
@@ -60,7 +60,7 @@ class WheelPanel(RunPanel):
     }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
-        """Look at the run of an engine; change nothing."""
+        """Store the run; the panel only reads it."""
         super().__init__(engine)
         self._gates = engine.ctx.rig.gates
         limits = engine.ctx.rig.interlocks
@@ -77,7 +77,7 @@ class WheelPanel(RunPanel):
         }
 
     def wanted(self) -> dict[str, Wanted]:
-        """Return setpoints and gates of the values that have one."""
+        """Return the setpoints and gates, for values that have them."""
         ctx, out = self.engine.ctx, self.engine.control.state.setpoints
         demand, target, gates = ctx.demand, ctx.gates.target, self._gates
         slip_band_m_s = max(0.01 * gates.slip_percent * target.slip_m_s, 1e-3 * gates.slip_floor_mm_s)
@@ -116,7 +116,7 @@ class WheelPanel(RunPanel):
         wheel = self.engine.ctx.wheel
         worn = f"{wheel.cold_mm:.2f} mm, {wheel.loss_mm:.2f} mm worn off"
         plan = self.engine.executor.plan
-        allowed_mm = plan.replace_after_mm if isinstance(plan, WheelPlan) else 0.0  # by hand nothing is planned
+        allowed_mm = plan.replace_after_mm if isinstance(plan, WheelPlan) else 0.0  # manual mode plans nothing
         left_mm = allowed_mm - wheel.loss_mm
         wheel_check = Check("wheel", None, worn)
         if allowed_mm > 0.0:

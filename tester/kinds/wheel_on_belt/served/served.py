@@ -52,7 +52,7 @@ class WheelOnBelt(ServedKind):
     quantities: Quantities = QUANTITIES
 
     def title(self, step: Step) -> str:
-        """Return a step of a plan in words, as a line."""
+        """Return a description of a step, in a line."""
         return title(step)
 
     def panel(self, engine: Engine) -> WheelPanel:
@@ -70,7 +70,7 @@ class WheelOnBelt(ServedKind):
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: Attendant, record: Recorder, left: Left | None, history: History
     ) -> ByHand:
-        """Put a person in the place of a recipe."""
+        """Let a person command the run instead of a recipe."""
         heat = history.ratio if isinstance(history, HeatHistory) else NO_HISTORY
         mounted = left if isinstance(left, WheelLeft) else None
         return manual.by_hand(RigConfig.of(rig), ports, attendant, record, mounted, heat)
