@@ -1,4 +1,4 @@
-"""The kinds of rigs, found by name: packaged ones, and those that an installed package declares.
+"""The kinds of rigs, found by name: packaged kinds, and kinds that an installed package declares.
 
 Only ``tester.run`` and ``tester.cli`` look a kind up; all other modules receive a kind, or a rig. A rig file names
 its kind in the key ``kind``.
@@ -93,7 +93,7 @@ def packaged_papers() -> tuple[Paper, ...]:
 
 
 def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
-    """Return the rig of a file, or the packaged one of that name; raises InvalidSource
+    """Return the rig of a file, or the packaged rig of that name; raises InvalidSource
     (tester.inputs.rig.rig_files)."""
     from tester.inputs.rig.rig_files import load
 

@@ -126,7 +126,7 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         r.stretch = r.way_m / stretch_m if stretch_m > 0.0 else 0.0
 
     def closed_gates(self) -> int:
-        """Return the mask of the closed gates; NaN closes one."""
+        """Return the mask of the closed gates; NaN closes a gate."""
         r, target = self.readings, self.target
         mask = 0
         if not abs(r.track_m_s - target.track_m_s) <= 0.01 * self.rig.gates.speed_percent * abs(target.track_m_s):

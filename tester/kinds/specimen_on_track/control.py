@@ -136,14 +136,14 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         self.state.setpoints.chamber_silent = True
 
     def note_stop(self) -> None:
-        """Record the track's speed at the begin of a stop; the arm stays where it is."""
+        """Record the track's speed at the start of a stop; the arm stays where it is."""
         lift_mm = self.view.readings.lift_mm
         if isfinite(lift_mm):
             self.state.setpoints.lift_mm = lift_mm
         self.view.stop_start.speed_m_s = self._speed_m_s()
 
     def note_fast_stop(self) -> None:
-        """Record the track's speed at the begin of its quick stop."""
+        """Record the track's speed at the start of its quick stop."""
         self.view.stop_start.fast_speed_m_s = self._speed_m_s()
 
     def _speed_m_s(self) -> float:

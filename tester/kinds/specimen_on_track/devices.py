@@ -54,7 +54,7 @@ class TrackDevices(DeviceList):
         self._track_s: float = NEVER
 
     def receive(self, now: float) -> None:
-        """Take in everything that has arrived; count the track's way from its first reading, also while connecting."""
+        """Process all arrived data; count the track's way from its first reading, also while connecting."""
         super().receive(now)
         track = self.track
         if track.stamp_s > self._track_s:

@@ -27,7 +27,7 @@ METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
 
 @dataclass(frozen=True, slots=True)
 class TrackLimitsConfig:
-    """Hard limits: no recipe and no procedure gets past them."""
+    """Hard limits: no recipe and no procedure exceeds them."""
 
     force_n: Annotated[float, "N", Range(gt=0.0, le=195.0)]
     """At most 195 N: these rigs' cells end at 200 N."""
@@ -162,7 +162,7 @@ class TrackConfig(Rig):
     arming: TrackArmingConfig
     calibration: TrackCertificatesConfig = field(default_factory=TrackCertificatesConfig)
     sim: TrackParameters = field(default_factory=TrackParameters)
-    """The simulated rig's physics; without meaning on a real one."""
+    """The simulated rig's physics; unused on a real rig."""
 
     @property
     def ambient_c(self) -> float:
@@ -170,11 +170,11 @@ class TrackConfig(Rig):
         return self.sim.ambient if self.simulated else self.ambient
 
     def in_air(self, ambient_c: float) -> TrackConfig:
-        """Return a rig whose file states this temperature of the air around a real one, degC."""
+        """Return the rig with this temperature of the air around a real machine, degC, in its file."""
         return replace(self, ambient=ambient_c)
 
     def stale_limits(self) -> Mapping[str, tuple[str, float]]:
-        """Return the keys and values, s, of how old readings may be."""
+        """Return the keys and values, s, of the greatest age of readings."""
         limits = self.interlocks
         return {
             "load_cell": ("interlocks.stale_cell", limits.stale_cell_s),

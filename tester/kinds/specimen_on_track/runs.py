@@ -66,7 +66,7 @@ class TrackRuns(KindRun):
         attendant.install(1, 1, compound or "SBR", new_specimen=True)
 
     def history(self, runs: Path, rig: Rig) -> NoHistory:
-        """Return that every run begins with a specimen and a zero of its own."""
+        """Return a note that every run begins with its own specimen and zero."""
         return NoHistory((Check("zero of the load cell", None, "taken anew before every repeat"),))
 
     def calibration(self, rig: Rig) -> Iterator[Calibration]:

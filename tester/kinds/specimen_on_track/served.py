@@ -37,7 +37,7 @@ class SpecimenOnTrack(ServedKind):
         return title(step)
 
     def panel(self, engine: Engine) -> TrackPanel:
-        """Return what clients see of a run."""
+        """Return the view of a run for clients."""
         return TrackPanel(engine)
 
     def alone(self, rig: Rig) -> str:

@@ -88,7 +88,7 @@ ROLL_CHECK_TURNS: Final = 6.0
 def roll_check_u_mm(rig: RigConfig, off_mm: float = 0.0) -> float:
     """Return the standard uncertainty of the diameter from a single roll check, mm.
 
-    ``off_mm``: additional depth of the press due to a load off the nominal one.
+    ``off_mm``: additional depth of the press due to a load off the nominal load.
     """
     wear, stiffness = rig.wear, rig.loops.load.stiffness_n_per_mm
     per_n = 2.0 * (depth_mm(ROLL_CHECK_N + 0.5, stiffness) - depth_mm(ROLL_CHECK_N - 0.5, stiffness))

@@ -110,7 +110,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         r = self.readings
         if r.force_z_n > CONTACT_N:
             travelled_m = r.belt_speed_m_s * self.dt
-            if travelled_m > 0.0:  # false for NaN, too
+            if travelled_m > 0.0:  # also false for NaN
                 self.belt_travel_m += travelled_m
         if r.force_z_n > CONTACT_N and r.slip_m_s > SLIDING_M_S:
             self.wheel.slide(r.force_z_n, r.slip_m_s, self.dt, self._wear_mm3_per_n_m)

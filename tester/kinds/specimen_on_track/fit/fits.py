@@ -22,7 +22,7 @@ _TEXT: Final = re.compile(rf"(.*), ({'|'.join(INTERFACES)})(?: on (.*))?", re.DO
 
 
 class TrackGroup(NamedTuple):
-    """Conditions that are fitted together: one compound, interface and surface ("" where the run does not name it)."""
+    """Conditions that are fitted together: one compound, interface and surface ("" if the run names none)."""
 
     compound: str
     interface: str

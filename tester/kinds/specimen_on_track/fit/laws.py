@@ -131,8 +131,7 @@ PERSSON: Final = Law(
 def below_glass(
     glass_c: float | None, parameters: Sequence[float], measured: Sequence[tuple[float, ...]]
 ) -> Iterator[str]:
-    """Yield how many conditions are below the compound's glass transition, degC, for a law based on moduli
-    (``Law.beyond``)."""
+    """Yield how many conditions are below the compound's glass transition, degC (``Law.beyond``)."""
     below = sum(condition[TEMPERATURE] < glass_c for condition in measured) if glass_c is not None else 0
     if below:
         yield f"{below} conditions are below the glass transition, {glass_c:g} degC: rubber is a glass there"

@@ -23,7 +23,7 @@ LAG_S = 0.15
 
 @dataclass(slots=True)
 class TrackLimits:
-    """Limits of the conditions beside their own parameters, from the rig file's other sections."""
+    """Limits besides the conditions' own parameters, from the rig file's other sections."""
 
     heartbeat_s: float
     force_n: float
@@ -65,7 +65,7 @@ class WayMonitor:
         """Commanded way in the window, with its sign."""
 
     def follow(self, now: float, way_m: float, command_m_s: float, dt: float) -> None:
-        """Take in a scan: its command, and the way at its end."""
+        """Process a scan: its command, and the way at its end."""
         speed, most = self.speed_m_s, self.ramp_m_s2 * dt
         step = command_m_s - speed
         if step != 0.0:

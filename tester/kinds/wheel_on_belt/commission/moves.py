@@ -14,7 +14,7 @@ COMMISSIONING: Final = "commissioning"
 
 
 class MovesExecutor(Executor[Any]):
-    """Runs one activity after the other, as a procedure sets them; between two the demand is kept."""
+    """Runs the activities that a procedure sets, one after the other; between activities the demand stays."""
 
     def __init__(self) -> None:
         """Begin without a demand."""

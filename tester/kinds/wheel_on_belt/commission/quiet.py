@@ -1,4 +1,4 @@
-"""A rig with untested scales: connected, with every drive off but the one that a person jogs.
+"""A rig with untested scales: connected, with every drive off except the drive that a person jogs.
 
 This comes before arming, and so before the interlock table: most of its rows depend on scales. The checks are those of
 the connection before every run (tester.machine.connect): safety chain and guard, heartbeats, faults, age of the inputs,

@@ -2,8 +2,8 @@
 
 The difference when cold is the offset. Warm, lifted and turning, the tread follows the hub: its excess over the air is
 the hub's excess divided by 1 + ratio (``loops.loss_ratios``). The share of that excess that the thermometer shows is
-its gain. The gain is, to first order, the true emissivity over the set one, because the tread is not much warmer than
-the surroundings that it reflects.
+its gain. The gain is, to first order, true over set emissivity, because the tread is not much warmer than the
+surroundings that it reflects.
 """
 
 from __future__ import annotations

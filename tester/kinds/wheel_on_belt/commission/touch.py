@@ -54,7 +54,7 @@ def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
 
 
 def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
-    """Measure the wheel, touch it at little load, see friction reverse, and tare the cell."""
+    """Measure the wheel, touch it at a small load, check that friction reverses, and tare the cell."""
     believed = seat.rig.geometry.wheel_diameter_mm
     read = yield from measure("diameter", f"what does a caliper show of the new wheel (believed {believed:g})?", "mm")
     if not abs(read - believed) <= DIAMETER_MM:

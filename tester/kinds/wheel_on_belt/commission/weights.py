@@ -1,4 +1,4 @@
-"""Calibrate the load cell with hung weights: points, fit, residuals, uncertainty, who, with what, until when.
+"""Calibrate the load cell with hung weights: points, fit, residuals, uncertainty, person, reference, expiry.
 
 Nothing has power. Each weight loads one channel; a line through zero is fitted to each channel's readings less its
 zero. Crossed wires, a wrong sign, a wrong gain and a mistyped weight show before anything presses:
@@ -72,7 +72,7 @@ def settled_cell(seat: JogSeat) -> Generator[Waits, str, list[float]]:
 
 CHANNELS: Final = ("x", "y", "z")
 PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0, 100.0), "y": (50.0, 100.0, 200.0)}
-"""Approximate weights, N, by the loaded channel: rising, and one on the way back for hysteresis [A]."""
+"""Approximate weights, N, by the loaded channel: rising, and one while falling, for hysteresis [A]."""
 AVERAGE_S: Final = 1.0
 """Averaging time of a settled point, s [A]: 0.25 N of noise at 100 readings a second leaves 0.025 N."""
 STILL_N: Final = 0.1

@@ -132,7 +132,7 @@ class InterlockInputs(Inputs):
         self.heat_known = known.words(widest, beyond)
 
     def _forget_readings(self, now: float) -> None:
-        """Compare the next temperatures with no earlier ones."""
+        """Drop earlier temperatures from later comparisons."""
         self.surface.forget(now)
         self.jacket.forget(now)
         self.heat.forget()

@@ -124,7 +124,7 @@ class LoadLoop(Contact):
         bandwidth = loop.rolling_bandwidth_hz if near else loop.bandwidth_hz
         gain = _gain(loop, bandwidth, force)
         limit = loop.touch_speed_mm_s if demand.quick_touch else loop.loading_speed_mm_s
-        if near:
+        if near:  # farther off the integral would wind up
             self.integral_mm_s += gain * self.error_n * dt / loop.integral_s
             self.integral_mm_s = min(max(self.integral_mm_s, -0.1 * limit), 0.1 * limit)
         return min(max(gain * error + self.integral_mm_s, -limit), limit)
@@ -203,4 +203,4 @@ class WheelState(ControlState[Setpoints]):
         self.turning_since_s = inf
         """Time since which the wheel has been confirmed turning."""
         self.hub_ceiling: list[tuple[float, float]] = []
-        """(time, hub setpoint) within ``runaway_window``, falling ones only: the first is the highest."""
+        """(time, hub setpoint) within ``runaway_window``, only falling setpoints: the first is the highest."""

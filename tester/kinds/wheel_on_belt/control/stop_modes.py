@@ -19,7 +19,7 @@ from tester.machine.state import Mode
 
 
 def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
-    """Overwrite the commands with the safe ones, all in this scan; no action waits for another.
+    """Overwrite the commands with safe commands, all in this scan; no action waits for another.
 
     The heat is off and the contactor open, the press retracts, and both drives go to zero on equal linear decelerations
     (``fast``: by quick stop, with the press at full speed). Positioned axes stay: moving them would not help.
@@ -84,7 +84,7 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
     def note_stop(self) -> None:
         """Record the drives' speeds at the start of a stop, and how far the press may still come.
 
-        A press on its way to the contact still has its ramp ahead of it, and the lag of scan and drive.
+        A press that approaches the contact still moves during its ramp and the lag of scan and drive.
         """
         state, view = self.state, self.view
         start = state.stop_start

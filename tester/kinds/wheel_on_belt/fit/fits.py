@@ -1,4 +1,4 @@
-"""What this machine contributes to fitting: its laws, the paper's appendices, and published values and laws."""
+"""This machine's part of fitting: its laws, the paper's appendices, and published values and laws."""
 
 from __future__ import annotations
 

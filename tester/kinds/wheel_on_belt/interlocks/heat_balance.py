@@ -72,7 +72,7 @@ class HeatBalance:
         self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
         self.still_k = self._lost_w = 0.0
         self._smoothing = False
-        self._still_c = nan  # so that the rest restarts, too
+        self._still_c = nan  # so that the rest also restarts
         self._at_s = self._hub_c = nan
         self.begun += 1
 
@@ -158,7 +158,7 @@ NO_HISTORY: Final = KnownRatio()
 def known_ratio(ratios: Sequence[float], widest: float, known: float) -> KnownRatio:
     """Return a rig's history from the ratios of its heatings, oldest first; ``widest``, ``known``: as in ``share``.
 
-    The ratio is the median of the newest, but never more than that of the first ones that agree within ``known``. A
+    The ratio is the median of the newest, but never more than that of the first that agree within ``known``. A
     supply that drifts by 1 % per run would shift the newest, so that each run agrees with the previous run; the first
     ratios stay. (A supply that was wrong from the first heating on also affects them: the ratio is then beyond the
     parameters' errors, or looks like a hub of more heat capacity.)

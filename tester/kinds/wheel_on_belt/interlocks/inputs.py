@@ -91,7 +91,7 @@ class Inputs(ScanInputs):
     contact: Contact = field(init=False)
     stop_start: StopStart = field(init=False)
     hub_setpoints: list[tuple[float, float]] = field(init=False)
-    """(time, hub setpoint) within ``runaway_window``, falling ones only: the first is the highest."""
+    """(time, hub setpoint) within ``runaway_window``, only falling setpoints: the first is the highest."""
     jacket: JacketMonitor = field(init=False)
     surface: SurfaceMonitor = field(init=False)
     wheel: SpeedTracker = field(init=False)

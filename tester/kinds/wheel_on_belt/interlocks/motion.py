@@ -146,7 +146,7 @@ def _one_stands(v: Inputs) -> bool:
         return True
     if v.turning is belt_moves:
         return False
-    # In a common stop one may stand a moment before the other: that is no wheel on a stopped belt.
+    # In a common stop either may stop a moment earlier: that is no wheel on a stopped belt.
     most = p[APART_M_S]
     slow = -most <= wheel <= most and -most <= belt <= most
     # A quick stop stops both, whatever their difference: no reaction is quicker.

@@ -24,7 +24,7 @@ from tester.store.records import Travel
 
 
 def record_state(recorder: Recorder, ctx: Context, now_s: float) -> None:
-    """Record the wheel's wear at a rig time, and the travel of belt and wheel."""
+    """Record the wheel's wear, and the travel of belt and wheel, at a rig time."""
     wheel = ctx.wheel
     recorder.piece_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, now_s)
     recorder.travelled(wheel.wheel, travel_of(ctx))

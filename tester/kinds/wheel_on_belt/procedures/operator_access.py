@@ -39,7 +39,7 @@ class Standing(Move):
 class Free(Move):
     """Wait until the load cell, without tare, shows a free wheel: a person may have left it on the belt."""
 
-    limit_s = 30.0  # [A]; a hand may still be at the wheel
+    limit_s = 30.0  # [A]; a person may still touch the wheel
     name = "waiting for a load cell that shows a free wheel"
 
     def step(self, ctx: Context) -> bool:

@@ -49,7 +49,7 @@ class ShowContact:
 
 
 class InstallWheel:
-    """Stand still, ask a person to mount the wheel, then take its reference tare and show its first contact."""
+    """Stand still, ask a person to mount the wheel, then take its reference tare and check its first contact."""
 
     def __init__(self, step: Install, reference_tare: list[float]) -> None:
         """``reference_tare``: filled with the new wheel's zero."""

@@ -80,7 +80,7 @@ class ConditionCosts:
         self.constants = constants
         self.ambient_c = rig.ambient_c
         self.turn_m = math.pi * diameter_m
-        # K per W of friction and per sqrt(s): the heat spreads over the whole tread, which turns below it.
+        # K per W of friction and per sqrt(s): the turning tread spreads the heat over its whole circumference.
         self.rise_k = 2.0 * believed.friction_heat_fraction / (area_m2 * effusivity * math.sqrt(math.pi))
         # V = k F s; a ring of the tread's area, on both sides of the diameter.
         self.loss_mm_per_nm = 2.0 * rig.wear.rate_mm3_per_n_m / (area_m2 * 1e6)

@@ -1,4 +1,4 @@
-"""Heat of hub and rubber as one store, and the cost of the order of steps: heating up, the hub's lead, heat left over.
+"""Heat of hub and rubber as one store, and the cost of the order of steps: heating up, the hub's lead, leftover heat.
 
 These are closed formulas with constants from simulated runs (``tester.kinds.wheel_on_belt.recipe.constants``).
 """

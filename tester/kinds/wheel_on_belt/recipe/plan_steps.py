@@ -82,7 +82,7 @@ class WheelSettings(Settings):
 
 @dataclass(frozen=True, slots=True)
 class WheelCondition(WheelSettings, ConditionStep):
-    """A condition on a wheel. ``reference``: the reference condition, which watches the belt, not one of the grids'."""
+    """A condition on a wheel. ``reference``: the reference condition, which watches the belt."""
 
     wheel: int
     reference: bool = False

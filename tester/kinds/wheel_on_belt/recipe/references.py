@@ -1,7 +1,7 @@
 """The reference condition of this machine: its setpoint, checks of it, and when it is due in a plan.
 
-It is due at the start, after every ``every`` conditions, and at the end. On the present wheel it is one of the
-conditions, and its wear counts with theirs. A reserved wheel must be mounted each time. It is therefore also due at
+It is due at the start, after every ``every`` conditions, and at the end. On the present wheel it counts as a
+condition, with its wear. A reserved wheel must be mounted each time. It is therefore also due at
 every change of the wheel, which costs one more change instead of two; the count then restarts."""
 
 from __future__ import annotations

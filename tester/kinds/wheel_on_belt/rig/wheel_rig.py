@@ -213,7 +213,7 @@ class RigConfig(Rig):
     observer: ObserverConfig
     calibration: CertificatesConfig = field(default_factory=CertificatesConfig)
     sim: SimParameters = field(default_factory=SimParameters)
-    """The simulated rig's physics; without meaning on a real one."""
+    """The simulated rig's physics; unused on a real rig."""
 
     @property
     def ambient_c(self) -> float:
@@ -221,11 +221,11 @@ class RigConfig(Rig):
         return self.sim.ambient if self.simulated else self.observer.ambient_c
 
     def in_air(self, ambient_c: float) -> RigConfig:
-        """Return a rig whose file states this temperature of the air around a real one, degC."""
+        """Return the rig with this temperature of the air around a real machine, degC, in its file."""
         return replace(self, observer=replace(self.observer, ambient_c=ambient_c))
 
     def stale_limits(self) -> Mapping[str, tuple[str, float]]:
-        """Return the keys and values, s, of how old readings may be."""
+        """Return the keys and values, s, of the greatest age of readings."""
         limits = self.interlocks
         return {
             "load_cell": ("interlocks.stale_cell", limits.stale_cell_s),

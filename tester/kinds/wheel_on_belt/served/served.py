@@ -56,7 +56,7 @@ class WheelOnBelt(ServedKind):
         return title(step)
 
     def panel(self, engine: Engine) -> WheelPanel:
-        """Return what clients see of a run."""
+        """Return the view of a run for clients."""
         return WheelPanel(engine)
 
     def alone(self, rig: Rig) -> str:
