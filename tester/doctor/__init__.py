@@ -2,5 +2,5 @@
 
 Probes are small functions, registered in ``probe_table``; each yields findings (``finding``). They share one
 ``Examination`` of the rig file, the computer and everything read over the wires. Nothing is written to a device and no
-drive gets a command: objects are uploaded by SDO, registers are read, and the CAN bus is listened to.
+command is sent to a drive: objects are uploaded by SDO, registers are read, and the CAN bus is monitored.
 """

@@ -13,7 +13,7 @@ from tester.doctor.open_wires import Wires
 from tester.inputs.rig import Rig
 
 PATIENCE_S = 0.15
-"""Time limit for a reading, s: a slow profile's 60 ms, an adapter's latency, and a busy computer [A]."""
+"""Time limit for a reading, s: a slow profile's 60 ms, an adapter's latency, and a busy computer's delay [A]."""
 
 STEP_S = 0.001
 """Period for reading the lines, s."""
@@ -29,16 +29,16 @@ class UnitWatch:
     silences: int = 0
     noises: int = 0
     delays_s: list[float] = field(default_factory=list[float])
-    """Of the answers: from the end of the request to their beginning, s."""
+    """Delay of each answer: from the end of the request to the start of the answer, s."""
     oldest_s: float = 0.0
-    """The greatest age that a reading had when the next came, s."""
+    """Greatest age of a reading at the time when the next arrived, s."""
     values: list[bytes] = field(default_factory=list[bytes])
-    """Registers of the first block, of the last readings."""
+    """Registers of the first block, from the newest readings."""
     last_s: float = -inf
 
     @property
     def failed(self) -> int:
-        """Questions without a reading."""
+        """Number of questions without a reading."""
         return self.questions - self.readings
 
 
@@ -52,9 +52,9 @@ class RigWatch:
     can_errors: dict[str, int] | None = None
     """Error frames by kind; None if the adapter reports none."""
     can_state: str = ""
-    """The adapter's state at the end, "" if it reports none."""
+    """The adapter's state at the end; "" if it reports none."""
     units: dict[str, UnitWatch] = field(default_factory=dict[str, UnitWatch])
-    """By the devices' names in the rig file."""
+    """The watch of each device, by its name in the rig file."""
     lines_lost: dict[str, str] = field(default_factory=dict[str, str])
     late_s: list[float] = field(default_factory=list[float])
     """Lateness of each scan, s; empty in simulated time."""
@@ -64,7 +64,7 @@ _KEPT_VALUES = 200
 
 
 class _Line:
-    """A line with devices that are read in turn."""
+    """A line whose devices are read in turn."""
 
     def __init__(self, name: str, rig: Rig, port: LinePort, units: dict[str, UnitWatch]) -> None:
         config = rig.lines[name]
@@ -77,12 +77,12 @@ class _Line:
         self._now = ""
 
     def add(self, key: str, question: RegisterQuestion, period_s: float) -> None:
-        """Read a device with this period, s; 0 = as fast as possible."""
+        """Add a device to be read with this period, s; 0 = as fast as possible."""
         self._asked.append((key, question, period_s))
         self._due[key] = -inf
 
     def step(self, now: float) -> None:
-        """Take an answer and ask the next question; raises BusLost."""
+        """Receive an answer and ask the next question; raises BusLost."""
         self.scan.feed(self.port.read(now), now)
         self.scan.service(self.port, now)
         if self._now and self.scan.answer is not None:
@@ -122,7 +122,7 @@ class _Line:
 
 
 def watched(rig: Rig, wires: Wires, lines: dict[str, LineSurvey], seconds: float, *, can: bool) -> RigWatch:
-    """Watch a rig for ``seconds``; ``lines``: the surveyed lines; ``can``: whether the bus could be opened."""
+    """Watch a rig for ``seconds``. ``lines``: the surveyed lines; ``can``: whether the bus could be opened."""
     result = RigWatch()
     opened = _open(rig, wires, lines, result)
     bus = wire = _bus(rig, wires, result) if can else None

@@ -19,7 +19,7 @@ from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 from tester.run.set_up import mapped, written
 
 LOAD_MOST = 0.6
-"""A busier bus delays frames beyond their scan, share [A]."""
+"""Greatest acceptable load of the bus: above it, frames arrive after their scan, share [A]."""
 BEAT_OFF = 0.2
 """Greatest relative difference between a heartbeat's period and its object [A]."""
 MISSED = 3
@@ -48,7 +48,7 @@ def bus(e: Examination) -> Iterator[Finding]:
 
 
 def masters(e: Examination) -> Iterator[Finding]:
-    """Report frames that only a master sends, received while the doctor sent none."""
+    """Report frames that only a master sends; they were received while the doctor sent none."""
     senders = [*e.can.traffic.masters, *e.watch.can.masters]
     if senders:
         yield fault(
@@ -114,7 +114,7 @@ def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
 
 
 def _same_type(e: Examination, node: int, config: AxisConfig) -> bool:
-    """Return whether a node is a drive of the axis' maker and product, as far as the rig file states them."""
+    """Return whether a node is a drive of the axis' manufacturer and product, as far as the rig file states them."""
     if (e.can.number(node, (o.DEVICE_TYPE, 0)) or 0) & 0xFFFF != o.DEVICE_PROFILE:
         return False
     identity = ((1, config.vendor_id), (2, config.product_code))
@@ -237,7 +237,7 @@ def heartbeats(e: Examination) -> Iterator[Finding]:
 
 
 def strangers(e: Examination) -> Iterator[Finding]:
-    """Report nodes that answer without being in the rig file, and the rig file's further nodes that do not answer."""
+    """Report nodes that answer but are not in the rig file, and the rig file's further nodes that do not answer."""
     known = {config.node_id for config in e.rig.drives().values()}
     further = {config.node_id: name for name, config in e.rig.can.nodes.items()}
     for node, name in further.items():

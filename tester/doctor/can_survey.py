@@ -1,4 +1,4 @@
-"""Surveys the CAN bus: listens first, then asks node by node."""
+"""Surveys the CAN bus: listens first, then queries node by node."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tester.run.kept import IDENTITY, KEPT
 from tester.run.set_up import mapped, written
 
 LISTEN_S = 1.0
-"""Time of listening only, s: twenty heartbeats of 50 ms."""
+"""Time of listening without sending, s: twenty heartbeats of 50 ms."""
 STEP_S = 0.002
 """Period for reading the wires while waiting for an answer, s."""
 MOST_S = 30.0
@@ -31,7 +31,7 @@ STATE: tuple[Key, ...] = (
     (o.POSITION_ACTUAL, 0),
     (o.VELOCITY_ACTUAL, 0),
 )
-"""Present state of a drive."""
+"""Objects with the present state of a drive."""
 
 _FUNCTION, _NODE = 0x780, 0x07F
 _OF_A_MASTER = {o.NMT_ID: "NMT", o.SYNC_ID: "SYNC"}
@@ -47,19 +47,19 @@ class Listened:
 
     seconds: float = 0.0
     frames: Counter[int] = field(default_factory=Counter[int])
-    """How many of each identifier."""
+    """Number of frames with each identifier."""
     lengths: Counter[int] = field(default_factory=Counter[int])
-    """How many of each number of data bytes."""
+    """Number of frames with each number of data bytes."""
     beats: dict[int, list[float]] = field(default_factory=dict[int, list[float]])
-    """Arrivals of the heartbeats of each node, s."""
+    """Arrival times of the heartbeats of each node, s."""
     states: dict[int, int] = field(default_factory=dict[int, int])
     """The NMT state in each node's last heartbeat."""
     emergencies: dict[int, bytes] = field(default_factory=dict[int, bytes])
     masters: list[str] = field(default_factory=list[str])
-    """Frames that only a master sends, the first of each kind, for people."""
+    """Frames that only a master sends, the first of each kind, as text."""
 
     def take(self, frames: Iterable[CanFrame], own_node: int) -> None:
-        """Take received frames; ``own_node``: the computer's node number."""
+        """Include received frames; ``own_node``: the computer's node number."""
         for t, can_id, data in frames:
             self.frames[can_id] += 1
             self.lengths[len(data)] += 1
@@ -75,7 +75,7 @@ class Listened:
 
 
 def _of_a_master(can_id: int, own_node: int) -> str:
-    """Return the name of a frame that only a master sends, "" for any other."""
+    """Return the name of a frame that only a master sends; "" for any other."""
     if can_id in _OF_A_MASTER:
         return _OF_A_MASTER[can_id]
     if can_id == o.HEARTBEAT_BASE + own_node:
@@ -88,7 +88,7 @@ class CanSurvey:
     """The results of a survey of the CAN bus."""
 
     lost: str = ""
-    """Why the bus is not usable, "" if it is."""
+    """Why the bus cannot be used; "" if it can."""
     traffic: Listened = field(default_factory=Listened)
     present: tuple[int, ...] = ()
     """Nodes that answered."""
@@ -96,21 +96,21 @@ class CanSurvey:
     """Number of surplus answers, by node."""
     objects: Mapping[int, Mapping[Key, ObjectAnswer]] = field(default_factory=dict[int, Mapping[Key, ObjectAnswer]])
     answers_at: int = 0
-    """The bit rate at which the nodes answer, if not the rig file's, bit/s; 0 = none found."""
+    """The bit rate at which the nodes answer, if it is not the rig file's, bit/s; 0 = none found."""
 
     def number(self, node: int, key: Key) -> int | None:
-        """Return an object of a node as a number, None without an answer."""
+        """Return an object of a node as a number; None if there was no answer."""
         answer = self.objects.get(node, {}).get(key)
         return None if answer is None else answer.number
 
     def text(self, node: int, key: Key) -> str:
-        """Return an object of a node as a text, "" without an answer."""
+        """Return an object of a node as a text; "" if there was no answer."""
         answer = self.objects.get(node, {}).get(key)
         return answer.text if answer is not None and answer.ok else ""
 
 
 def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
-    """Listen to the bus, ask every node number, and read the objects of those that answer."""
+    """Listen to the bus, query every node number, and read the objects of those that answer."""
     survey = CanSurvey()
     try:
         port = wires.can(rig.can.bitrate)
@@ -145,23 +145,23 @@ def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Listen
 
 
 def objects_of(config: AxisConfig) -> list[Key]:
-    """Return every object to read from an axis' drive, each once: its identity and everything that a set-up writes."""
+    """Return every object to read from an axis' drive, each once: the identity and everything that a set-up writes."""
     return list(dict.fromkeys((*IDENTITY, *STATE, *KEPT, *written(config), *mapped(config))))
 
 
 def scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> SdoScan:
-    """Return the scan of some objects, by node, once it is done; raises BusLost."""
+    """Return the completed scan of some objects, by node; raises BusLost."""
     scan, until_s = SdoScan(wanted, timeout_s), wires.now() + MOST_S
     while not scan.done and wires.now() < until_s:
         scan.feed(port.receive(wires.now()), port, wires.now())
         scan.service(port, wires.now())
         wires.wait_until(wires.now() + STEP_S)
-    scan.feed(port.receive(wires.now()), port, wires.now())  # a second answer comes behind the first
+    scan.feed(port.receive(wires.now()), port, wires.now())  # a second answer arrives shortly after the first
     return scan
 
 
 def _other_bitrate(rig: Rig, wires: Wires) -> int:
-    """Return the bit rate at which a node of the rig file answers, 0 without any."""
+    """Return the bit rate at which a node of the rig file answers; 0 if none does."""
     nodes = [config.node_id for config in rig.drives().values()]
     for bitrate in wires.bitrates:
         if bitrate == rig.can.bitrate:

@@ -17,7 +17,7 @@ from tester.run.set_up import DeviceParameter, Parameters, mapped, stored, writt
 from tester.store.run_reader import RunReader
 
 FORMAT = 1
-"""Version of the file; any other is refused."""
+"""Version of the file format; a file of any other version is refused."""
 
 
 class DumpError(ValueError):
@@ -71,7 +71,7 @@ def dumped(e: Examination) -> ParameterDump:
 
 
 def read_dump(path: Path) -> ParameterDump:
-    """Return the dump of a file; raises DumpError, OSError."""
+    """Return the dump in a file; raises DumpError, OSError."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         version = data.pop("format")
@@ -84,7 +84,7 @@ def read_dump(path: Path) -> ParameterDump:
 
 
 def stored_in(rig: Rig, folder: Path) -> Parameters:
-    """Return a run's stored parameters; raises StoreError, DumpError if it stored none."""
+    """Return a run's stored parameters; raises StoreError, or DumpError if the run stored none."""
     with RunReader(folder) as reader:
         parameters = stored(rig, reader.parameters())
     if not parameters:

@@ -20,23 +20,23 @@ class Examination:
     """An examination of a rig. Slow parts run when a probe first needs them."""
 
     rig: Rig
-    """The rig according to its file."""
+    """The rig as its file describes it."""
     computer: Computer
     wires: Wires
     runs: Path = Path("runs")
-    """The folder that runs are written to."""
+    """The folder into which runs are written."""
     seconds: float = 60.0
-    """How long devices and computer are watched."""
+    """For how long devices and computer are watched, s."""
     packaged_keys: tuple[str, ...] = ()
-    """Keys missing in the rig file, for which the packaged value counts."""
+    """Keys missing in the rig file, for which the packaged value applies."""
     everybody: bool = True
-    """Ask every unit number of a Modbus line, not only those of the rig file."""
+    """Whether to query every unit number of a Modbus line, not only those of the rig file."""
     say: Callable[[str], object] = str
     """Shows what is being examined; by default the text is dropped."""
 
     @property
     def in_memory(self) -> bool:
-        """Whether the rig is simulated in this process: it has no adapters."""
+        """Whether the rig is simulated in this process, without adapters."""
         return self.rig.can.interface == "sim"
 
     @cached_property
@@ -57,13 +57,13 @@ class Examination:
 
     @cached_property
     def watch(self) -> RigWatch:
-        """The results of watching, after the surveys."""
+        """The results of watching the rig, which follows the surveys."""
         can, lines = not self.can.lost, self.lines
         self.say(f"watching for {self.seconds:g} s")
         return watched(self.rig, self.wires, lines, self.seconds, can=can)
 
     def limit(self, *names: str) -> float | None:
-        """Return the first of these interlock parameters that the rig has, None without any."""
+        """Return the first of these interlock parameters that the rig has; None if it has none."""
         section = getattr(self.rig, "interlocks", None)
         values = (getattr(section, name, None) for name in names)
         return next((float(value) for value in values if isinstance(value, float | int)), None)

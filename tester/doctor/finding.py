@@ -7,13 +7,13 @@ from enum import IntEnum
 
 
 class Severity(IntEnum):
-    """The severity of a finding. With a fault, a run will not start, or not last."""
+    """The severity of a finding. With a fault, a run does not start, or fails later."""
 
     OK = 0
     NOTE = 1
-    """Nothing is wrong; good to know."""
+    """Nothing is wrong; for information."""
     WARNING = 2
-    """A run may suffer from it."""
+    """The finding may impair a run."""
     FAULT = 3
 
     @property
@@ -24,14 +24,14 @@ class Severity(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A finding; ``str`` gives its line without the remedy."""
+    """A finding; ``str`` returns its line without the remedy."""
 
     severity: Severity
     subject: str
-    """An axis or a device by name, a bus, the computer."""
+    """The name of an axis or a device, a bus, or the computer."""
     found: str
     todo: str = ""
-    """What a person can do about it; "" if nothing is needed."""
+    """What a person can do about the finding; "" if nothing is needed."""
 
     def __str__(self) -> str:
         """Return the printed line."""
@@ -39,7 +39,7 @@ class Finding:
 
 
 def ok(subject: str, found: str) -> Finding:
-    """Return a finding that all is well."""
+    """Return a finding that reports no problem."""
     return Finding(Severity.OK, subject, found)
 
 
@@ -49,10 +49,10 @@ def note(subject: str, found: str, todo: str = "") -> Finding:
 
 
 def warning(subject: str, found: str, todo: str) -> Finding:
-    """Return a finding that a run may suffer from."""
+    """Return a finding that may impair a run."""
     return Finding(Severity.WARNING, subject, found, todo)
 
 
 def fault(subject: str, found: str, todo: str) -> Finding:
-    """Return a finding with which a run will not start, or not last."""
+    """Return a finding with which a run does not start, or fails later."""
     return Finding(Severity.FAULT, subject, found, todo)

@@ -13,15 +13,15 @@ from tester.inputs.rig.rig_files import risks_of
 from tester.store.disk import CONTACT_ROWS_S, FIXED_BYTES, MARGIN, ROW_BYTES
 
 DAY_S = 8 * 3600.0
-"""Length of a working day of contact, which must fit on the disk, s [A]."""
+"""Contact time of a working day, whose data must fit on the disk, s [A]."""
 LATENCY_MS = 2
-"""A latency timer this long or longer costs readings, ms: 1 is the least that FTDI's driver accepts."""
+"""A latency timer of this length or more costs readings, ms: the least that FTDI's driver accepts is 1."""
 OFTEN = 0.999
-"""Share of the scans that the second figure of the punctuality covers."""
+"""Share of the scans that the second figure for punctuality covers."""
 
 
 def serial_ports(e: Examination) -> Iterator[Finding]:
-    """Compare the lines' serial ports with the computer's, and check the permissions."""
+    """Compare the lines' serial ports with those of the computer, and check the permissions."""
     ports = _serial_lines(e)
     if not ports:
         return
@@ -58,7 +58,7 @@ def serial_ports(e: Examination) -> Iterator[Finding]:
 
 
 def _serial_lines(e: Examination) -> dict[str, LineConfig]:
-    """Return the lines on serial ports of this computer; none of a rig in memory."""
+    """Return the lines on serial ports of this computer; none for a rig simulated in this process."""
     if e.in_memory:
         return {}
     return {name: line for name, line in e.rig.lines.items() if line.framing == "rtu"}
@@ -91,7 +91,7 @@ def _latency_remedy(e: Examination, port: str) -> str:
 
 
 def can_adapter(e: Examination) -> Iterator[Finding]:
-    """Check the SocketCAN interface: present, up, at the rig file's bit rate, its queue, its errors."""
+    """Check the SocketCAN interface: present, up, with the rig file's bit rate; also its queue and its errors."""
     can = e.rig.can
     if can.interface != "socketcan":
         if not e.in_memory:
@@ -129,7 +129,7 @@ def can_adapter(e: Examination) -> Iterator[Finding]:
 
 
 def _details(e: Examination, channel: str) -> dict[str, Any]:
-    """Return the output of ``ip`` on a CAN interface; empty on failure."""
+    """Return the output of ``ip`` about a CAN interface; empty on failure."""
     text = e.computer.output("ip", "-json", "-details", "link", "show", channel)
     try:
         return cast("dict[str, Any]", json.loads(text or "[]")[0]["linkinfo"]["info_data"])
@@ -152,7 +152,7 @@ def _queue(e: Examination, folder: str) -> Iterator[Finding]:
 
 
 def disk(e: Examination) -> Iterator[Finding]:
-    """Compare the free space with a working day's need, and check that runs can be written."""
+    """Compare the free space with the need of a working day, and check that runs can be written."""
     folder = str(e.runs)
     if not e.computer.may_use(folder):
         yield fault("run folder", f"nothing can be written to {folder}", "choose another (--out), or ask its owner")
@@ -171,7 +171,7 @@ def disk(e: Examination) -> Iterator[Finding]:
 
 
 def clock(e: Examination) -> Iterator[Finding]:
-    """Check that a time server sets the computer's clock: records carry its time; control does not use it."""
+    """Check that a time server sets the computer's clock. Records contain its time; control does not use it."""
     text = e.computer.output("timedatectl", "show", "--property=NTPSynchronized", "--value")
     if text is None:
         yield note("clock", "it is unknown whether a time server sets it; only recorded times depend on it")
@@ -185,7 +185,7 @@ def clock(e: Examination) -> Iterator[Finding]:
 
 
 def punctuality(e: Examination) -> Iterator[Finding]:
-    """Report how late the computer's scans were during the watch, and which limits that supports."""
+    """Report how late the computer's scans were during the watch, and which limits would be possible."""
     late = sorted(e.watch.late_s)
     if not late:
         yield note("scan", "rig time is simulated: how punctual this computer is was not measured")
@@ -210,7 +210,7 @@ def punctuality(e: Examination) -> Iterator[Finding]:
 
 
 def rig_file(e: Examination) -> Iterator[Finding]:
-    """Report what the rig file leaves open or loosens."""
+    """Report what the rig file does not define, and which limits it loosens."""
     if e.packaged_keys:
         yield note(
             "rig file", f"packaged values count for {', '.join(e.packaged_keys)}", "`tester rig upgrade` writes them in"

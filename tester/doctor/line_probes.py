@@ -15,9 +15,9 @@ from tester.inputs.rig import LineConfig
 from tester.inputs.rig.further_sensors import title_of
 
 READINGS_S = 40.0
-"""Least rate of a device that is read in every scan, readings a second."""
+"""Least rate of readings from a device that is read in every scan, readings a second."""
 LATE_S = 0.008
-"""An answer this much later than the profile's longest time is delayed by the adapter, s [A]."""
+"""An answer that exceeds the profile's longest time by this much was delayed by the adapter, s [A]."""
 FAILED_MOST = 0.01
 """Greatest acceptable share of failed questions on a line [A]."""
 STALE_LIMITS = {
@@ -26,7 +26,7 @@ STALE_LIMITS = {
     "jacket": ("stale_jacket_s",),
     "chamber": ("stale_chamber_s",),
 }
-"""Interlock parameters that limit the age of a device's readings, by the kind of its profile."""
+"""Interlock parameters that limit the age of a device's readings, by the kind in its profile."""
 
 
 def lines(e: Examination) -> Iterator[Finding]:
@@ -65,7 +65,7 @@ def lines(e: Examination) -> Iterator[Finding]:
 
 
 def _exchanged_with(e: Examination, name: str) -> str:
-    """Return the line whose devices seem to be exchanged with this line's; "" without any."""
+    """Return the line whose devices appear to be exchanged with this line's; "" if there is none."""
     config, settings = e.rig.lines[name], e.lines[name].answers_at
     for other, line in e.lines.items():
         other_settings = line.answers_at
@@ -124,7 +124,7 @@ def _silent(e: Examination, line_name: str, line: LineSurvey, key: str, name: st
 
 
 def _refusals(name: str, unit: UnitSurvey) -> Iterator[Finding]:
-    """Report registers of the profile that the device lacks, and a device of another type."""
+    """Report registers of the profile that the device lacks, or that the device is of another type."""
     profile = unit.profile
     wrong = f"is it a {profile.title}? Correct the profile of the device in the rig file, or the device"
     identity = unit.configuration.get("device type")
@@ -147,7 +147,7 @@ def _refusals(name: str, unit: UnitSurvey) -> Iterator[Finding]:
 
 
 def _values(name: str, unit: UnitSurvey) -> Iterator[Finding]:
-    """Report a device's readings, whether they are plausible, and its status."""
+    """Report a device's readings, whether they are plausible, and the device's status."""
     for block, answer in zip(unit.profile.blocks, unit.blocks, strict=False):
         if not answer.ok:
             continue
@@ -208,7 +208,7 @@ def _status(name: str, unit: UnitSurvey, status: int) -> Iterator[Finding]:
 
 
 def _settings(name: str, unit: UnitSurvey) -> Iterator[Finding]:
-    """Compare the registers that every connect writes with the rig file and the profile."""
+    """Compare the registers that every connection writes with the rig file and the profile."""
     profile = unit.profile
     wanted: dict[str, tuple[int, ...]] = {write.name: (write.value,) for write in profile.setup}
     for key, signal in profile.writes.items():
@@ -230,7 +230,7 @@ def _words(data: bytes) -> tuple[int, ...]:
 
 
 def units(e: Examination) -> Iterator[Finding]:
-    """Report units that answer without being in the rig file."""
+    """Report units that answer but are not in the rig file."""
     for name, line in e.lines.items():
         for number, answer in line.others.items():
             if number not in line.looks_like:
@@ -248,7 +248,7 @@ def ages(e: Examination) -> Iterator[Finding]:
     for key, watch in e.watch.units.items():
         name, unit = title_of(e.rig, key), surveyed[key]
         if not watch.readings and watch.exceptions:
-            continue  # its refusal is reported already
+            continue  # its refusal has already been reported
         if not watch.readings:
             yield fault(name, f"no reading in {e.watch.seconds:.0f} s", "its supply, its plug")
             continue

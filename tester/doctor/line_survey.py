@@ -1,4 +1,4 @@
-"""Surveys a Modbus line: asks every device of the rig file, then every other unit number."""
+"""Surveys a Modbus line: queries every device of the rig file, then every other unit number."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.profiles import profile_of
 
 PATIENCE_S = 0.25
-"""Time limit for a device of the rig file, s: beyond every profile's reply time, and late adapters."""
+"""Time limit for a device of the rig file, s: longer than every profile's reply time, even with a late adapter."""
 SCAN_S = 0.06
 """Time limit for any other unit number, s [A]: the slowest profile's turnaround takes 20 ms, an adapter 16 ms."""
 UNITS = range(1, 248)
@@ -23,7 +23,7 @@ STEP_S = 0.002
 BAUDS = (115_200, 57_600, 38_400, 19_200, 9_600)
 PARITIES: tuple[Parity, ...] = ("N", "E", "O")
 TRIES = 3
-"""Number of times to ask until a device answers."""
+"""Greatest number of times that a device is queried until it answers."""
 
 
 @dataclass(slots=True)
@@ -33,22 +33,22 @@ class UnitSurvey:
     config: DeviceConfig
     profile: DeviceProfile
     blocks: list[LineAnswer] = field(default_factory=list[LineAnswer])
-    """One for each block of registers of the profile."""
+    """An answer for each block of registers of the profile."""
     configuration: dict[str, LineAnswer] = field(default_factory=dict[str, LineAnswer])
-    """Registers of its identity, set-up and parameters, by name."""
+    """Answers for the registers of identity, set-up and parameters, by name."""
 
     @property
     def there(self) -> bool:
-        """Whether it answered at all."""
+        """Whether the device answered at all."""
         return any(answer.there for answer in (*self.blocks, *self.configuration.values()))
 
     @property
     def noise(self) -> bytes:
-        """Received bytes that are no answer."""
+        """Received bytes that do not belong to an answer."""
         return b"".join(answer.noise for answer in (*self.blocks, *self.configuration.values()))
 
     def question(self, block: int = 0, number: int | None = None) -> RegisterQuestion:
-        """Return the question for a block of registers; ``number``: of another unit."""
+        """Return the question for a block of registers; ``number``: the number of another unit to query instead."""
         asked = self.profile.blocks[block]
         unit_id = self.config.unit_id if number is None else number
         return RegisterQuestion(unit_id, asked.function, asked.address, asked.count)
@@ -56,7 +56,7 @@ class UnitSurvey:
     def settings(self) -> Iterator[tuple[str, RegisterQuestion]]:
         """Yield name and question of every configuration register: identity, set-up, parameters.
 
-        Setpoint and lease are commands, and are left out.
+        Setpoint and lease are left out, because they are commands.
         """
         profile, unit_id = self.profile, self.config.unit_id
         reads = 3 if 3 in profile.functions else 4
@@ -75,17 +75,17 @@ class LineSurvey:
 
     lost: str = ""
     units: dict[str, UnitSurvey] = field(default_factory=dict[str, UnitSurvey])
-    """By the devices' names in the rig file."""
+    """The survey of each device, by its name in the rig file."""
     others: dict[int, LineAnswer] = field(default_factory=dict[int, LineAnswer])
-    """Unit numbers that answer without being in the rig file."""
+    """Answers of units that are not in the rig file, by unit number."""
     looks_like: dict[int, str] = field(default_factory=dict[int, str])
-    """Of those, the device of the rig file whose registers they have."""
+    """For each of these that has the registers of a device of the rig file, that device."""
     answers_at: LineConfig | None = None
-    """The settings at which a device answers, if not the rig file's."""
+    """The settings at which a device answers, if they are not the rig file's."""
 
 
 def survey_line(rig: Rig, name: str, wires: Wires, *, everybody: bool = True) -> LineSurvey:
-    """Ask the devices of a line; with ``everybody``, also every other unit number."""
+    """Query the devices of a line; with ``everybody``, also every other unit number."""
     survey = LineSurvey()
     config = rig.lines[name]
     for key, device in rig.devices.items():
@@ -112,7 +112,7 @@ def survey_line(rig: Rig, name: str, wires: Wires, *, everybody: bool = True) ->
 
 
 def asked(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuestion, timeout_s: float) -> LineAnswer:
-    """Ask a question and return its result; raises BusLost."""
+    """Ask a question and return the answer; raises BusLost."""
     scan.ask(question, timeout_s)
     while True:
         now = wires.now()
@@ -124,7 +124,7 @@ def asked(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuesti
 
 
 def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) -> None:
-    """Read all registers in a device's profile; skip the rest if the first gets no answer."""
+    """Read all registers in a device's profile; if the first is not answered, skip the rest."""
     for block in range(len(unit.profile.blocks)):
         answer = _patiently(scan, port, wires, unit.question(block))
         unit.blocks.append(answer)
@@ -144,7 +144,7 @@ def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQ
 
 
 def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[RegisterQuestion, int | None]]:
-    """Yield questions that identify a type of device at another unit number, with the expected value."""
+    """Yield questions by which to recognise a type of device at another unit number, each with the expected value."""
     identity = unit.profile.identity
     if identity is not None:
         yield RegisterQuestion(number, identity.function, identity.address, 1), identity.value
@@ -152,7 +152,7 @@ def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[RegisterQuestion, in
 
 
 def _compare(scan: LineScan, port: LinePort, wires: Wires, survey: LineSurvey) -> None:
-    """Find out whether an unknown unit is a device that does not answer at its own number."""
+    """Determine whether an unknown unit is a device that does not answer at its own number."""
     for number in survey.others:
         for key, unit in survey.units.items():
             if unit.there:
@@ -166,7 +166,7 @@ def _compare(scan: LineScan, port: LinePort, wires: Wires, survey: LineSurvey) -
 
 
 def _other_settings(config: LineConfig, name: str, wires: Wires, survey: LineSurvey) -> LineConfig | None:
-    """Return the settings at which a device of the line answers, None without any."""
+    """Return the settings at which a device of the line answers; None if there are none."""
     if config.framing == "socket":
         return None
     for baud in BAUDS:
@@ -177,7 +177,7 @@ def _other_settings(config: LineConfig, name: str, wires: Wires, survey: LineSur
             try:
                 port = wires.line(name, tried)
             except BusLost:
-                continue  # an adapter need not have every setting
+                continue  # an adapter need not support every setting
             scan = LineScan(tried.framing, baud, parity)
             if any(asked(scan, port, wires, unit.question(), PATIENCE_S).there for unit in survey.units.values()):
                 return tried

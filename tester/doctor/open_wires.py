@@ -1,4 +1,4 @@
-"""The doctor's wires to a rig: opened one at a time, with other settings if needed, real or simulated."""
+"""The doctor's wires to a rig, real or simulated: opened one at a time, with other settings if needed."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tester.run.simulated import simulated_ports
 BITRATES = (1_000_000, 800_000, 500_000, 250_000, 125_000)
 """Bit rates of CANopen that a rig file can state, bit/s (CiA 301, 5.1)."""
 OUTSIDE = ("socketcan", "socketcand")
-"""Interfaces whose bit rate the system sets, not the program that opens them."""
+"""Interfaces whose bit rate the system sets, not the program that opens the interface."""
 
 
 class HardwareWires:
-    """The wires of a rig file, over the computer's adapters."""
+    """The wires of a rig file, through the computer's adapters."""
 
     real = True
-    """Time passes by itself, so that the computer's lateness can be measured."""
+    """Whether time passes by itself, so that the computer's lateness can be measured."""
 
     def __init__(self, rig: Rig) -> None:
         """Open nothing yet."""
@@ -31,14 +31,14 @@ class HardwareWires:
         self._can: PythonCanPort | None = None
         self._lines: dict[str, SerialLine | TcpLine] = {}
         self.bitrates = () if rig.can.interface in OUTSIDE else BITRATES
-        """Bit rates that ``can`` can open besides the rig file's."""
+        """Bit rates at which ``can`` can open the bus, besides the rig file's."""
 
     def now(self) -> float:
         """Return the seconds since the examination began."""
         return self._pace.now()
 
     def wait_until(self, due_s: float) -> None:
-        """Return at ``due_s`` (s)."""
+        """Wait until ``due_s`` (s)."""
         self._pace.wait_until(due_s)
 
     def can(self, bitrate: int) -> CanPort:
@@ -71,7 +71,7 @@ class HardwareWires:
 
 
 class SimulatedWires:
-    """The wires of a simulated rig in this process; its time passes only while waiting.
+    """The wires of a simulated rig in this process, whose time passes only during waits.
 
     ``built``: the rig as simulated, which may differ from the rig file.
     """
@@ -80,7 +80,7 @@ class SimulatedWires:
     bitrates = BITRATES
 
     def __init__(self, built: Rig, seed: int = 0) -> None:
-        """Switch the simulated rig on at time 0. Raises InvalidSource as ``simulated_ports``."""
+        """Switch the simulated rig on at time 0. Raises InvalidSource as ``simulated_ports`` does."""
         self._built = built
         ports, world, _ = simulated_ports(built, seed, None)
         self._ports = ports
@@ -98,22 +98,22 @@ class SimulatedWires:
             self.world.advance(due_s)
 
     def can(self, bitrate: int) -> CanPort:
-        """Return the bus, or at another bit rate the reception of a mistuned adapter."""
+        """Return the bus; at another bit rate, a port that receives as an adapter with the wrong setting does."""
         return self._ports.can if bitrate == self._built.can.bitrate else MistunedCan()
 
     def line(self, name: str, config: LineConfig) -> LinePort:
-        """Return the line, or at other settings the reception of a mistuned port."""
+        """Return the line; with other settings, a port that receives as one with the wrong settings does."""
         built = self._built.lines[name]
         same = (config.baud, config.parity) == (built.baud, built.parity)
         return self._ports.lines[name] if same else MistunedLine()
 
     def close(self) -> None:
-        """Do nothing: the rig is freed with its last reference."""
+        """Do nothing: the rig is freed with the last reference to it."""
 
 
 Wires = HardwareWires | SimulatedWires
 
 
 def wires_of(rig: Rig, seed: int = 0) -> Wires:
-    """Return the wires of a rig, simulated in this process or real; real ones are not open yet."""
+    """Return the wires of a rig, simulated in this process or real; real wires are not open yet."""
     return SimulatedWires(rig, seed) if rig.can.interface == "sim" else HardwareWires(rig)

@@ -1,4 +1,4 @@
-"""The doctor's probes in order, and a file of their findings. A new probe is a function and a line here."""
+"""The doctor's probes in order, and a file of their findings. A new probe needs a function and a line here."""
 
 from __future__ import annotations
 
@@ -42,30 +42,30 @@ PROBES: Final[tuple[tuple[str, Probe], ...]] = (
 
 
 class TableEntry(NamedTuple):
-    """A finding under its heading."""
+    """A finding with its heading."""
 
     heading: str
     finding: Finding
 
     @property
     def as_data(self) -> dict[str, str]:
-        """The entry for programs."""
+        """The entry as plain data for programs."""
         return {"heading": self.heading, **asdict(self.finding), "severity": self.finding.severity.word}
 
 
 def examined(examination: Examination) -> Iterator[TableEntry]:
-    """Yield every probe's findings as they are made. Raises InvalidSource if the rig file names unknown profiles."""
+    """Yield every probe's findings as they arise. Raises InvalidSource if the rig file names unknown profiles."""
     for heading, probe in PROBES:
         for finding in probe(examination):
             yield TableEntry(heading, finding)
 
 
 RUNS_NAMED = 3
-"""Number of newest runs whose file names are included."""
+"""Number of newest runs whose file names the bundle contains."""
 
 
 def written_bundle(path: Path, e: Examination, findings: Sequence[TableEntry]) -> None:
-    """Write the bundle; raises OSError. Nothing of the environment, of users or of other files goes into it."""
+    """Write the bundle; raises OSError. It contains nothing about the environment, users or other files."""
     texts = {
         "findings.txt": "".join(f"{entry.finding}\n        {entry.finding.todo}\n" for entry in findings),
         "findings.json": _json([entry.as_data for entry in findings]),
@@ -84,7 +84,7 @@ def _json(data: object) -> str:
 
 
 def _last_runs(folder: Path) -> list[str]:
-    """Return the names and sizes of the files of the last runs, so that they can be asked for."""
+    """Return the names and sizes of the files of the newest runs, so that a person can request them."""
     runs = sorted((path for path in folder.glob("*") if path.is_dir()), key=lambda path: path.name)[-RUNS_NAMED:]
     return [
         f"{file.relative_to(folder).as_posix()} {file.stat().st_size} bytes"

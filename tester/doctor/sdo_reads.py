@@ -19,20 +19,20 @@ BOOT_S = 0.5
 COMMANDS: Final = frozenset(
     {(o.CONTROLWORD, 0), (o.DIGITAL_OUTPUTS, 1), (o.TARGET_VELOCITY, 0), (o.TARGET_POSITION, 0)}
 )
-"""Objects that command a drive or switch an output: only a run sends them."""
+"""Objects that command a drive or switch an output, which only a run may write."""
 _OFF = (State.NOT_READY, State.SWITCH_ON_DISABLED, State.READY_TO_SWITCH_ON, State.FAULT)
-"""States of a drive without power."""
+"""States in which a drive has no power."""
 
 
 class WriteRefusedError(Exception):
-    """The object must not be written now; the message gives the reason."""
+    """The object must not be written at present; the message gives the reason."""
 
 
 class NodeAccess:
     """The objects of one node. Raises BusLost if the bus is gone."""
 
     def __init__(self, port: CanPort, wires: Wires, node: int) -> None:
-        """``node``: its number, 1..127."""
+        """``node``: number of the node, 1..127."""
         self._port = port
         self._wires = wires
         self._node = node
@@ -40,13 +40,13 @@ class NodeAccess:
         port.receive(wires.now())
 
     def read(self, key: Key) -> ObjectAnswer:
-        """Upload an object."""
+        """Upload an object: read it from the node."""
         scan = scanned(self._port, self._wires, {self._node: [key]}, PATIENCE_S)
         answer = scan.answers.get(self._node, {}).get(key)
         return answer or ObjectAnswer(key, error=f"nothing answers at node {self._node} within {PATIENCE_S:g} s")
 
     def may_write(self, key: Key) -> None:
-        """Raise WriteRefusedError for a command, and for a drive that has power."""
+        """Raise WriteRefusedError if the object is a command, or if the node is a drive that has power."""
         if key in COMMANDS:
             raise WriteRefusedError(f"0x{key[0]:04X} commands the drive: only a run sends it")
         statusword = self.read((o.STATUSWORD, 0))
@@ -57,7 +57,7 @@ class NodeAccess:
             raise WriteRefusedError(f"the drive has power ({cia402.decode(word).name}): nothing is written to it now")
 
     def write(self, key: Key, kind: DataType, value: int | str) -> ObjectAnswer:
-        """Download a value and return the object's new value, or why the node refused it.
+        """Download a value to the node; return the object's new value, or why the node refused it.
 
         Raises WriteRefusedError, and ValueError if the value does not fit the type.
         """

@@ -1,7 +1,7 @@
 """The doctor's access to the computer: its files, programs, serial ports and disks. Tests override it.
 
-It knows Linux: sysfs, ``ip``, ``timedatectl``. On other systems these reads return None, and the probes report that
-they could not look. On Windows the latency timer is read from the registry, where FTDI's driver keeps it; that was not
+It supports Linux: sysfs, ``ip``, ``timedatectl``. On other systems these reads return None, and the probes report that
+they could not check. On Windows the latency timer is read from the registry, where FTDI's driver keeps it; that was not
 tried on a machine.
 """
 
@@ -19,7 +19,7 @@ COMMAND_AT_MOST_S = 3.0
 
 
 class SerialPortInfo(NamedTuple):
-    """A serial port of the computer; ``device`` opens it: ``/dev/ttyUSB0``, ``COM3``."""
+    """A serial port of the computer; ``device`` is the name with which to open it: ``/dev/ttyUSB0``, ``COM3``."""
 
     device: str
     description: str
@@ -45,15 +45,15 @@ class Computer:
             return []
 
     def exists(self, path: str) -> bool:
-        """Return whether a file of this name exists."""
+        """Return whether a file with this name exists."""
         return Path(path).exists()
 
     def real(self, path: str) -> str:
-        """Return a path without links, for example the port of a name in ``/dev/serial/by-id``."""
+        """Return a path with links resolved, for example the port behind a name in ``/dev/serial/by-id``."""
         return os.path.realpath(path)
 
     def may_use(self, path: str) -> bool:
-        """Return whether this user may read and write a path; for a missing one, the nearest folder above."""
+        """Return whether this user may read and write a path; if it is missing, its nearest existing folder."""
         return os.access(_nearest(path), os.R_OK | os.W_OK)
 
     def group_of(self, path: str) -> str:
@@ -88,7 +88,7 @@ class Computer:
         return [SerialPortInfo(port.device, port.description or "") for port in ports]
 
     def latency_ms(self, port: str) -> int | None:
-        """Return the latency timer of a USB serial adapter, ms; None without one, or if unknown."""
+        """Return the latency timer of a USB serial adapter, ms; None if it has none or it is unknown."""
         if sys.platform == "win32":
             return _latency_on_windows(port)
         name = Path(self.real(port)).name
@@ -105,7 +105,7 @@ def _nearest(path: str) -> Path:
 if sys.platform == "win32":
 
     def _latency_on_windows(port: str) -> int | None:
-        """Return the latency timer that FTDI's driver keeps for a port: a value beside its ``PortName``. Not tried."""
+        """Return the latency timer that FTDI's driver stores for a port, next to its ``PortName``. Not tried."""
         import winreg
 
         root = r"SYSTEM\CurrentControlSet\Enum\FTDIBUS"
@@ -128,5 +128,5 @@ if sys.platform == "win32":
 else:
 
     def _latency_on_windows(port: str) -> int | None:
-        """Return None: this is no Windows."""
+        """Return None: this system is not Windows."""
         return None

@@ -1,4 +1,6 @@
-"""Activities: a step of the plan as an object that is stepped once a scan until it is done, and may be held."""
+"""Activities: the work of a plan's step as an object. Its ``step`` is called once a scan until the work is done; a hold
+may interrupt it.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ ContextT_contra = TypeVar("ContextT_contra", bound=AnyContext, contravariant=Tru
 
 
 class Activity(Protocol[ContextT_contra]):
-    """Stepped once a scan, in the context of its kind."""
+    """An activity that is stepped once a scan, with the context of its kind."""
 
     def step(self, ctx: ContextT_contra) -> bool:
         """Advance by one scan; return True when done."""
@@ -19,12 +21,12 @@ class Activity(Protocol[ContextT_contra]):
 
 @runtime_checkable
 class Resumable(Protocol):
-    """An activity that must restart something after a hold. Any other simply continues."""
+    """An activity that must restart something after a hold. Any other activity simply continues."""
 
     def resume(self, ctx: Any) -> None:
-        """Resume: the contact is open, and the drives run or rest as the hold left them."""
+        """Resume after a hold: the contact is open, and the drives run or rest as the hold left them."""
         ...
 
 
 class MoveFailedError(Exception):
-    """A move has exceeded its time: the run stops in a controlled way, with this as its reason."""
+    """A move has exceeded its time limit. The run stops in a controlled way and reports this error as the reason."""

@@ -1,4 +1,4 @@
-"""One condition of any machine: its repeats, each committed before the next begins."""
+"""The measurement of one condition on any machine: its repeats, each committed before the next begins."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
     """The activity of one condition. A kind implements ``begin`` (the repeat) and ``ready`` (the work before it)."""
 
     def __init__(self, step: StepT, results: StoredResults[ContextT]) -> None:
-        """``results`` takes the repeats."""
+        """``results`` judges and commits the repeats."""
         self.condition = step
         self.results = results
         self.done_before = results.repeats_done(step)
-        """Repeats that an earlier stretch of the run committed."""
+        """Number of repeats that an earlier stretch of the run committed."""
         self.repeat = self.done_before
         self.voided = 0
-        """Attempts at the present repeat that a hold interrupted."""
+        """Number of attempts at the present repeat that a hold interrupted."""
         self.key = 0
         self.measuring: RepeatT | None = None
         self.outcome: RepeatOutcome | None = None
         self.end: ConditionEnd | None = None
-        """How the condition ends; None while it is measured."""
+        """How the condition ended; None while it is being measured."""
         self.failed = ""
-        """Why the zero of the load cell is not trustworthy: the run ends."""
+        """Why the zero of the load cell is not trustworthy, which ends the run; "" if it is."""
         self._looked = False
 
     # -- by a kind ------------------------------------------------------------------------------------------
 
     def ready(self, ctx: ContextT) -> bool:
-        """Return whether the next repeat may begin; set ``end`` if it never will."""
+        """Return whether the next repeat may begin; set ``end`` if it can never begin."""
         return True
 
     def begin(self, ctx: ContextT, attempt: int) -> RepeatT:
@@ -57,7 +57,9 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
         ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: {self.outcome.text}")
 
     def resume(self, ctx: ContextT) -> None:
-        """Void a repeat that a hold has interrupted; it is repeated. A repeat that is being committed stays."""
+        """Void a repeat that a hold has interrupted, so that it is measured again; keep a repeat that is being
+        committed.
+        """
         if self.outcome is None and self.measuring is not None:
             self.results.void_repeat(ctx, self.key, "held by the operator")
             ctx.journal.event(ctx.now, "repeat", f"repeat {self.repeat}: void, held by the operator")

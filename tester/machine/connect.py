@@ -1,7 +1,7 @@
-"""Connects a rig: listens, configures the drives, waits for every device, lifts, homes, and proves what must hold.
+"""Connects a rig: listens, configures the drives, waits for every device, lifts, homes, and proves its safety
+functions.
 
-Nothing moves before every device has answered, and only the lift moves before the kind has shown that nothing is
-loaded.
+Nothing moves before every device has answered. Until the kind has shown that nothing is loaded, only the lift moves.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from tester.machine.wires import CAN_SILENT, STALE_INPUTS_S
 CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
 TIMEOUT_S = 90.0
-"""Time limit for the connection; homing of a slow axis takes the most [A]."""
+"""Time limit for the connection; the homing of a slow axis takes most of it [A]."""
 RAMP_S = 0.5
-"""Time for every axis to stop after a failure: the ramp from creep speed takes 25 ms, that of homing 0.2 s [A]."""
+"""Time for every axis to stop after a failure: the ramp takes 25 ms from creep speed, 0.2 s from homing speed [A]."""
 RELEASE_S = 3.0
 """Time limit for releasing configured drives after a failure [A]."""
 
@@ -44,7 +44,7 @@ class Stage(Enum):
 
 _HEARD = frozenset({Stage.LIFT, Stage.HOME, Stage.PROVE})
 _MOVING = _HEARD | {Stage.HEAR}
-"""Every drive is configured, and axes move or are about to: slowly, unloaded and cold."""
+"""Stages in which every drive is configured, and axes move or are about to: slowly, unloaded and cold."""
 _SCANNING = _MOVING | {Stage.RELEASE}
 
 
@@ -53,7 +53,7 @@ _POWERED = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTI
 
 
 class Lifting(Protocol):
-    """Proves that nothing is loaded, one call of ``step`` a scan, and keeps watching that."""
+    """Proves that nothing is loaded, one call of ``step`` a scan, and keeps watching that this stays so."""
 
     @property
     def done(self) -> bool:
@@ -62,7 +62,7 @@ class Lifting(Protocol):
 
     @property
     def failure(self) -> str:
-        """Why the proof failed; "" while it has not."""
+        """Why the proof failed; "" if it has not failed."""
         ...
 
     def step(self, now: float) -> None:
@@ -70,11 +70,11 @@ class Lifting(Protocol):
         ...
 
     def stop(self) -> None:
-        """Bring everything it has moved to standstill, power off."""
+        """Bring every axis that the proof moved to standstill, power off."""
         ...
 
     def trouble(self, now: float) -> str:
-        """Return "", or why a rig once unloaded is no longer known to be."""
+        """Return why a rig that was proven unloaded may no longer be; "" if it still is."""
         ...
 
 
@@ -96,10 +96,10 @@ class Arming(Generic[DevicesT, RigT]):
         return self.devices.answering() and self.devices.io.inputs_stamp_s > -inf
 
     def renew(self) -> None:
-        """Renew the leases of devices that an earlier program left behind; they stay off."""
+        """Renew the leases of devices that an earlier program left on the rig; they stay off."""
 
     def unfit(self, now: float, configured_s: float) -> str:
-        """Return why no axis may move, "" if all may. The drives send by themselves since ``configured_s``."""
+        """Return why no axis may move, "" if all may. Drives have sent cyclic data since ``configured_s``."""
         io = self.devices.io
         if not io.inputs & INPUT_SAFETY_CHAIN:
             return "safety chain"
@@ -110,7 +110,7 @@ class Arming(Generic[DevicesT, RigT]):
         return ""
 
     def silent(self) -> str:
-        """Return the explanation when no drive responds."""
+        """Return the explanation to show when no drive responds."""
         return f"{CAN_SILENT.name}: {CAN_SILENT.cause}"
 
     def lift(self) -> Lifting:
@@ -118,7 +118,7 @@ class Arming(Generic[DevicesT, RigT]):
         raise NotImplementedError
 
     def prove(self) -> WatchdogProof:
-        """Begin to prove that drives follow and stop."""
+        """Begin to prove that the drives follow commands and stop."""
         raise NotImplementedError
 
 
@@ -126,10 +126,10 @@ class Connector:
     """Runs the connection, tick by tick."""
 
     timeout_s: float = TIMEOUT_S
-    """Time limit for the connection; inf if a person takes the time."""
+    """Time limit for the connection; inf if a person takes part and needs the time."""
 
     def __init__(self, devices: DeviceList, rig: Rig, arming: Arming[Any, Any], listen_s: float) -> None:
-        """Send nothing before the first ``tick``, and nothing on the CAN bus before the listening is over."""
+        """Send nothing before the first ``tick``, and nothing on the CAN bus before the listening period is over."""
         self.devices = devices
         self.rig = rig
         self.listen_s = listen_s
@@ -137,7 +137,7 @@ class Connector:
         self.stage = Stage.LISTEN
         self.failure = ""
         self.shown = ""
-        """Result of the proof; a line for the journal."""
+        """The result of the proof as a line for the journal."""
         self._lifting: Lifting | None = None
         self._proof: WatchdogProof | None = None
         self._configured_s = -inf
@@ -146,22 +146,22 @@ class Connector:
 
     @property
     def finished(self) -> bool:
-        """Whether it is ready or has failed."""
+        """Whether the connection is ready or has failed."""
         return self.stage in (Stage.READY, Stage.FAILED)
 
     @property
     def failed(self) -> bool:
-        """Whether it has given up; it may still be releasing drives."""
+        """Whether the connection has failed; drives may still be being released."""
         return self.stage in (Stage.RELEASE, Stage.FAILED)
 
     @property
     def watches_drives(self) -> bool:
-        """Whether every drive is configured, so that a drive that stops by itself ends the connection at once."""
+        """Whether every drive is configured: from then on a drive that stops by itself ends the connection at once."""
         return self.stage in _MOVING and not (self._proof is not None and self._proof.provokes)
 
     def tick(self, now: float) -> float:
-        """Do everything due at ``now``; return the time of the next call (s). Raises BusLost if the drives are
-        unreachable.
+        """Do everything due at ``now``; return the time of the next call (s). Raises BusLost if the drives cannot be
+        reached.
         """
         devices = self.devices
         if self._started_s is None:
@@ -181,13 +181,14 @@ class Connector:
         return now + (line_speed.FINE_S if measuring else CONNECT_S)
 
     def abort(self, why: str) -> None:
-        """Give up: everything moving stops, and configured drives are released."""
+        """Give up: stop everything that moves, and release configured drives."""
         if not self.finished and self.stage is not Stage.RELEASE:
             self._fail(why)
 
     def _advance(self, now: float, elapsed: float) -> None:
         devices = self.devices
-        # While other devices are still configured, a refusal waits, so that all are reported together.
+        # While other devices are still being configured, hold a refusal back, so that all refusals are reported
+        # together.
         refused = "" if self.stage is Stage.CONFIGURE and devices.busy() else devices.refused()
         unfit = self._unfit(now) if self.stage in _MOVING else ""
         if self.stage in _HEARD:
@@ -218,7 +219,7 @@ class Connector:
         self.stage = Stage.CONFIGURE
 
     def _next(self, now: float) -> None:
-        """Enter the next stage; no conversation with a drive is under way."""
+        """Enter the next stage; called while no exchange with a drive is under way."""
         devices = self.devices
         if self.stage is Stage.CONFIGURE:
             devices.master.sync = True
@@ -262,7 +263,7 @@ class Connector:
             self.stage = Stage.READY
 
     def _unfit(self, now: float) -> str:
-        """Return why no axis may move, or keep moving; "" if all may."""
+        """Return why no axis may start or continue to move; "" if all may."""
         if all(drive.lost for drive in self.devices.drives):
             return self.arming.silent()
         for drive in self.devices.drives:
@@ -294,7 +295,7 @@ class Connector:
         self.stage = Stage.RELEASE
 
     def _release(self, now: float) -> None:
-        """Release every configured drive, so that none takes our end for a fault."""
+        """Release every configured drive, so that none reports a fault when our heartbeat ends."""
         devices, master = self.devices, self.devices.master
         if self._released_s is None:
             self._released_s = now
@@ -306,7 +307,7 @@ class Connector:
         elif now - self._released_s > RAMP_S:
             for drive in devices.drives:
                 if drive.state in _POWERED:
-                    drive.goal = Goal.FREE  # it does not come to rest
+                    drive.goal = Goal.FREE  # it does not come to rest: stop waiting for standstill
 
     def _missing(self) -> str:
         """Return the names of devices that have not answered."""

@@ -14,7 +14,7 @@ from tester.store.recorder import Recorder
 
 @dataclass(slots=True)
 class Progress:
-    """Where the run is, for people: plain values, overwritten as it goes."""
+    """Where the run is, for people: plain values that are overwritten during the run."""
 
     step: int = 0
     steps: int = 0
@@ -35,9 +35,10 @@ DemandT_co = TypeVar("DemandT_co", bound=BaseDemand, covariant=True)
 
 
 class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
-    """One per run; activities read and write it, nothing else. A kind adds its specimen, gates and devices.
+    """The context of one run: the only object that activities read and write. A kind adds its specimen, gates and
+    devices.
 
-    The engine calls the methods at their places of a scan (``tester.machine``).
+    The engine calls the methods at fixed places of a scan (``tester.machine``).
     """
 
     def __init__(
@@ -57,37 +58,36 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         self.now = 0.0
         self.dt = 0.0
         self.moving = False
-        """Set by an activity while something that is measured is on its way: the next scans come at the sliding
-        rate."""
+        """Set by an activity while something that is measured is moving: the next scans run at the sliding rate."""
         self.sample: tuple[float, ...] = ()
-        """The row recorded in the scan before: a value for each recorded channel."""
+        """The row recorded in the previous scan: a value for each recorded channel."""
         self.setpoints: Any = None
-        """The scan's setpoints, for the record: the kind's own."""
+        """The scan's setpoints, for the record; the kind defines the class."""
         self.repeat_key = 0
         self.burst = 0
         self.gate = 0
-        """Mask of the gates that are closed; 0: this scan counts."""
+        """Mask of the closed gates; 0 if this scan counts."""
         self.progress = Progress()
 
     def before_reading(self) -> None:
-        """Bring into the image what the devices need to fill it."""
+        """Write to the image what the devices need before they fill it."""
 
     def after_reading(self) -> None:
-        """Account for what this scan has done to the specimen; ``dt`` is its length, s."""
+        """Update the state of the specimen with this scan; ``dt`` is the scan's length, s."""
 
     def closed_gates(self) -> int:
-        """Return the mask of the gates that are closed in this scan of a RUN."""
+        """Return the mask of the gates that are closed in this scan in RUN."""
         return 0
 
     def after_control(self) -> None:
-        """Take note of what control has just made of the demand."""
+        """Read what control has just made of the demand."""
 
     def touching(self) -> bool:
-        """Return whether contact is wanted, or measured: then every scan is recorded."""
+        """Return whether contact is demanded or measured; every scan is then recorded."""
         return False
 
     def piece(self) -> tuple[int, float, float]:
-        """Return number (0: none), diameter in mm (NaN: it has none) and sliding distance in m of the specimen."""
+        """Return the specimen's number (0 if none), diameter in mm (NaN if it has none) and sliding distance in m."""
         return 0, nan, 0.0
 
     def record_piece(self, recorder: Recorder, now_s: float) -> None:
@@ -97,7 +97,7 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
             recorder.piece_state(number, diameter_mm, sliding_m, now_s)
 
     def known(self) -> list[str]:
-        """Return what earlier runs make known of this rig, a line each, for the journal at arming."""
+        """Return what earlier runs have measured of this rig, a line each, for the journal at arming."""
         return []
 
 

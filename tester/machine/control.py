@@ -40,16 +40,16 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         hold_at_most_s: float,
         ack_wait_s: float,
     ) -> None:
-        """Take the kind's parts; ``withdrawn`` and ``held`` are fresh demands for the modes that ignore the recipe's
+        """Store the kind's parts. ``withdrawn`` and ``held`` are fresh demands for the modes that ignore the recipe's
         demand.
 
-        ``hold_at_most_s``: a hold ends in a controlled stop after this. ``ack_wait_s``: an acknowledgement waits this
-        long for the last cause to go.
+        ``hold_at_most_s``: after this time a hold ends in a controlled stop. ``ack_wait_s``: an acknowledgement waits
+        this long for the last cause to clear.
         """
         super().__init__(state, view)
         self.table = table
         self._withdrawn = withdrawn
-        """The demand in every mode but RUN and HOLD: none. A stop is not judged against the load that it lifts."""
+        """The demand in every mode but RUN and HOLD: nothing. A stop is not judged against the load that it removes."""
         self._held = held
         """The demand in HOLD."""
         self._hold_at_most_s, self._ack_wait_s = hold_at_most_s, ack_wait_s
@@ -106,7 +106,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
     def start(self, readings: ReadingsT) -> str:
         """Arm and enter RUN: one arming edge. Return "", or the levels that prevent it.
 
-        ``readings`` are present ones; every level of the table is evaluated on them.
+        ``readings`` must be present values: every level of the table is evaluated on them.
         """
         state, now = self.state, readings.now_s
         if state.mode is not _IDLE:
@@ -149,7 +149,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         return ""
 
     def request_stop(self, now: float, why: str, *, fast: bool = False, cool: bool = True) -> None:
-        """Begin a controlled (or fast) stop; idempotent, and never slows a stop under way.
+        """Begin a controlled (or fast) stop; idempotent. A fast stop under way does not become a slower one.
 
         ``cool``: the machine keeps turning, unloaded, while it is too hot to stop.
         """
@@ -183,7 +183,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         return ""
 
     def _acknowledge(self, now: float) -> None:
-        """Leave LATCHED if no level holds any more; refuse if one still does after a while."""
+        """Leave LATCHED once no level holds; refuse the acknowledgement if one still holds after ``ack_wait_s``."""
         state, table = self.state, self.table
         holding = (state.held | table.still_there(self.view) & state.tripped) & ~table.warnings
         if not holding:
@@ -194,7 +194,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
             state.enter(_IDLE, now, "acknowledged")
         elif now > state.ack_until_s:
             state.ack_until_s = -inf
-            state.tripped &= ~table.at_rest  # anything still moving or heating loses its power again
+            state.tripped &= ~table.at_rest  # anything still moving or heating trips again
             names = ", ".join(table.names_of(holding))
             state.events.append(ControlEvent(now, "acknowledgement", f"refused, still there: {names}"))
 
@@ -208,7 +208,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
             self._time(now_held, readings)
 
     def _time(self, now_held: int, readings: ReadingsT) -> None:
-        """Update since when rows hold, and trip those that have held for their delay."""
+        """Update the time since when each row holds, and trip rows that have held for their delay."""
         state, now, delays = self.state, readings.now_s, self._delays
         pending = state.pending_s
         gone = state.held & ~now_held
@@ -229,7 +229,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
                 self._trip(i, lowest, readings)
 
     def _trip(self, i: int, own: int, readings: ReadingsT) -> None:
-        """Act on a due row: warn, or stop by its reaction. At rest there is little left to stop."""
+        """Act on a row whose delay is over: warn, or stop by its reaction. At rest there is little left to stop."""
         state, row, now = self.state, self.table.rows[i], readings.now_s
         if row.reaction is Reaction.WARN:
             state.tripped |= own
@@ -257,7 +257,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
                 state.enter(_LATCHED, now, row.name)
 
     def _acts_at_rest(self, row: Interlock[Any]) -> bool:
-        """Return whether a row trips at rest: something is on that should be off."""
+        """Return whether a row trips at rest, because something is on that should be off."""
         return row.at_rest is not None and row.at_rest(self.view)
 
     def _react(self, reaction: Reaction, now: float, why: str) -> None:
@@ -283,7 +283,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
     # -- holds and stops ------------------------------------------------------------------------------------
 
     def _hold(self, readings: ReadingsT, dt: float) -> None:
-        """Command the hold's demand; a hold that lasts too long ends in a controlled stop."""
+        """Command the hold's demand; end a hold that lasts too long with a controlled stop."""
         now = readings.now_s
         if now - self.state.mode_since_s > self._hold_at_most_s:
             self.request_stop(now, "held too long")
@@ -292,7 +292,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
             self.run_outputs(self._held, readings, dt)
 
     def _begin_stop(self, now: float) -> None:
-        """Record the begin of a stop, and its starting point."""
+        """Record the time at which a stop begins, and the state from which it begins."""
         stop = self.state.stop
         stop.began_s = now
         stop.fast_s = inf
@@ -300,13 +300,13 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         self.note_stop()
 
     def _begin_fast(self, now: float) -> None:
-        """Record the begin of a quick stop, and its starting point."""
+        """Record the time at which a quick stop begins, and the state from which it begins."""
         if self.state.stop.fast_s > now:
             self.state.stop.fast_s = now
             self.note_fast_stop()
 
     def _after_stop(self, now: float) -> None:
-        """Leave a stop that has ended: to the cool-down, to LATCHED after a trip, else to IDLE."""
+        """Leave a stop that has ended: to the cool-down if one is needed, to LATCHED after a trip, else to IDLE."""
         state = self.state
         hot = self.must_cool() if state.mode is _STOPPING and not state.cooled else ""
         if hot:

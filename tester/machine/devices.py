@@ -45,13 +45,12 @@ class CountedInRun(Protocol):
 
 
 class DeviceList:
-    """Drivers and their ports.
+    """Drivers and their ports. A kind inherits from this class and implements ``fill`` and ``apply``.
 
-    ``lines``: ports and links in the order of the rig file; ``modbus``: the devices on them in the order of the rig
-    file, including the further sensors (``sensors``), whose channels are recorded, as are those of ``nodes`` on the CAN
-    bus. ``news``: a drive's state, an input or an emergency is new in this scan. ``lost``: why a wire is gone; it is
-    never used again, because its queued requests must not be sent later. A kind inherits from this: ``fill`` and
-    ``apply``.
+    ``lines``: ports and links in the order of the rig file. ``modbus``: the devices on them in that order, including
+    the further sensors (``sensors``). The channels of these sensors and of the ``nodes`` on the CAN bus are recorded.
+    ``news``: a drive's state, an input or an emergency is new in this scan. ``lost``: why a wire is gone; it is never
+    used again, because its queued requests must not be sent later.
     """
 
     def __init__(
@@ -59,7 +58,7 @@ class DeviceList:
     ) -> None:
         """Take the drivers, including those of the kind's own devices.
 
-        ``prompts``: the links that may ask for extra ticks between two scans; ``retracting``: a drive that stays in
+        ``prompts``: the links that may request extra ticks between two scans; ``retracting``: a drive that stays in
         operation during a quick stop of the others.
         """
         self.can: CanPort = drivers.ports.can
@@ -95,7 +94,7 @@ class DeviceList:
         self._watched = tuple((link, port) for _, link, port in self._lines if link in self._prompts)
 
     def rewire(self, can: CanPort, lines: Sequence[LinePort]) -> None:
-        """Use other ports from now on; ``lines`` in the order of the present ones."""
+        """Use other ports from now on; ``lines`` in the same order as the present ones."""
         self.can = can
         self.lines = [(port, link) for port, (_, link) in zip(lines, self.lines, strict=True)]
         self._foresee()
@@ -105,7 +104,7 @@ class DeviceList:
         raise NotImplementedError
 
     def apply(self, out: Any) -> None:
-        """Hand the kind's setpoints to the drivers; the frames leave with ``transmit``."""
+        """Pass the kind's setpoints to the drivers; ``transmit`` sends the frames."""
         raise NotImplementedError
 
     def fill_common(self, r: BaseReadings, now: float) -> None:
@@ -133,7 +132,7 @@ class DeviceList:
             r.device_fault, r.line_errors, r.line_fault = inspector.fault, inspector.line_errors, inspector.noisy
 
     def apply_common(self, out: BaseSetpoints) -> None:
-        """Set the goal of every drive, and withhold our heartbeat as the last resort."""
+        """Set the goal of every drive. As the last resort, withhold our heartbeat."""
         wanted = _ENABLED if out.enable else _DISABLED
         goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
         if goal is not self._goal or wanted is not self._wanted or self.news:
@@ -141,7 +140,7 @@ class DeviceList:
             for drive in self.drives:
                 drive.goal = wanted if goal is _QUICK_STOP and drive is self._retracting else goal
         if out.power_off is not self._withheld:
-            # Every drive stops on its own watchdog, even one that ignores commands.
+            # Without the heartbeat every drive stops by its own watchdog, even a drive that ignores commands.
             self._withheld = self.master.withhold_heartbeat = out.power_off
 
     def _fill_status(self, r: BaseReadings) -> None:
@@ -165,13 +164,13 @@ class DeviceList:
         r.guard_closed = inputs & INPUT_GUARD != 0
 
     def receive(self, now: float) -> None:
-        """Take in everything that has arrived; a lost wire is ignored from then on (``lost`` has the reason)."""
+        """Process everything that has arrived; from then on ignore a wire that is lost (``lost`` has the reason)."""
         try:
             frames = self.can.receive(now)
         except BusLost as error:
             self._lose_can(error)
         else:
-            # A wire that was lost and came back is read, but its data is not trusted.
+            # A wire that was lost and has come back is still read, but its data are not trusted.
             if frames and self.can_alive:
                 self._can_heard_s = frames[-1][0]
                 self.master.feed(frames, now)
@@ -190,16 +189,18 @@ class DeviceList:
         self.can_alive = False
 
     def _lose_line(self, link: ModbusLink, error: BusLost, now: float) -> None:
-        """Drop a line: its values are not valid any more."""
+        """Stop using a line: its values are no longer valid."""
         self.lost = self.lost or f"line lost: {name_of(link, self.modbus)}: {error}"
         self._lines = tuple(entry for entry in self._lines if entry[1] is not link)
         self._watched = tuple((other, None if other is link else port) for other, port in self._watched)
         for station in link.stations:
             station.owner.lost(now)
-        link.deadline = inf  # it is not served any more, and must not ask for extra ticks
+        link.deadline = inf  # the line is no longer served, and must not ask for extra ticks
 
     def transmit(self, now: float, *, scan: bool, next_scan_s: float = NEVER) -> float:
-        """Send everything due and return the next time a driver needs service; ``next_scan_s`` if it is known."""
+        """Send everything due; return the next time at which a driver needs a call. ``next_scan_s``: the next scan, if
+        known.
+        """
         deadline = inf
         if self.can_alive:
             try:
@@ -249,19 +250,19 @@ class DeviceList:
                 place += 1
 
     def busy(self) -> bool:
-        """Return whether a conversation with a node of the CAN bus is under way."""
+        """Return whether an exchange with a node of the CAN bus is under way."""
         return any(self.master.busy(node) for node in self.master.nodes)
 
     def refused(self) -> str:
-        """Return why devices cannot be used, all of them, or ""."""
+        """Return why devices cannot be used, naming all of them; "" if all can."""
         return "; ".join(refusals(self.drives, self.nodes, self.modbus))
 
     def without(self) -> list[str]:
-        """Return the objects that drives do without, and the consequence: a line each."""
+        """Return the objects that drives lack, with the consequence, a line each."""
         return [f"{drive.config.name} drive: {text}" for drive in self.drives for text in drive.plan.without]
 
     def alarm(self) -> bool:
-        """Return whether a drive reports something that should not wait for the next regular scan."""
+        """Return whether a drive reports something that should not wait until the next regular scan."""
         for drive in self.drives:
             if drive.stands or drive.state >= State.FAULT_REACTION or drive.lost or drive.rebooted:
                 return True
@@ -274,7 +275,7 @@ class DeviceList:
         return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)
 
     def real_lines(self) -> bool:
-        """Return whether the arrival of bytes on some Modbus line is unpredictable."""
+        """Return whether some Modbus line is real, so that the arrival of its bytes is unpredictable."""
         return any(foreseen is None for _, _, foreseen in self._lines)
 
     def answering(self) -> bool:

@@ -1,7 +1,7 @@
-"""Rows shared by machines with drives: old data, a drive that drops out, stops that fail.
+"""Rows shared by machines with drives: old data, a drive that leaves operation, stops that fail.
 
-A kind supplies the rest: its test for standstill and the deadline, its bounds with the harm they prevent, and the texts
-for the operator.
+A kind supplies its test for standstill, the deadline, its bounds with the harm they prevent, and the texts for the
+operator.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ def _stops(v: Any) -> bool:
 
 
 def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[Any]:
-    """Return the row for stale data while drives are on; ``heard_s``: time stamps of the drives' data in the readings.
+    """Return the row for stale data while drives are on; ``heard_s``: reads the time stamps of the drives' data from
+    the readings.
     """
 
     def data_old(v: Any) -> bool:
@@ -50,7 +51,7 @@ def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[A
 
 
 def drive_dropped_out(delay: Parameter) -> Interlock[Any]:
-    """Return the row for a drive that left operation although it is wanted there."""
+    """Return the row for a drive that has left operation although the demand needs it."""
     return Interlock(
         name="drive dropped out",
         cause="a drive left operation by itself (local control, torque off)",

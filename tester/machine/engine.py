@@ -22,7 +22,7 @@ _STOPPING: Final = Mode.STOPPING
 _FAST_STOP: Final = Mode.FAST_STOP
 _EMERGENCY: Final = Mode.EMERGENCY
 HOLD_MOVES_S: Final = 3.0
-"""Time within which a hold has opened the contact, s [A]: scans come at the sliding rate until then."""
+"""Time within which a hold has opened the contact, s [A]: until then scans run at the sliding rate."""
 SEVERITIES: Final = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
 """Severity of control's events by kind; all others are information."""
 
@@ -34,7 +34,7 @@ class Engine:
         self, devices: DeviceList, control: AnyControl, executor: Executor[Any], ctx: AnyContext, sampler: Sampler
     ) -> None:
         """Take the kind's parts; send nothing before the first ``tick``."""
-        # Any: a kind's own code finds its own classes here, with more fields than a machine's.
+        # Any: a kind's code expects its own classes here, with more fields than the common ones.
         self.devices: Any = devices
         self.control: Any = control
         self.executor: Executor[Any] = executor
@@ -50,7 +50,7 @@ class Engine:
         self.scans = 0
         self.finished = False
         self._trip = 0
-        """Number in the record of the latched trip."""
+        """Number of the latched trip in the record."""
 
     def tick(self, now: float) -> float:
         """Do everything due at ``now`` (s) and return the latest time of the next tick."""
@@ -65,10 +65,10 @@ class Engine:
         return min(self.next_scan_s, max(deadline, now + SOONEST_S))
 
     def abandon(self) -> None:
-        """Command a safe state at once and send it; nothing is sent afterwards.
+        """Command a safe state at once and send it; send nothing afterwards.
 
         CAN frames leave at once. A Modbus request leaves only on a free line: during a reply it would spoil both. A
-        device that gets no request stops when its lease ends.
+        device that receives no request stops when its lease ends.
         """
         devices: DeviceList = self.devices
         control: AnyControl = self.control
@@ -77,7 +77,7 @@ class Engine:
         devices.transmit(self.ctx.now, scan=True)
 
     def _urgent(self) -> bool:
-        """Return whether a drive reports a fault or an emergency that should not wait for the next regular scan."""
+        """Return whether a drive reports a fault or an emergency that should not wait until the next regular scan."""
         ctx: AnyContext = self.ctx
         return not ctx.readings.drive_fault and bool(self.devices.alarm())
 
@@ -128,12 +128,12 @@ class Engine:
                 self._trip = 0
             journal.event(event.at_s, event.kind, event.text, SEVERITIES.get(event.kind, "info"))
         if state.mode is Mode.LATCHED and not self._trip:
-            # A person's fast stop also latches: the next operator has to know.
+            # A fast stop by a person also latches: the next operator must see it.
             self._trip = journal.trip(ctx.now, "fast stop", state.stop_requested)
         state.events.clear()
 
     def _journal_emergencies(self) -> None:
-        """Queue the drives' own reports, before the trip that they cause."""
+        """Queue the drives' own emergency reports, before the trip that they cause."""
         devices: DeviceList = self.devices
         for drive in devices.drives:
             if drive.emergency_log:
@@ -156,6 +156,7 @@ class Engine:
             self.period_s = self.enabled_s
         else:
             self.period_s = self.idle_s
-        # Absolute deadlines: a late scan does not delay the ones after it; an early (urgent) one restarts them.
+        # Deadlines are absolute: a late scan does not delay those after it; an early (urgent) scan starts the period
+        # anew.
         late = now - self.next_scan_s
         self.next_scan_s = (self.next_scan_s if 0.0 <= late < self.period_s else now) + self.period_s

@@ -1,4 +1,4 @@
-"""Walks through the plan: one activity after the other, each a small state object stepped once a scan."""
+"""Executes the plan: one activity after the other, each stepped once a scan."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Unforeseen(Generic[ContextT]):
         steps: Sequence[Step] = (),
         failed: str = "",
     ) -> None:
-        """``title``: of the activity, "" if it belongs to the step before. ``failed``: why the run ends here."""
+        """``title``: of the activity; "" if it belongs to the previous step. ``failed``: why the run ends here."""
         self.activity = activity
         self.title = title
         self.steps = tuple(steps)
@@ -36,7 +36,7 @@ class Procedures(Generic[ContextT]):
     """Selects the activity for each step; a kind of machine implements it."""
 
     def title(self, step: Step) -> str:
-        """Return a description of a step, in a line."""
+        """Return a one-line description of a step."""
         raise NotImplementedError
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: ContextT) -> Activity[ContextT]:
@@ -54,13 +54,13 @@ class Procedures(Generic[ContextT]):
         return None
 
     def number_after(self, last: int) -> None:
-        """Number unplanned steps from after ``last``: the plan may be part of a larger one."""
+        """Number unplanned steps from ``last`` + 1: the plan may be part of a larger one."""
 
     def resumed(self, ctx: ContextT) -> None:
-        """Set the demand from which a step may resume after a hold, before the present activity resumes."""
+        """Set the demand with which a step may resume after a hold; called before the present activity resumes."""
 
     def measuring(self, activity: Activity[ContextT]) -> bool:
-        """Return whether an activity is measuring repeats, whose pace shows the time left."""
+        """Return whether an activity is measuring repeats, whose pace predicts the time left."""
         return False
 
 
@@ -82,11 +82,11 @@ class Executor(Generic[ContextT]):
         return self.activity is not None and self.procedures.measuring(self.activity)
 
     def hold(self, ctx: ContextT) -> None:
-        """Note that the rig is held: samples taken meanwhile belong to no repeat."""
+        """Record that the rig is held: samples taken during the hold belong to no repeat."""
         ctx.burst = ctx.repeat_key = 0
 
     def resume(self, ctx: ContextT) -> None:
-        """Resume after a hold: an interrupted repeat is void and is repeated."""
+        """Resume after a hold: an interrupted repeat is void and is measured again."""
         self.procedures.resumed(ctx)
         if isinstance(self.activity, Resumable):
             self.activity.resume(ctx)

@@ -1,7 +1,7 @@
 """The common part of every machine's process image: drives, wires, safety inputs, a person near the machine.
 
-A kind's readings, demand and setpoints inherit from these and add its own signals. One instance of each exists per rig,
-overwritten in place at fixed places of a scan.
+A kind's readings, demand and setpoints inherit from these classes and add their own signals. Each rig has one instance
+of each, which is overwritten in place at fixed places of a scan.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from typing import Final
 
 NEVER: Final = float("-inf")
-"""Time stamp of a source without a report: older than anything, hence stale."""
+"""Time stamp of a source that has not reported: older than any real one, hence stale."""
 
 NAN: Final = float("nan")
-"""Value of a source without a report, or of a missing demand."""
+"""Value of a source that has not reported, or of a missing demand."""
 
 
 @dataclass(slots=True)
@@ -33,21 +33,21 @@ class BaseReadings:
     can_heard_s: float = NEVER
     """When the last CAN frame arrived."""
     unheard: str = ""
-    """Drives without new data although others send, as text; empty = none."""
+    """Drives that send no new data while others do, as text; empty = none."""
     line_silent: str = ""
     """Modbus lines on which no device answers, as text; empty = none."""
     foreign_master: str = ""
-    """First CAN frame that only another master sends, as text; empty = none."""
+    """First CAN frame that only another master can have sent, as text; empty = none."""
     device_fault: str = ""
-    """First Modbus device that refuses a request or misses our commands; empty = none."""
+    """First Modbus device that refuses a request or does not receive our commands; empty = none."""
     line_errors: float = 0.0
-    """Largest share of failed requests among the Modbus devices, of the last few seconds, 0..1."""
+    """Largest share of failed requests of any Modbus device in the last few seconds, 0..1."""
     line_fault: str = ""
     """The device with that share, and its number of failed requests, in words; empty while few fail."""
     safety_chain: bool = False
     guard_closed: bool = False
     inputs_at_s: float = NEVER
-    """Time stamp of these two inputs, from the drive with the safety inputs."""
+    """Time stamp of the two safety inputs, from the drive that reads them."""
     channels: list[float] = field(default_factory=list[float])
     """Readings of the rig's further sensors, in the order of the rig file; NaN = not fresh and valid."""
 
@@ -75,4 +75,4 @@ class BaseSetpoints:
     enable: bool = False
     quick_stop: bool = False
     power_off: bool = False
-    """Every power stage off at once: the last resort when a stop fails."""
+    """Switch every power stage off at once: the last resort when a stop fails."""

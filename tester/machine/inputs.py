@@ -34,13 +34,13 @@ class ScanInputs:
     scan_s: float = 0.0
     """Period of the scan, s."""
     last_s: float = -inf
-    """Time of the scan before."""
+    """Time of the previous scan."""
     late_s: float = inf
-    """How much later than its period this scan is, s."""
+    """Lateness of this scan beyond its period, s."""
     late_before_s: float = 0.0
-    """How much later than its period the scan before was, s."""
+    """Lateness of the previous scan beyond its period, s."""
     mode_since_s: float = 0.0
-    """Since when the rig has been in its mode."""
+    """Time since when the rig has been in its mode."""
     loaded: bool = True
     """Contact is wanted or cannot be excluded. The kind writes it in every scan."""
     stopped_s: float = -inf
@@ -50,24 +50,27 @@ class ScanInputs:
     resting: bool = True
     """Everything should be at rest: idle, armed or latched."""
     unpowered: bool = False
-    """A run that wants no drives has seen them without power: nothing may move until all are in operation again. The
-    kind writes it in every scan.
+    """A run that does not want the drives has seen them without power: nothing may move until all are in operation
+    again. The kind writes it in every scan.
     """
     confirmed: bool = False
-    """Every drive has been in operation since they were last wanted to be, and something commands them. The kind writes
-    it in every scan."""
+    """Every drive has been in operation since the drives were last demanded, and something commands them. The kind
+    writes it in every scan.
+    """
     attended: bool = False
-    """A person was asked to come near; their effect on sensors is no fault."""
+    """A person was asked to come near; the person's effect on sensors is no fault."""
 
     further_places: dict[str, int] = field(default_factory=dict[str, int])
-    """Place in ``readings.channels`` of each channel of a further sensor, by its name."""
+    """Index in ``readings.channels`` of each channel of a further sensor, by its name."""
 
     def note_further(self, rig: Rig) -> None:
-        """Store the places of the rig's further channels."""
+        """Store the indices of the rig's further channels."""
         self.further_places = {channel.name: place for place, channel in enumerate(further_channels(rig))}
 
     def further(self, channels: list[float], name: str) -> float:
-        """Return a further sensor's present value from ``readings.channels``; NaN, which trips, while it is unknown."""
+        """Return a further sensor's present value from ``readings.channels``; NaN, which trips, while the value is
+        unknown.
+        """
         place = self.further_places.get(name, len(channels))
         return channels[place] if place < len(channels) else nan
 

@@ -1,6 +1,6 @@
-"""The interlock table of a kind of machine: its rows in one order, their bits, and the table as people read it.
+"""The interlock table of a kind of machine: its rows in order, their bits, and the table as people read it.
 
-The order is that of importance: of rows that trip in one scan the first becomes the cause. A row's bit is its place.
+Rows are in order of importance: if several trip in one scan, the first becomes the cause. A row's bit is its position.
 ``python docs/interlocks.py`` writes the table of a kind's safety page and the section ``interlocks`` of its rig files.
 """
 
@@ -20,12 +20,14 @@ Read: TypeAlias = Callable[[Any], float]
 
 
 def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
-    """Return the parameters that rows declare, each once, with the first row that has it."""
+    """Return the parameters that rows declare, each once, at the first row that declares it."""
     return tuple(dict.fromkeys(parameter for row in rows for parameter in row.declared()))
 
 
 class Group:
-    """Rows that are evaluated together, with their bits: a number costs a call of its function and of a limit's."""
+    """Rows that are evaluated together, with their bits. A row's number costs one call, and its limit at most one
+    more.
+    """
 
     __slots__ = ("least", "members", "most", "numbers", "spans", "states")
 
@@ -37,13 +39,13 @@ class Group:
             for watch, applies in self._of(Form.AT_MOST)
             if watch.parameters
         )
-        """Number, the parameter that it may not exceed, whether the row applies."""
+        """For each row: the number, the parameter that it may not exceed, and whether the row applies."""
         self.most: tuple[tuple[Read, Read, Asked], ...] = tuple(
             (watch.parts[0], watch.parts[1], applies)
             for watch, applies in self._of(Form.AT_MOST)
             if not watch.parameters
         )
-        """The same of other limits."""
+        """The same for limits that are not parameters."""
         self.least: tuple[tuple[Read, Read, Asked], ...] = tuple(
             (watch.parts[0], watch.parts[1], applies) for watch, applies in self._of(Form.AT_LEAST)
         )
@@ -58,7 +60,9 @@ class Group:
         return [(row.watch, row.applies or always) for _, row in self.members if row.watch.form is form]
 
     def held(self, v: ScanInputs) -> int:
-        """Return the bits of the rows that hold. Nearly always none does: only then the search for which begins."""
+        """Return the bits of the rows that hold. Nearly always none holds; the search for the row begins only when one
+        does.
+        """
         return self._which(v) if self._any(v) else 0
 
     def _any(self, v: ScanInputs) -> bool:
@@ -90,16 +94,18 @@ class Group:
 
 
 class InterlockTable:
-    """Rows, the bounds that belong to no row, and their evaluation in a scan. It never changes."""
+    """The rows, the bounds that belong to no row, and the evaluation of a scan. A table never changes."""
 
     def __init__(self, rows: Iterable[Interlock[Any]], operation: Iterable[Parameter] = ()) -> None:
-        """Take the rows in their order; ``operation``: parameters of the section ``interlocks`` that no row has."""
+        """Take the rows in their order; ``operation``: parameters of the section ``interlocks`` that belong to no
+        row.
+        """
         self.rows: tuple[Interlock[Any], ...] = tuple(rows)
         self.operation: tuple[Parameter, ...] = tuple(operation)
         self.parameters: tuple[Parameter, ...] = (*parameters_of(self.rows), *self.operation)
         """Every key of the rig file's section ``interlocks``, in its order."""
         self.channels: tuple[str, ...] = tuple(dict.fromkeys(name for row in self.rows for name in row.channels))
-        """Channels of further sensors that rows look at."""
+        """Channels of further sensors that rows read."""
         self._bits = {row.name: 1 << i for i, row in enumerate(self.rows)}
         self.always = self._group(ALWAYS)
         self.while_loaded = self._group(LOADED)
@@ -110,7 +116,7 @@ class InterlockTable:
         self.at_rest = sum(self.bit(row.name) for row in self.rows if row.at_rest is not None)
         """Rows that also trip in idle."""
         self.warnings = sum(self.bit(row.name) for row in self.rows if row.reaction is WARN)
-        """Rows that stop nothing: they do not prevent arming or acknowledging."""
+        """Rows that stop nothing, and do not prevent arming or acknowledging."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> InterlockTable:
         """Return itself: copies of a running machine share its table."""
@@ -137,7 +143,7 @@ class InterlockTable:
         return found
 
     def still_there(self, v: ScanInputs) -> int:
-        """Return the bits of rows that are watched only while something is wanted, as if it were."""
+        """Return the bits of rows that apply only while something is demanded, evaluated as if it were."""
         return sum(bit for bit, there in self._unseen if there(v))
 
     def delays_s(self, values: Values) -> tuple[float, ...]:
@@ -145,7 +151,7 @@ class InterlockTable:
         return tuple(row.delay_s(values) for row in self.rows)
 
     def nothing_pending(self) -> list[float]:
-        """Return since when each row has held (s), where none holds."""
+        """Return the list of times since when each row has held (s), for a scan in which no row holds."""
         return [inf] * len(self.rows)
 
 
@@ -157,17 +163,19 @@ HEADER = (
 
 @dataclass(frozen=True, slots=True)
 class InterlockSheet:
-    """A kind's interlocks, for writing down."""
+    """A kind's interlocks, written as text."""
 
     rows: Sequence[Interlock[Any]]
     """The table, in its order."""
     others: Sequence[Parameter] = ()
-    """Parameters of the section that belong to no row."""
+    """Parameters of the section ``interlocks`` that belong to no row."""
     others_are: str = ""
     """Their purpose, in a few words."""
 
     def table(self) -> str:
-        """Return the table as Markdown, a line a row; names like ``stale_cell`` are keys of the rig file's section."""
+        """Return the table as Markdown, a line for each row; names like ``stale_cell`` are keys of the rig file's
+        section.
+        """
         lines = ["| interlock | cause | level | after | reaction | reset |", "|---|---|---|---|---|---|"]
         for row in self.rows:
             after = row.delay.default if row.delay is not None and row.delay.value > 0.0 else "at once"
@@ -176,7 +184,9 @@ class InterlockSheet:
         return "\n".join(lines) + "\n"
 
     def section(self) -> str:
-        """Return the section ``interlocks`` with its comments: every parameter under the first row that has it."""
+        """Return the section ``interlocks`` with its comments: every parameter is under the first row that declares
+        it.
+        """
         lines = [*HEADER, f"{SECTION}:"]
         listed: set[Parameter] = set()
         for row in self.rows:

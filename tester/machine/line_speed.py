@@ -1,4 +1,4 @@
-"""Checks, from measurements at connect, that the Modbus lines are quick enough for the rig file's limits of age."""
+"""Checks, from measurements at connect, that the Modbus lines are fast enough for the rig file's limits of age."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ from tester.machine.devices import DeviceList
 from tester.machine.modbus_health import FieldDevice
 
 SELDOM_S: Final = 0.2
-"""Of a device read less often than this two replies are enough to begin with [A]: its limits are far above a reply."""
+"""For a device read less often than this, two replies are enough to begin with [A]: its limits are far above a reply
+time.
+"""
 SELDOM_REPLIES: Final = 2
 FINE_S: Final = 0.002
-"""Period for reading a real line while its replies are measured, s: the resolution of their times."""
+"""Period for reading a real line while its reply times are measured, s: it is the resolution of these times."""
 READINGS: Final = 2.0
-"""A device's limit of age must hold this many readings with their waits [A]: one may be late or lost."""
+"""A device's limit of age must cover this many readings with their waits [A], because one may be late or lost."""
 
 
 def measured(devices: DeviceList) -> bool:
@@ -29,9 +31,9 @@ def measured(devices: DeviceList) -> bool:
 
 
 def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> str:
-    """Return which line is too slow for a device on it, and what to do; "" = none is.
+    """Return which line is too slow for a device on it, and the remedy; "" if none is.
 
-    ``limits``: by a device's name, the rig file's key and the greatest age of its reading, s.
+    ``limits``: for each device's name, the key in the rig file and the greatest age of its reading, s.
     """
     for device in devices.modbus:
         key, limit_s = _limit(device, limits)
@@ -53,7 +55,7 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
 
 
 def allow_late(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> None:
-    """Let time-outs follow replies that get slower during the run, as far as the ages allow."""
+    """Lengthen time-outs when replies become slower during the run, as far as the limits of age allow."""
     for device in devices.modbus:
         _, limit_s = _limit(device, limits)
         if limit_s is not None:
@@ -61,7 +63,7 @@ def allow_late(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> 
 
 
 def described(devices: DeviceList) -> str:
-    """Return a line for the journal: replies, time-outs, adapters that hear themselves or were asked to be quick."""
+    """Return a line for the journal: replies, time-outs, echoes of adapters, low-latency flags."""
     parts: list[str] = []
     for device in devices.modbus:
         reply = device.driver.station.reply

@@ -23,11 +23,11 @@ MOVING_S: Final = 2.0
 
 
 class Hand(Protocol):
-    """Motion of a kind's axes by a person. Methods return "", or the reason for refusing; ``ctx`` is the kind's own."""
+    """Moves a kind's axes for a person. Methods return "", or the reason for refusing; ``ctx`` is the kind's own."""
 
     @property
     def busy(self) -> str:
-        """Why no step is possible at present, "" if one is."""
+        """Why no step is possible at present; "" if a step is possible."""
         ...
 
     @property
@@ -36,11 +36,11 @@ class Hand(Protocol):
         ...
 
     def demand(self, ctx: Any) -> None:
-        """Write the demand of the steps so far; called in every scan."""
+        """Write the demand that results from the steps so far; called in every scan."""
         ...
 
     def step(self, ctx: Any, axis: str, sign: float) -> str:
-        """Take one step of an axis of the kind's table, up (+1) or down (-1)."""
+        """Take one step of an axis from the kind's table, up (+1) or down (-1)."""
         ...
 
     def tare(self, ctx: Any) -> str:
@@ -60,7 +60,7 @@ class ManualExecutor(Executor[Any]):
         self.moved_s = float("-inf")
 
     def left_s(self, now: float) -> float:
-        """Return for how many more seconds the mode stays armed."""
+        """Return for how many seconds the mode still stays armed."""
         return ARMED_S if not isfinite(self.used_s) else max(ARMED_S - (now - self.used_s), 0.0)
 
     def step(self, ctx: AnyContext) -> None:
@@ -76,7 +76,7 @@ class ManualExecutor(Executor[Any]):
         self.hand.demand(ctx)
 
     def expire(self, now: float) -> None:
-        """End the mode after a minute without a request, also in a hold."""
+        """End the mode after a minute without a request, even in a hold."""
         if self.left_s(now) <= 0.0:
             self.disarm()
 

@@ -17,7 +17,7 @@ class Ending(Enum):
 
     COMPLETE = "complete"
     INCOMPLETE = "incomplete"
-    """Less than the window requires, after all bursts."""
+    """Fewer samples than the window requires, after all bursts."""
     CANNOT_HOLD = "temperature cannot be held"
     NOT_REACHED = "not reached"
     ZERO_DRIFT = "load cell zero drifted"
@@ -28,7 +28,7 @@ REPEAT_STATUS: dict[Ending, RepeatStatus] = {
     Ending.NOT_REACHED: RepeatStatus.NOT_REACHED,
     Ending.ZERO_DRIFT: RepeatStatus.VOID,
 }
-"""Endings without a value, whatever was collected; the reduction judges the others."""
+"""Status of a repeat whose ending gives no value, whatever was collected; the reduction judges the others."""
 
 CONDITION_STATUS: dict[Ending, ConditionStatus] = {
     Ending.CANNOT_HOLD: ConditionStatus.CANNOT_HOLD,
@@ -42,22 +42,22 @@ class MeasuredRepeat(Protocol):
 
     @property
     def ending(self) -> Ending | None:
-        """How it ended."""
+        """How the repeat ended; None while it is measured."""
         ...
 
     @property
     def detail(self) -> str:
-        """The reason, in words."""
+        """The reason for the ending, in words."""
         ...
 
     @property
     def counter(self) -> BlockCounter:
-        """The blocks it counted."""
+        """The counter with the repeat's counted blocks."""
         ...
 
     @property
     def rolling_only(self) -> bool:
-        """Whether it was a repeat without slip."""
+        """Whether the repeat was made without slip."""
         ...
 
     @property
@@ -77,7 +77,7 @@ class MeasuredRepeat(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class RepeatOutcome:
-    """The result of a repeat, and its commit."""
+    """The result of a repeat, and the state of its commit."""
 
     status: RepeatStatus
     text: str
@@ -86,7 +86,7 @@ class RepeatOutcome:
 
 @dataclass(frozen=True, slots=True)
 class ConditionEnd:
-    """How a condition ended: None = no further repeat was needed."""
+    """How a condition ended; None if no further repeat was needed."""
 
     ending: Ending | None = None
     detail: str = ""

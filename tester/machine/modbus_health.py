@@ -1,4 +1,4 @@
-"""The Modbus devices of a rig, and a slow check of them: their refusals, and the share of failed requests."""
+"""The Modbus devices of a rig, and a slow check of each: refused requests, and the share of failed requests."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ class FieldDevice:
     """A Modbus device of the rig file."""
 
     name: str
-    """Its key in the rig file."""
+    """The device's key in the rig file."""
     title: str
-    """Its name for people."""
+    """The device's name for people."""
     line: str
     driver: Device
 
 
 PERIOD_S: Final = 0.5
-"""Time between two checks, s [A]. Silence and age are watched in every scan; this is for lasting trouble."""
+"""Time between two checks, s [A]. Every scan watches silence and age; these checks find lasting trouble."""
 WINDOW: Final = 4
-"""Number of checks that a share of failed requests covers: 2 s [A]."""
+"""Number of checks over which the share of failed requests is computed: 2 s [A]."""
 NAMED: Final = 0.1
-"""From this share of failed requests a device is named in a trip [A]."""
+"""From this share of failed requests on, a trip names the device [A]."""
 LEAST_REQUESTS: Final = 8
-"""Fewer requests in the window than this are not judged [A]."""
+"""A device with fewer requests than this in the window is not judged [A]."""
 
 
 class _Record:
@@ -44,7 +44,7 @@ class _Record:
         self.looks: list[tuple[int, int]] = [(0, 0)]
 
     def look(self) -> float:
-        """Take the counters; return the share of failed requests over the window."""
+        """Read the counters; return the share of failed requests over the window."""
         counters = self.device.station.counters
         looks = self.looks
         looks.append((counters.requests, failures(counters)))
@@ -55,20 +55,20 @@ class _Record:
 
 
 def failures(counters: Counters) -> int:
-    """Return how many requests of a station have not had a good reply."""
+    """Return how many requests to a station have not received a good reply."""
     return counters.timeouts + counters.crc_errors + counters.garbage + counters.late
 
 
 class Inspector:
     """Checks the Modbus devices of a rig; ``due_s``: time of the next check.
 
-    ``fault``: the first device that refuses a request or misses our commands; "" = none.
-    ``noisy`` names the device with the largest share, where that is one in ten or more; "" = none.
-    ``line_errors``: the largest share of failed requests among the devices, of the last few seconds, 0..1.
+    ``fault``: the first device that refuses a request or does not receive our commands; "" = none. ``line_errors``: the
+    largest share of failed requests of any device in the last few seconds, 0..1. ``noisy``: the device with that share,
+    if it is at least one in ten; "" = none.
     """
 
     def __init__(self, devices: Sequence[FieldDevice]) -> None:
-        """``devices``: those to check."""
+        """``devices``: the devices to check."""
         self.records = tuple(map(_Record, devices))
         self.due_s = -inf
         self.fault = ""

@@ -19,10 +19,10 @@ InputsT = TypeVar("InputsT", bound=ScanInputs)
 
 
 class ModeCommands(Generic[StateT, ReadingsT, DemandT, InputsT]):
-    """A kind's part of its control: what each mode commands, and the ends of its stops."""
+    """A kind's part of its control: the commands in each mode, and how its stops end."""
 
     def __init__(self, state: StateT, view: InputsT) -> None:
-        """``state``: control's memory, with the setpoints; ``view``: the inputs of the interlock rows."""
+        """``state``: control's state between scans, with the setpoints; ``view``: the inputs of the interlock rows."""
         self.state = state
         self.view = view
 
@@ -33,67 +33,67 @@ class ModeCommands(Generic[StateT, ReadingsT, DemandT, InputsT]):
         raise NotImplementedError
 
     def unfit(self, readings: ReadingsT) -> list[str]:
-        """Return obstacles to arming beyond the rows."""
+        """Return the obstacles to arming that no row covers."""
         return []
 
     def detail(self, readings: ReadingsT) -> str:
-        """Return the values most useful to a reader of the trip."""
+        """Return the values that help a reader of the trip most."""
         raise NotImplementedError
 
     # -- outputs, written to ``state.setpoints`` ---------------------------------------------------
 
     def run_outputs(self, demand: DemandT, readings: ReadingsT, dt: float) -> None:
-        """Command the demand, within the bounds; in RUN and in HOLD."""
+        """Command the demand, within the bounds; called in RUN and in HOLD."""
         raise NotImplementedError
 
     def keep(self, held: DemandT, demand: DemandT) -> None:
-        """Write a hold's demand after ``demand`` into ``held``: no contact."""
+        """Write into ``held`` the demand of a hold that follows ``demand``: no contact."""
         raise NotImplementedError
 
     def stop_outputs(self) -> None:
-        """Command a controlled stop, or a fast one (``state.mode``)."""
+        """Command a controlled stop, or a fast stop if ``state.mode`` is FAST_STOP."""
         raise NotImplementedError
 
     def safe_outputs(self) -> None:
-        """Command a safe state at once, without reading anything: the program cannot continue."""
+        """Command a safe state at once, without reading anything, because the program cannot continue."""
         raise NotImplementedError
 
     def emergency_outputs(self) -> None:
-        """Mirror the hardware's emergency stop: nothing may start when the power returns."""
+        """Mirror the hardware's emergency stop, so that nothing starts when the power returns."""
         raise NotImplementedError
 
     def rest_outputs(self) -> None:
-        """Command nothing and request no power. An escalation remains until it is acknowledged."""
+        """Command nothing and request no power. An escalation remains until a person acknowledges it."""
         raise NotImplementedError
 
     def withdraw_escalation(self) -> None:
-        """Resume heartbeats to drives and devices: a person has acknowledged, or a run is armed."""
+        """Resume heartbeats to drives and devices, after an acknowledgement or when a run is armed."""
         self.state.setpoints.power_off = False
 
     def end_lease(self, readings: ReadingsT) -> None:
-        """Let the lease of a device that is still on run out (``Interlock.ends_lease``)."""
+        """Let the lease of a device that is still on expire (``Interlock.ends_lease``)."""
 
     # -- stops ---------------------------------------------------------------------------------
 
     def note_stop(self) -> None:
-        """Record the speeds and positions at the begin of a stop."""
+        """Record the speeds and positions at the start of a stop."""
 
     def note_fast_stop(self) -> None:
-        """Record the speeds at the begin of a quick stop."""
+        """Record the speeds at the start of a quick stop."""
 
     def note_rest(self) -> None:
-        """Record the positions to rest at."""
+        """Record the positions at which the axes rest."""
 
     def stop_ended(self) -> bool:
-        """Return whether the rig is at rest, unloaded and without heat, or the time for that is over."""
+        """Return whether the rig is at rest, unloaded and without heat, or the time limit for that has passed."""
         raise NotImplementedError
 
     def must_cool(self) -> str:
-        """Return why the machine must not stop turning yet after a controlled stop; "" if it may."""
+        """Return why the machine must keep turning after a controlled stop; "" if it may stop."""
         return ""
 
     def cool_outputs(self) -> str:
-        """Command the cool-down; return why it is over, "" until then."""
+        """Command the cool-down; return why it is over, "" while it continues."""
         raise NotImplementedError
 
 

@@ -1,7 +1,7 @@
-"""Moves of any machine: sequences, drives on and off, waiting, asking, the zero of a cell. Each is stepped once a scan.
+"""Motions of any machine: sequences, drives on and off, waiting, asking, zeroing a cell. Each is stepped once a scan.
 
 An activity's ``step`` writes the demand it needs and returns True in the scan in which it is done. It keeps its state
-in plain attributes: a running activity can be copied.
+in plain attributes, so that a running activity can be copied.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Move:
 
 
 class Sequence:
-    """Activities in turn; a move among them that overruns its time raises MoveFailedError."""
+    """Activities one after another; a move among them that exceeds its time limit raises MoveFailedError."""
 
     def __init__(self, *parts: Activity[Any]) -> None:
         """Take the parts in order."""
@@ -53,13 +53,13 @@ class Sequence:
 
 
 class Power(Move):
-    """Enable or disable the drives, and wait until they confirm it."""
+    """Switches the drives on or off, and waits until they confirm it."""
 
     limit_s = 20.0  # [A]; a drive needs well under a second
     name = "switching the drives"
 
     def __init__(self, on: bool) -> None:
-        """``on``: the wanted state."""
+        """``on``: whether the drives are to be on."""
         self.on = on
 
     def step(self, ctx: AnyContext) -> bool:
@@ -70,14 +70,14 @@ class Power(Move):
 
 
 class Ask:
-    """Ask a question and wait for its answer.
+    """Asks a question and waits for the answer.
 
-    It moves nothing: the activity before has made it safe to come near. An answer counts only with the guard closed;
-    after an answer with the guard open the question is asked again, so that closing the guard starts nothing.
+    It moves nothing: the activity before it has made it safe to come near. An answer counts only while the guard is
+    closed. After an answer with the guard open the question is asked again, so that closing the guard starts nothing.
     """
 
     def __init__(self, text: str, *, near: bool = True) -> None:
-        """``text``: the question; ``near``: it asks a person to come near the machine."""
+        """``text``: the question; ``near``: whether it asks a person to come near the machine."""
         self.text = text
         self.near = near
         self.number = 0
@@ -85,7 +85,7 @@ class Ask:
         self.recorded = False
 
     def step(self, ctx: AnyContext) -> bool:
-        """Return True once it is answered; journal question and answer."""
+        """Return True once the question is answered; journal question and answer."""
         if not self.number:
             self._put(ctx, self.text)
         asked = ctx.prompts.asked[self.number - 1]
@@ -94,7 +94,8 @@ class Ask:
         ctx.demand.attended = not alone
         if answer is None:
             return False
-        # With automatic answers an open guard is a fault: it trips when the next drive is switched on.
+        # With automatic answers no person closes the guard: an open guard is a fault, which trips when the next drive
+        # is switched on.
         closed = ctx.readings.guard_closed or alone
         if not self.recorded:
             self.recorded = True
@@ -114,7 +115,7 @@ class Ask:
 
 
 class Settle:
-    """Wait at the fast scan rate for ``seconds``."""
+    """Waits at the fast scan rate for ``seconds``."""
 
     def __init__(self, seconds: float) -> None:
         """``seconds``: how long, s."""
@@ -122,23 +123,23 @@ class Settle:
         self.left_s = seconds
 
     def step(self, ctx: AnyContext) -> bool:
-        """Done when the time is over."""
+        """Return True when the time is over."""
         ctx.moving = True
         self.left_s -= ctx.dt
         return self.left_s <= 0.0
 
 
 LEAST: Final = 10
-"""Readings that a zero averages at least."""
+"""Smallest number of readings that a zero averages."""
 SILENT_S: Final = 5.0
-"""A zero that has not got its readings this long after its time is given up, s [A]."""
+"""A zero that still lacks readings this long after its averaging time is abandoned, s [A]."""
 
 
 class ZeroOfCell:
     """Averages readings over a time. A kind's activity inherits from it and decides whether to take the zero."""
 
     def __init__(self, seconds: float, name: str = "load cell") -> None:
-        """``seconds``: how long to average; ``name``: of the sensor, for people."""
+        """``seconds``: averaging time; ``name``: the sensor's name for people."""
         self.seconds = seconds
         self.name = name
         self.began_s: float = nan
@@ -146,10 +147,12 @@ class ZeroOfCell:
         self.sums: list[float] = []
         self.count = 0
         self.failed = ""
-        """Why the zero is not to be trusted."""
+        """Why the zero is not trustworthy; "" if it is."""
 
     def averaged(self, ctx: AnyContext, at_s: float, values: Collection[float], *, valid: bool) -> bool:
-        """Take in the reading of ``at_s`` and return whether there are enough; set ``failed`` where none come."""
+        """Add the reading taken at ``at_s``; return whether there are enough. Set ``failed`` if readings do not
+        arrive.
+        """
         ctx.moving = True
         if self.began_s != self.began_s:
             self.began_s = ctx.now
@@ -166,5 +169,5 @@ class ZeroOfCell:
         return False
 
     def zero(self, tare: Collection[float]) -> tuple[float, ...]:
-        """Return the zero in the cell's own readings: the mean, with ``tare`` put back."""
+        """Return the zero in the cell's own readings: the mean, with the present ``tare`` added back."""
         return tuple(old + total / self.count for old, total in zip(tare, self.sums, strict=True))

@@ -1,4 +1,4 @@
-"""One run to look at between two ticks, and what its drives do once nothing controls them."""
+"""The view of one run between two ticks, and what its drives do once nothing controls them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from tester.machine.state import Mode
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """State of a device's data: when the newest came (rig s, -inf: never), whether valid, from what age on stale, s."""
+    """State of a device's data: time of the newest (rig s, -inf if never), whether valid, and the age from which it is
+    stale, s.
+    """
 
     at_s: float
     valid: bool
@@ -24,7 +26,7 @@ class News:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """The setpoint of a value, in the unit for people, and half the width of its gate; None without one."""
+    """The setpoint of a value in the unit for people, and half the width of its gate; None if it has none."""
 
     setpoint: float | None
     band: float | None = None
@@ -34,10 +36,10 @@ class RunPanel:
     """What clients see of a run, read between two ticks. A kind adds its devices, setpoints and checks."""
 
     gates_of: ClassVar[Mapping[str, int]] = {}
-    """Bit of each gate in the channel ``gate``, by its key on the screen."""
+    """Bit of each gate in the channel ``gate``, by the gate's key on the screen."""
 
     def __init__(self, engine: Engine) -> None:
-        """Look only."""
+        """Read the engine only; change nothing."""
         self.engine = engine
 
     def news(self) -> dict[str, News]:
@@ -45,18 +47,18 @@ class RunPanel:
         raise NotImplementedError
 
     def wanted(self) -> dict[str, Wanted]:
-        """Return the setpoints of the values, by their keys; values without a setpoint may be missing."""
+        """Return the setpoints of the values, by their keys; values without a setpoint may be left out."""
         return {}
 
     def gates(self) -> tuple[Gate, ...]:
-        """Return the gates as of the last scan; none outside a RUN, where they are not evaluated."""
+        """Return the gates as of the last scan; none outside RUN, where they are not evaluated."""
         if self.engine.control.state.mode is not Mode.RUN:
             return ()
         closed = self.engine.ctx.gate
         return tuple(Gate(key, not closed & bit) for key, bit in self.gates_of.items())
 
     def soak(self, now: float) -> SoakView | None:
-        """Return the soak under way at ``now`` (rig s), None without one."""
+        """Return the soak under way at ``now`` (rig s); None if there is none."""
         return None
 
     def checks(self) -> tuple[Check, ...]:
@@ -68,7 +70,7 @@ class RunPanel:
         )
 
     def mounted(self) -> tuple[int, str]:
-        """Return number and compound of the specimen on the rig, (0, "") for none."""
+        """Return number and compound of the specimen on the rig; (0, "") if there is none."""
         raise NotImplementedError
 
 
@@ -76,7 +78,10 @@ def soak_view(
     now: float, shown_c: float, target_c: float, within_k: float, since_s: float, for_s: float, began_s: float,
     at_most_s: float,
 ) -> SoakView:  # fmt: skip
-    """Return a soak at ``now``, rig s; ``since_s``: in its band since, ``began_s``: under way since; inf: not yet."""
+    """Return the view of a soak at ``now``, rig s.
+
+    ``since_s``: time since when the temperature has been in its band; ``began_s``: start of the soak; inf: not yet.
+    """
     within_s, whole_s = (max(now - t, 0.0) if isfinite(t) else 0.0 for t in (since_s, began_s))
     return SoakView(
         shown_c if isfinite(shown_c) else None, target_c, within_k, within_s, for_s, whole_s, at_most_s
@@ -84,7 +89,7 @@ def soak_view(
 
 
 def drives_alone(rig: Rig, *also: str) -> str:
-    """Return what drives do without a master, and by when: the first of each one's two watchdogs that runs out.
+    """Return what drives do without a master, and when: as the first of a drive's two watchdogs expires.
 
     ``also``: what the kind's other devices do, in sentences.
     """

@@ -1,4 +1,4 @@
-"""Questions to a person: in a run, which waits with the drives off, and while a rig is commissioned.
+"""Questions to a person. In a run the drives are off while a question waits; commissioning also asks questions.
 
 A terminal, a screen, the service and a test's person answer the same ``Prompt``. A question never blocks a scan.
 """
@@ -13,7 +13,7 @@ from typing import Final
 from tester.base.units import UnitError, parse, units_like
 
 DONE, NOT_YET = "yes", "no"
-"""The exact words that answer a run's question; the second leaves it waiting."""
+"""The exact words that answer a run's question; after the second the question keeps waiting."""
 GO: Final = "go"
 """The word that starts a motion."""
 
@@ -28,12 +28,12 @@ class Asks(Enum):
     TEXT = "text"
     """A line of text."""
     KEY = "key"
-    """The word GO: it starts a short motion."""
+    """The word GO, which starts a short motion."""
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """One question. ``key``: its name, the same in every commissioning; ``text``: for the person."""
+    """One question. ``key``: its name, the same in every commissioning; ``text``: the words for the person."""
 
     key: str
     text: str
@@ -42,7 +42,7 @@ class Question:
     unit: str = ""
 
     def refusal(self, answer: str) -> str:
-        """Return why a text is not a valid answer, "" if it is."""
+        """Return why a text is not a valid answer; "" if it is valid."""
         text = answer.strip()
         if self.asks is Asks.CHOICE:
             return "" if text in self.choices else f"expected one of: {', '.join(self.choices)}"
@@ -56,7 +56,7 @@ class Question:
         return "" if text else "expected a text"
 
     def value(self, answer: str) -> float:
-        """Return a quantity in ``unit``; a bare number counts as in that unit. Raises UnitError."""
+        """Return the quantity in ``unit``; a bare number counts as in that unit. Raises UnitError."""
         text = answer.strip()
         try:
             bare = float(text)
@@ -87,7 +87,7 @@ class Prompt:
     question: Question
     answer: str | None = None
     by: str = ""
-    """Who answered; "" if unknown."""
+    """Name of the person who answered; "" if unknown."""
 
     @property
     def text(self) -> str:
@@ -95,7 +95,7 @@ class Prompt:
         return self.question.text
 
     def reply(self, text: str) -> str:
-        """Take an answer; return why it is refused, "" if it counts."""
+        """Accept an answer; return why it is refused, "" if it is valid."""
         refusal = self.question.refusal(text)
         if not refusal:
             self.answer = text.strip()
@@ -106,7 +106,7 @@ class Prompt:
 class Prompts:
     """The prompts of a run, oldest first. ``automatic``: answer "yes" at once (``--yes``).
 
-    ``real``: on a real rig, where only a person can answer a prompt that asks them to come near the machine.
+    ``real``: whether the rig is real. There only a person can answer a prompt that asks to come near the machine.
     """
 
     automatic: bool = False
@@ -116,11 +116,11 @@ class Prompts:
     """Rig time of a commissioning, s; infinity while no rig runs."""
 
     def answers_itself(self, *, near: bool) -> bool:
-        """Return whether the prompt is answered automatically. ``near``: it asks a person to come near the machine."""
+        """Return whether a prompt is answered automatically. ``near``: it asks a person to come near the machine."""
         return self.automatic and not (near and self.real)
 
     def ask(self, now: float, text: str, *, near: bool = True) -> Prompt:
-        """Ask a run's question and return its prompt; it may already be answered."""
+        """Ask a run's question and return its prompt, which may already be answered."""
         prompt = self._put(now, Question(f"prompt {len(self.asked) + 1}", text, Asks.CHOICE, (DONE,)))
         prompt.answer = "yes (automatic)" if self.answers_itself(near=near) else None
         return prompt

@@ -1,7 +1,8 @@
-"""The proof of every machine before a run: its drives follow, and stop without our heartbeat.
+"""The proof of every machine before a run: its drives follow commands, and stop without our heartbeat.
 
-A drive watches a heartbeat only from the first one it receives (CiA 301), and a wrong parameter shows only when it
-matters: so the watchdog is tried at creep speed, with nothing loaded. A kind implements the creeping.
+A drive watches a heartbeat only from the first one it receives (CiA 301), so a wrong parameter would show only when the
+watchdog is needed. The proof therefore tests the watchdog at creep speed, with nothing loaded. A kind implements the
+creeping.
 """
 
 from __future__ import annotations
@@ -15,13 +16,13 @@ from drivers.servo import ServoDrive
 from tester.machine.devices import DeviceList
 
 ENABLE_S = 5.0
-"""Brake release and power stage [A]."""
+"""Time limit for brake release and power stage, s [A]."""
 HEARTBEAT_LOST = 0x8130
 """EMCY code of a missing heartbeat (CiA 301, table 26)."""
 STILL_S = 1.5
 """Longest time from the end of the withheld heartbeat to standstill [A]."""
 RESTORE_S = 3.0
-"""Time limit for resetting faults and switching every drive off [A]."""
+"""Time limit for resetting faults and switching every drive off, s [A]."""
 RESET_EVERY_S = 0.2
 
 
@@ -37,7 +38,7 @@ class ProofStage(Enum):
 
 
 class WatchdogProof:
-    """Goes through the stages, one call of ``step`` a scan. ``failure``: the failed proof; "" without one."""
+    """Passes through the stages, one call of ``step`` a scan. ``failure``: why the proof failed; "" if it has not."""
 
     emergency: int = HEARTBEAT_LOST
     """Code of the EMCY with which a drive reports the missing signal."""
@@ -45,10 +46,10 @@ class WatchdogProof:
     """Facts proven before this proof began."""
 
     def __init__(self, devices: DeviceList, *, follow: bool, watchdog: bool, withhold_s: float) -> None:
-        """Nothing moves before the first ``step``.
+        """Move nothing before the first ``step``.
 
-        ``follow``: drives are to be seen to follow; ``watchdog``: to stop by themselves when our heartbeat is withheld
-        for ``withhold_s``.
+        ``follow``: prove that drives follow commands; ``watchdog``: prove that they stop by themselves when our
+        heartbeat is withheld for ``withhold_s``.
         """
         self.devices = devices
         self.follow, self.watchdog, self.withhold_s = follow, watchdog, withhold_s
@@ -57,7 +58,7 @@ class WatchdogProof:
         self.since_s = nan
         self.reset_s = -inf
         self.reported: dict[str, float] = {}
-        """Drives that reported it, and the arrival of the EMCY, s after the last heartbeat sent."""
+        """Drives that reported the missing signal, and when the EMCY arrived, s after the last heartbeat sent."""
         self.withheld_s = nan
         self._asked: set[str] = set()
         self._ran_on: set[str] = set()
@@ -65,11 +66,13 @@ class WatchdogProof:
     # -- by a kind ------------------------------------------------------------------------------------------
 
     def begin(self, now: float) -> None:
-        """Begin to creep: every drive is in operation."""
+        """Begin to creep; every drive is in operation."""
         raise NotImplementedError
 
     def move(self, now: float, elapsed: float) -> bool:
-        """Continue for ``elapsed`` s since ``begin``; return whether the drives creep, and follow if asked."""
+        """Continue the motion for ``elapsed`` s since ``begin``; return whether the drives creep, and follow if
+        required.
+        """
         raise NotImplementedError
 
     def stand(self) -> None:
@@ -83,7 +86,7 @@ class WatchdogProof:
     # -- withholding ----------------------------------------------------------------------------------------
 
     def withhold(self, withheld: bool) -> None:
-        """Withhold, or send again, the signal that the drives watch: our heartbeat."""
+        """Withhold the signal that the drives watch (our heartbeat), or send it again."""
         self.devices.master.withhold_heartbeat = withheld
 
     def watched(self) -> list[ServoDrive]:
@@ -91,7 +94,7 @@ class WatchdogProof:
         return [drive for drive in self.devices.drives if drive.config.proves_watchdog]
 
     def ran_on(self, name: str) -> str:
-        """Return the failure text for a drive that did not."""
+        """Return the failure text for a drive that did not stop."""
         return (
             f"the {name} drive did not stop with EMCY 0x8130 when our heartbeat was missing"
             f" for {self.withhold_s * 1000:g} ms (0x1016, 0x6007)"
@@ -106,20 +109,20 @@ class WatchdogProof:
 
     @property
     def provokes(self) -> bool:
-        """Whether drives are made to stop by themselves, or have not been reset since."""
+        """Whether the proof has made drives stop by themselves and has not yet reset them."""
         if self.stage is ProofStage.RESTORE:
             return self.watchdog
         return self.stage in (ProofStage.WITHHOLD, ProofStage.STILL)
 
     def proven(self) -> str:
-        """Return a line for the journal: what was proven, and what the rig file excludes."""
+        """Return a line for the journal: what is proven, and what the rig file excludes."""
         shown, left_out = list(self.unloaded), list[str]()
         self.watchdogs(shown, left_out)
         text = f"shown: {', '.join(shown) or 'nothing'}"
         return f"{text}; NOT shown: {', '.join(left_out)}" if left_out else text
 
     def watchdogs(self, shown: list[str], left_out: list[str]) -> None:
-        """Sort the drives' watchdogs into proven and unproven ones."""
+        """Add what the proof showed of the drives to ``shown``, and the rest to ``left_out``."""
         (shown if self.follow else left_out).append("drives follow")
         for drive in self.devices.drives:
             proven = drive.config.name in self.reported
@@ -163,7 +166,7 @@ class WatchdogProof:
             self._restore(now, elapsed)
 
     def enter(self, stage: ProofStage, now: float) -> None:
-        """Enter a stage at ``now``; a kind enters ``MOVE`` again with each of its moves."""
+        """Enter a stage at ``now``; a kind enters ``MOVE`` again for each of its moves."""
         self.stage = stage
         self.since_s = now
 
@@ -202,9 +205,9 @@ class WatchdogProof:
         self.enter(ProofStage.STILL, now)
 
     def _bring_back(self) -> None:
-        """Read the state of a drive that has left OPERATIONAL (it has no 0x1029), and start it again, disabled.
+        """Read the state of a drive that has left OPERATIONAL (it lacks object 0x1029), and start it again, disabled.
 
-        Until then it sends no process data: no speed, and no safety inputs.
+        Until then the drive sends no process data: no speed, and no safety inputs.
         """
         master = self.devices.master
         for drive in self.devices.drives:

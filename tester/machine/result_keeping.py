@@ -31,7 +31,9 @@ ContextT = TypeVar("ContextT", bound=AnyContext)
 
 
 class StoredResults(Generic[ContextT]):
-    """Reduces repeats from the blocks counted live (the stored samples give the same ones), judges and commits them."""
+    """Reduces repeats from the blocks counted live (the stored samples give the same blocks), judges and commits
+    them.
+    """
 
     def __init__(
         self, recorder: Recorder, combining: Combining = "mean", point: ResumePoint | None = None
@@ -41,16 +43,16 @@ class StoredResults(Generic[ContextT]):
         self.recorder = recorder
         self.combining: Combining = combining
         self.condition = 0
-        """Number of the present condition, which the fields below describe."""
+        """Number of the present condition, to which the fields below belong."""
         self.repeats: list[RepeatResult] = []
         self.keys: list[int] = []
         self.blocks: list[Sequence[Block]] = []
         """The counted blocks of each repeat."""
         self.judgement = NOT_JUDGED
         self.judged = 0
-        """Number of repeats that the judgement covers."""
+        """Number of repeats that the present judgement covers."""
         self.pool = point.pool if point is not None else Pool()
-        """Repeatability of the finished conditions."""
+        """Repeatability pooled from the finished conditions."""
         self.earlier: dict[int, ConditionSoFar] = dict(point.conditions) if point is not None else {}
         """Data that earlier stretches of an interrupted run committed for unfinished conditions."""
 
@@ -60,7 +62,7 @@ class StoredResults(Generic[ContextT]):
         return len(earlier.results) if earlier is not None else 0
 
     def over(self, step: ConditionStep) -> ConditionEnd | None:
-        """Return how an earlier stretch ended the condition; None if it continues."""
+        """Return how an earlier stretch ended the condition; None if the condition is not finished."""
         earlier = self.earlier.get(step.condition)
         if earlier is None:
             return None
@@ -72,14 +74,14 @@ class StoredResults(Generic[ContextT]):
         return ConditionEnd(ending, detail, earlier.warming_k_s, earlier.holdable_band_k)
 
     def another(self, step: ConditionStep) -> bool:
-        """Return whether to make a further repeat: one is missing or undecided, and one more is allowed."""
+        """Return whether to measure a further repeat: one is missing or undecided, and one more is allowed."""
         scheme = step.scheme
         made, half = divmod(len(self.repeats), scheme.repeats_each)
         if half or made < step.repeats or made >= step.at_most:
             return half > 0 or made < step.repeats
         counted = len(scheme.values(self.repeats))
         if not counted and not any(result.drifts for result in self.repeats):
-            return False  # no repeat gave a value, and one more would fail for the same reason
+            return False  # no repeat gave a value, and a further one would fail for the same reason
         if counted < step.repeats or (step.repeats > ALONE and NOT_SHOWN in flags_in(self.judgement.flags)):
             return True
         return not self._precise(step)
@@ -90,7 +92,7 @@ class StoredResults(Generic[ContextT]):
         return 1 + (earlier.attempts.get(repeat, 0) if earlier is not None else 0)
 
     def begin_repeat(self, ctx: ContextT, step: ConditionStep, repeat: int, attempt: int) -> int:
-        """Open a repeat; return the key for its samples."""
+        """Open a repeat in the store; return the key for its samples."""
         self._turn_to(step)
         if repeat == self.repeats_done(step) + 1:
             self.recorder.begin_condition(step.condition, ctx.now)
@@ -99,7 +101,7 @@ class StoredResults(Generic[ContextT]):
     def finish_repeat(
         self, ctx: ContextT, step: ConditionStep, key: int, repeat: int, measured: MeasuredRepeat
     ) -> RepeatOutcome:
-        """Reduce and commit a repeat; after the last missing one, judge the condition."""
+        """Reduce and commit a repeat; after the last planned repeat, judge the condition."""
         assert measured.ending is not None
         blocks, window = measured.counter.blocks, step.window
         status = REPEAT_STATUS.get(measured.ending)
@@ -126,14 +128,14 @@ class StoredResults(Generic[ContextT]):
         return RepeatOutcome(result.status, _line(result) + lost, ticket)
 
     def void_repeat(self, ctx: ContextT, key: int, reason: str) -> None:
-        """Record that a repeat was interrupted; a further attempt follows."""
+        """Record that a repeat was interrupted and is void; a further attempt follows."""
         self.recorder.void_repeat(key, reason, ctx.now)
 
     def finish_condition(self, ctx: ContextT, step: ConditionStep, end: ConditionEnd) -> str:
         """Combine a condition's repeats and commit the result; return a line for people.
 
-        The line shows the coefficient as measured: the one at the requested temperature may depend on conditions still
-        to be measured.
+        The line shows the coefficient as measured. The coefficient at the requested temperature may depend on
+        conditions that are not measured yet.
         """
         self._turn_to(step)
         if not self.repeats:
@@ -171,7 +173,7 @@ class StoredResults(Generic[ContextT]):
     # -- of the present condition -------------------------------------------------------------------------------
 
     def _turn_to(self, step: ConditionStep) -> None:
-        """Begin a condition, with the data that an earlier stretch of the run committed for it."""
+        """Make a condition the present one, with the data that an earlier stretch of the run committed for it."""
         if self.condition == step.condition:
             return
         self.condition = step.condition
@@ -208,7 +210,9 @@ class StoredResults(Generic[ContextT]):
         return self.pool.with_condition(step.scheme.values(self.repeats), step.scheme.repeats_each)
 
     def _precise(self, step: ConditionStep) -> bool:
-        """Return whether the condition's expanded repeatability meets the recipe's request, if any."""
+        """Return whether the condition's expanded repeatability is as small as the recipe requests, if it requests
+        any.
+        """
         if step.until_percent is None:
             return True
         n, each = len(step.scheme.values(self.repeats)), step.scheme.repeats_each

@@ -1,4 +1,4 @@
-"""Drivers of everything on a rig file's wires: drives, nodes and Modbus devices. Sends nothing yet."""
+"""Drivers of everything on a rig file's wires: drives, nodes and Modbus devices. Building them sends nothing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RigDrivers:
     def __init__(self, rig: Rig, ports: Ports, titles: Mapping[str, str] | None = None) -> None:
         """Build the drives, the nodes and the masters of all lines.
 
-        ``titles``: a device's name on screens, if not its title in the kind's table of devices.
+        ``titles``: a device's name on screens, where it differs from the title in the kind's table of devices.
         """
         self.rig, self.ports = rig, ports
         self._titles = titles or {}
@@ -47,7 +47,9 @@ class RigDrivers:
         return sensor
 
     def controller(self, kind: ControllerKind) -> TemperatureController:
-        """Add the driver of the rig's temperature controller of this kind, which is also its name, and return it."""
+        """Add the driver of the rig's temperature controller of this kind, and return it. The kind is also the device's
+        name.
+        """
         config = self.rig.devices[kind]
         controller = self.devices[kind] = TemperatureController(
             kind, profile_of(config.profile), config.unit_id, self.links[config.line]
@@ -55,13 +57,15 @@ class RigDrivers:
         return controller
 
     def further(self) -> list[Sensor]:
-        """Add the further sensors and return them; last, so that a shared line asks the kind's own devices first."""
+        """Add the further sensors and return them. They come last, so that a shared line serves the kind's own devices
+        first.
+        """
         further = {name: sensor_of(config, self.links) for name, config in further_sensors(self.rig).items()}
         self.devices |= further
         return list(further.values())
 
     def lines(self) -> list[tuple[LinePort, ModbusLink]]:
-        """Return port and master of every line."""
+        """Return the port and the master of every line."""
         return [(self.ports.lines[name], link) for name, link in self.links.items()]
 
     def field_devices(self) -> list[FieldDevice]:
@@ -73,7 +77,7 @@ class RigDrivers:
 
 
 def sensor_of(config: DeviceConfig, links: Mapping[str, ModbusLink], channels: tuple[str, ...] = ()) -> Sensor:
-    """Return the driver of a sensor, on its line; ``channels``: the wanted ones, all of the profile by default."""
+    """Return the driver of a sensor on its line; ``channels``: those to read, by default all of the profile."""
     return Sensor(profile_of(config.profile), config.unit_id, links[config.line], channels, config.parameters)
 
 
@@ -82,7 +86,7 @@ def load_cell_of(
 ) -> tuple[LoadCell, dict[str, Device]]:
     """Return a rig's load cell with these channels, and its drivers by their keys in the rig file.
 
-    ``most_skew_s``: greatest time between the parts of a reading from several transmitters.
+    ``most_skew_s``: greatest time between the parts of one reading, where several transmitters contribute.
     """
     transmitters = transmitters_of(rig, links)
     if not transmitters:

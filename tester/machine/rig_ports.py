@@ -13,7 +13,7 @@ from tester.base.clock import Pace
 class Ports:
     """The wires to a rig: one CAN bus, and the Modbus lines by their names in the rig file.
 
-    Real wires have the clock that stamps their arrivals (``pace``); ``opened`` closes them.
+    Real wires have a clock that stamps their arrivals (``pace``); ``opened`` closes the wires.
     """
 
     can: CanPort

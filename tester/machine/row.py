@@ -1,7 +1,7 @@
 """A row of the interlock table: one object with what is watched, for how long, and what follows.
 
-``tester.machine.watches`` makes what a row watches. This module is not compiled: mypyc makes no dataclass of a generic
-class. A scan calls the functions of the rows, which are.
+``tester.machine.watches`` makes the watch of a row. This module is not compiled, because mypyc cannot compile a
+dataclass of a generic class; the functions of the rows, which a scan calls, are compiled.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from typing import Any, Final, Generic, TypeVar
 from tester.inputs.rig.parameter import Parameter, Values
 
 V = TypeVar("V", contravariant=True)
-"""What the kind's rows look at: a class that inherits from ``ScanInputs``."""
+"""Type of the kind's inputs that its rows read: a class that inherits from ``ScanInputs``."""
 
 
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """A number beyond its limit, as a trip records it. NaN where it is not known, or where the row watches a state."""
+    """A number beyond its limit, as a trip records it. NaN where it is unknown, or where the row watches a state."""
 
     value: float
     limit: float
@@ -32,27 +32,27 @@ NOTHING_COMPARED: Final = Compared(nan, nan, "")
 
 
 class Reaction(Enum):
-    """The consequence of a condition that has held for its delay, from the mildest to the hardest."""
+    """The consequence of a condition that has held for its delay, from the mildest to the most severe."""
 
     WARN = "warning"
-    """An event in the journal."""
+    """Record an event in the journal, and stop nothing."""
     REFUSE = "neither armed nor acknowledged"
     """Nothing is left to stop; nothing may begin."""
     CONTROLLED = "controlled stop"
     FAST = "fast stop"
     POWER_OFF = "power off"
-    """A fast stop that has not worked: every power stage off."""
+    """Switch every power stage off, because a fast stop has failed."""
     EMERGENCY = "emergency stop mirrored"
 
 
 class When(Enum):
-    """The scans in which a row is evaluated; its condition need not test for that again."""
+    """The scans in which a row is evaluated; the row's condition need not test for this again."""
 
     ALWAYS = "always"
     LOADED = "loaded"
-    """Contact is wanted or cannot be excluded, and the drives of a run are not off."""
+    """Contact is wanted or cannot be excluded, and the run's drives are not off."""
     ENDING = "ending"
-    """A stop or a hold is under way, everything is to rest, or a run has its drives off."""
+    """A stop or a hold is under way, everything should be at rest, or a run has its drives off."""
 
 
 WARN: Final = Reaction.WARN
@@ -71,7 +71,7 @@ REPAIR: Final = "repaired, acknowledged"
 
 
 class Form(Enum):
-    """The comparison of a row's number."""
+    """How a row compares its number."""
 
     STATE = "state"
     AT_MOST = "at most"
@@ -81,23 +81,25 @@ class Form(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Watch(Generic[V]):
-    """What a row watches: made by ``at_most``, ``at_least``, ``within`` and ``condition``."""
+    """What a row watches. ``at_most``, ``at_least``, ``within`` and ``condition`` make it."""
 
     level: str
-    """In words for the safety page; names such as ``stale_cell`` are keys of the rig file's section."""
+    """The condition in words, for the safety page; names such as ``stale_cell`` are keys of the rig file's section."""
     holds: Callable[[V], bool]
     compared: Callable[[V], Compared]
-    """Value and limit of a trip, for the record; called when the row trips."""
+    """Returns the value and limit of a trip, for the record; called when the row trips."""
     parameters: tuple[Parameter, ...] = ()
-    """The limit, where it is a parameter."""
+    """The limit, if it is a parameter."""
     form: Form = Form.STATE
     parts: tuple[Callable[[V], Any], ...] = ()
-    """What ``holds`` is made of: number and limit, or the span. The table compares them without a call of ``holds``."""
+    """The functions from which ``holds`` is made: number and limit, or the span. The table compares their values
+    without a call of ``holds``.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Interlock(Generic[V]):
-    """One row. Where it does not say otherwise, its reaction and its reset are the strict ones."""
+    """One row of the table. The default reaction and reset are the strict ones."""
 
     name: str
     cause: str
@@ -105,32 +107,37 @@ class Interlock(Generic[V]):
     watch: Watch[V]
     reaction: Reaction = FAST
     reset: str = REPAIR
-    """Condition for the next run to begin."""
+    """Condition that must be met before the next run may begin."""
     parameters: tuple[Parameter, ...] = ()
-    """What the row compares with beside the limit of its watch, in the order of the rig file (which may name the limit
-    too, to place it); a parameter that several rows use is listed once in the section, with the first of them."""
+    """Parameters that the row uses besides the limit of its watch, in the order of the rig file (the limit may be among
+    them, to fix its place). A parameter of several rows appears once in the section, with the first of these rows.
+    """
     applies: Callable[[V], bool] | None = None
-    """Whether the row applies in a scan, called only where the watch is beyond its limit. None: always."""
+    """Whether the row applies in a scan; called only when the watch is beyond its limit. None: always."""
     delay: Parameter | None = None
-    """How long the row must hold; None: it trips in its first scan."""
+    """How long the row must hold before it trips; None: it trips in its first scan."""
     channels: tuple[str, ...] = ()
-    """Channels of further sensors that the row looks at (``ScanInputs.further``), by their names in the record. A rig
-    file without such a sensor is refused."""
+    """Channels of further sensors that the row reads (``ScanInputs.further``), by their names in the record. A rig file
+    without one of these sensors is refused.
+    """
     when: When = ALWAYS
     unseen: Callable[[V], bool] | bool = False
-    """For a row that is watched only while something is wanted (drives, load, heat): is its cause still there? Called
-    before a trip of this row is acknowledged. True: its watch, whether or not the row applies."""
+    """Whether the cause is still present, for a row that applies only while something is wanted (drives, load, heat).
+    Called before a trip of this row is acknowledged. True: use the row's watch, whether or not the row applies.
+    """
     at_rest: Callable[[V], bool] | None = None
-    """Whether the row also trips in idle: nothing is left to stop then, but some power to take off."""
+    """Whether the row also trips at rest, where nothing is left to stop but some power can be switched off."""
     ends_lease: bool = False
-    """A device that is still on when it trips is left to its lease: its setpoint is not renewed any more."""
+    """Whether a trip leaves a device that is still on to its lease: its setpoint is then no longer renewed."""
 
     def holds(self, v: V) -> bool:
         """Return whether the row holds in a scan."""
         return self.watch.holds(v) and (self.applies is None or self.applies(v))
 
     def still_there(self) -> Callable[[V], bool] | None:
-        """Return what an acknowledgement asks of the row's cause; None: only whether the row holds."""
+        """Return the function with which an acknowledgement tests the row's cause; None: it only tests whether the row
+        holds.
+        """
         return self.unseen if callable(self.unseen) else self.watch.holds if self.unseen else None
 
     def delay_s(self, values: Values) -> float:
@@ -138,11 +145,11 @@ class Interlock(Generic[V]):
         return values[self.delay] if self.delay is not None else 0.0
 
     def declared(self) -> tuple[Parameter, ...]:
-        """Return every parameter of the row: its limit first where ``parameters`` has it nowhere, its delay last."""
+        """Return every parameter of the row: its limit first unless ``parameters`` contains it, its delay last."""
         limit = tuple(one for one in self.watch.parameters if one not in self.parameters)
         return (*limit, *self.parameters, *([self.delay] if self.delay is not None else []))
 
 
 def always(_: Any) -> bool:
-    """Hold."""
+    """Return True: the row applies in every scan."""
     return True

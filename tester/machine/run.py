@@ -19,7 +19,7 @@ from tester.machine.sampler import Sampler
 from tester.machine.state import Mode, Trip
 
 POWER_OFF_S: Final = 2.0
-"""A drive that has not switched its power off after this time is released all the same, s [A]."""
+"""After this time a drive is released even if it has not switched its power off, s [A]."""
 RELEASE_S: Final = 5.0
 """Time limit for the drives to stop watching our heartbeat, s [A]."""
 
@@ -36,7 +36,7 @@ class Outcome(Enum):
 
 
 class Run:
-    """Connection, recipe, stop, standstill."""
+    """Connects a rig, executes a recipe, stops, and waits for standstill."""
 
     def __init__(self, connector: Connector, engine: Engine) -> None:
         """Send nothing before the first ``tick``."""
@@ -46,7 +46,9 @@ class Run:
         self.finished = False
         self.reason = ""
         self.stays_latched = False
-        """After a trip the run waits for the acknowledgement; otherwise it ends, and a new run must be started."""
+        """Whether the run waits for the acknowledgement after a trip. Otherwise a trip ends it, and a new run must be
+        started.
+        """
         self._ended_s: float | None = None
         self._started = False
         self._refused = False
@@ -55,7 +57,7 @@ class Run:
 
     @property
     def connected(self) -> bool:
-        """Whether every device has answered and was read back; then the recipe is under way, or over."""
+        """Whether every device has answered and its settings were read back; the recipe is then under way, or over."""
         return self._started
 
     @property
@@ -76,7 +78,7 @@ class Run:
         self.engine.control.request_stop(self.engine.ctx.now, why, fast=fast, cool=cool)
 
     def request_hold(self, why: str = "held by the operator") -> str:
-        """Hold: open the contact, keep the heat. The repeat under way is repeated."""
+        """Hold: open the contact, keep the heat. The repeat under way is measured again."""
         engine = self.engine
         if not self._started:
             return "the rig is not up yet"
@@ -95,7 +97,7 @@ class Run:
         return refused
 
     def request_ack(self, by: str = "") -> str:
-        """Acknowledge a trip: drives reset their faults, and IDLE follows when every cause is gone."""
+        """Acknowledge a trip: drives reset their faults, and IDLE follows once every cause is gone."""
         engine = self.engine
         refused = engine.control.request_ack(engine.ctx.now, by)
         if not refused:
@@ -106,8 +108,7 @@ class Run:
     def abandon(self) -> None:
         """Leave the rig at once, because the program cannot continue: send safe outputs once, without reading.
 
-        No scan follows. Where an output has not arrived, drives and devices stop by their own watchdogs
-        (``Engine.abandon``).
+        No scan follows. A drive or device that an output does not reach stops by its own watchdog (``Engine.abandon``).
         """
         self.engine.abandon()
 
@@ -152,9 +153,9 @@ class Run:
             ctx.journal.event(now, "arming", refused, "alarm")
 
     def _lose(self, lost: BusLost) -> None:
-        """End the run: nothing reaches the drives any more, and those that move stop without our heartbeat.
+        """End the run: nothing reaches the drives any more, and moving drives stop because our heartbeat is missing.
 
-        A lost serial line is not handled here: the connector fails and stops the drives.
+        A lost serial line is not handled here: in that case the connector fails and stops the drives.
         """
         self.outcome, self.finished = Outcome.UNREACHABLE, True
         self.reason = f"bus lost: {lost}" if "lost" not in str(lost) else str(lost)
@@ -201,7 +202,9 @@ def run_of(
     plan: Plan, devices: DeviceList, control: AnyControl, ctx: AnyContext, arming: Arming[Any, Any],
     procedures: Procedures[Any], quantities: Quantities, listen_s: float,
 ) -> Run:  # fmt: skip
-    """Return a run of a kind's parts that is ready to be ticked; ``listen_s``: silence on the bus before it begins."""
+    """Return a run of a kind's parts, ready to be ticked; ``listen_s``: required silence on the bus before it
+    begins.
+    """
     sampler = Sampler(ctx.journal, quantities)
     return Run(
         Connector(devices, ctx.rig, arming, listen_s),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of a plan: ``number`` counts from 1; the plan is the whole one's with this part's steps only.
+    """A part of a plan. ``number`` counts from 1; ``plan`` is the whole plan reduced to this part's steps.
 
     Steps, conditions, rows and specimens keep their numbers.
     """
@@ -33,15 +33,15 @@ class Part:
     number: int
     plan: Plan
     last_mounted: int = 0
-    """The highest specimen number in use before this part mounts one that the plan did not foresee."""
+    """The highest specimen number used before this part mounts a specimen that the plan did not foresee."""
 
 
 @dataclass(frozen=True, slots=True)
 class NoHistory:
-    """The ``History`` of a kind that learns nothing from earlier runs."""
+    """The ``History`` of a kind that uses nothing from earlier runs."""
 
     lines: tuple[Check, ...] = ()
-    """Lines of the list before a start."""
+    """Lines of the pre-flight list."""
 
     def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
         """Return these lines, whatever is on the rig."""
@@ -49,7 +49,7 @@ class NoHistory:
 
 
 class NoAttendant:
-    """The attendant of a real rig: does nothing, because people do the work before they answer the prompt."""
+    """The attendant of a real rig. It does nothing, because people do the work before they answer the prompt."""
 
     def __getattr__(self, name: str) -> Callable[..., None]:
         """Return a call that does nothing, for any public name."""
@@ -63,18 +63,20 @@ def _nothing(*_: object, **__: object) -> None:
 
 
 class KindRun:
-    """A kind, for running recipes. A kind implements ``build`` and ``mount``.
+    """A kind's part in running recipes. A kind implements ``build`` and ``mount``.
 
-    An ``attendant`` is the hands at the rig: the kind's requests to a person, which a simulated rig carries out itself.
-    Its methods are the kind's own.
+    An ``attendant`` receives the kind's requests to a person; a simulated rig carries them out itself. The kind defines
+    its methods.
     """
 
     plant: str = ""
-    """Name of the kind's twin for ``sim.machines.find``; the twin's rig is its own attendant; "" without a twin."""
+    """Name of the kind's simulated twin for ``sim.machines.find``, whose rig is its own attendant; "" if it has
+    none.
+    """
 
     def split(self, plan: Plan) -> tuple[Part, ...]:
-        """Return the parts of a plan, in its order, that may run side by side, each on its own simulated rig; at least
-        one: by default the whole plan.
+        """Return the parts of a plan, in order, that may run side by side, each on its own simulated rig. There is at
+        least one; by default it is the whole plan.
         """
         return (Part(1, plan),)
 
@@ -89,22 +91,24 @@ class KindRun:
         point: ResumePoint | None = None,
         history: History | None = None,
     ) -> Run:
-        """Return a run that is ready to be ticked.
+        """Return a run, ready to be ticked.
 
         ``plan``: the work to do; ``point``: where an interrupted run resumes; ``history``: facts from earlier runs,
-        None for none.
+        None if there are none.
         """
         raise NotImplementedError
 
     def mount(self, attendant: Any, compound: str) -> None:
-        """Mount a new specimen on a rig without a run: the twin in a process of its own.
+        """Mount a new specimen while no run is under way, on a twin in a process of its own.
 
-        ``compound``: "" is the kind's own choice.
+        ``compound``: "" leaves the choice to the kind.
         """
         raise NotImplementedError
 
     def history(self, runs: Path, rig: Rig) -> History:
-        """Return the facts about a rig from the runs in a folder; reads files, so not between two ticks."""
+        """Return the facts about a rig from the runs in a folder. It reads files, so it is not called between two
+        ticks.
+        """
         return NoHistory()
 
     def calibration(self, rig: Rig) -> Iterable[Calibration]:
@@ -114,8 +118,8 @@ class KindRun:
         return ()
 
     def store_state(self, run: Run, recorder: Recorder, now_s: float) -> None:
-        """Store the specimen's state that an interruption would lose; called about once a second of wall time while
-        connected.
+        """Store the state of the specimen that an interruption would lose; called about once a second of wall time
+        while connected.
 
         ``now_s``: rig time.
         """

@@ -17,20 +17,20 @@ IDLE_PERIOD_S: Final = 0.5
 
 
 Values: TypeAlias = Callable[[BaseContext[Any, Any, Any]], tuple[float, ...]]
-"""Function that takes values from the context of a run."""
+"""Function that reads values from the context of a run."""
 
 
 def values_at(sources: Sequence[str]) -> Values:
-    """Return a function that takes the values at these sources (``Channel.source``), in order.
+    """Return a function that reads the values at these sources (``Channel.source``), in order.
 
-    It makes one call in C for each stretch of attributes, or of keys of one mapping.
+    It makes one call in C for each sequence of attributes, or of keys of the same mapping.
     """
     parts = [_stretch(holder, list(stretch)) for holder, stretch in groupby(sources, _holder)]
     return reduce(_joined, parts)
 
 
 def _holder(source: str) -> str:
-    """Return the mapping that contains a source, "" for an attribute."""
+    """Return the mapping that contains a source; "" for an attribute."""
     holder, bracket, _ = source.partition("[")
     return holder if bracket else ""
 
@@ -52,7 +52,7 @@ def _joined(first: Values, then: Values) -> Values:
 
 
 def row_builder(quantities: Quantities) -> Values:
-    """Return a function that makes a row of a scan, without the last three channels."""
+    """Return a function that makes the row of a scan, without its last three channels."""
     recorded = values_at([c.source for c in quantities.recorded[: -len(LAST) - len(quantities.further)]])
     if not quantities.further:
         return recorded

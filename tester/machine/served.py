@@ -1,7 +1,7 @@
 """A kind's answers to a service: the view of a run, the facts from past runs, and manual mode.
 
-A service looks at a run between two ticks and changes nothing by it. Types only; ``tester.run.kind_lookup`` finds a
-rig's kind.
+A service reads a run between two ticks and thereby changes nothing. This module holds types only;
+``tester.run.kind_lookup`` finds a rig's kind.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Left(Protocol):
-    """What a run left on its rig."""
+    """The specimen that a run left on its rig."""
 
     @property
     def known(self) -> bool:
@@ -32,7 +32,7 @@ class Left(Protocol):
         ...
 
     def usable(self, rig: Rig) -> bool:
-        """Return whether it may still be used on a rig; otherwise it is treated as changed."""
+        """Return whether the specimen may still be used on a rig. If not, it is treated as changed."""
         ...
 
 
@@ -40,7 +40,9 @@ class History(Protocol):
     """Facts about a rig from the runs in a folder: plain data, which can be hashed and pickled."""
 
     def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
-        """Return the kind's part of the pre-flight list before the rig is connected. ``left``: by the newest run."""
+        """Return the kind's part of the pre-flight list before the rig is connected. ``left``: what the newest run
+        left.
+        """
         ...
 
 
@@ -55,17 +57,17 @@ class ByHand:
 
 @dataclass(frozen=True, slots=True)
 class NotReused:
-    """A specimen that a finished run left on the rig: the next run begins with one of its own."""
+    """A specimen that a finished run left on the rig and that is not used again: the next run begins with its own."""
 
     known: bool
 
     def usable(self, rig: Rig) -> bool:
-        """Return False: it is treated as changed."""
+        """Return False: the specimen is treated as changed."""
         return False
 
 
 class ServedKind:
-    """A kind, for a service. The default of ``left`` is that of a kind that reuses no specimen."""
+    """A kind's answers to a service. The default of ``left`` is for a kind that reuses no specimen."""
 
     machine: MachineView
     """The tables that clients need."""
@@ -73,7 +75,7 @@ class ServedKind:
     """The table of channels."""
 
     def title(self, step: Step) -> str:
-        """Return a description of a step of a plan, in a line."""
+        """Return a one-line description of a step of a plan."""
         raise NotImplementedError
 
     def panel(self, engine: Engine) -> RunPanel:
@@ -81,7 +83,7 @@ class ServedKind:
         raise NotImplementedError
 
     def alone(self, rig: Rig) -> str:
-        """Return what the rig's devices do by themselves when the process that owns the rig is gone, in words."""
+        """Return what the rig's devices do by themselves once the process that owns the rig is gone, in words."""
         raise NotImplementedError
 
     def left(self, reader: RunReader, name: str) -> Left:
@@ -91,7 +93,7 @@ class ServedKind:
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: Any, record: Recorder, left: Left | None, history: History
     ) -> ByHand:
-        """Build manual mode, bounded only by the rig; ``left``: the specimen on it, None = new.
+        """Build manual mode, bounded only by the rig; ``left``: the specimen on it, None if new.
 
         ``attendant``, ``history``: as in the kind's ``KindRun``.
         """

@@ -1,4 +1,4 @@
-"""Texts about devices that are silent, refuse or report a fault; they accompany the trip."""
+"""Texts about devices that are silent, refuse requests or report a fault, to accompany a trip."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from drivers.servo import ServoDrive
 from tester.machine.modbus_health import FieldDevice
 
 SPREAD_S: Final = 0.015
-"""A drive further behind the others than this is missing, s [A]: drives answer one SYNC within 2 ms of each other."""
+"""A drive whose data are older than the others' by more than this counts as missing, s [A]: drives answer one SYNC
+within 2 ms of each other.
+"""
 
 
 def unheard(drives: Sequence[ServoDrive]) -> str:
-    """Return the drives that are behind the others, as text; "" for a bus that is silent as a whole."""
+    """Return the drives whose data are older than the others', as text; "" if the whole bus is silent."""
     oldest = newest = drives[0].stamp_s
     for drive in drives:
         stamp_s = drive.stamp_s
@@ -31,7 +33,7 @@ def unheard(drives: Sequence[ServoDrive]) -> str:
 
 
 def silent_lines(lines: Sequence[tuple[LinePort, ModbusLink]], modbus: Sequence[FieldDevice]) -> str:
-    """Return the Modbus lines without an answering device, with their devices, as text; "" = none."""
+    """Return the Modbus lines on which no device answers, with their devices, as text; "" = none."""
     for _, link in lines:
         for station in link.stations:
             if station.is_lost:
@@ -44,7 +46,7 @@ def _silent(lines: Sequence[tuple[LinePort, ModbusLink]], modbus: Sequence[Field
     for _, link in lines:
         there = [device for device in modbus if device.driver.link is link]
         stations = [device.driver.station for device in there]
-        # One station is lost, and the others have missed a request since: they would count as lost only later.
+        # One station is lost, and each other has since missed a request; those would count as lost only later.
         if any(station.is_lost for station in stations) and all(station.misses for station in stations):
             texts.append(f"no answer on line {there[0].line}: {', '.join(device.title for device in there)}")
     return "; ".join(texts)
@@ -57,7 +59,7 @@ def name_of(link: ModbusLink, modbus: Sequence[FieldDevice]) -> str:
 
 
 def refusals(drives: Sequence[ServoDrive], nodes: Sequence[SensorNode], modbus: Sequence[FieldDevice]) -> list[str]:
-    """Return why devices cannot be used, a text each."""
+    """Return why devices cannot be used, a text for each."""
     texts = [f"{drive.config.name} drive (node {drive.node_id}): {drive.refused}" for drive in drives if drive.refused]
     texts += [f"{node.name} (node {node.node_id}): {node.refused}" for node in nodes if node.refused]
     return texts + [f"{device.title}: {device.driver.refused}" for device in modbus if device.driver.refused]

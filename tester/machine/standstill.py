@@ -20,7 +20,8 @@ class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
     ) -> None:  # fmt: skip
         """Read the bounds of the rows from the rig file.
 
-        ``demands``: two fresh ones, for the modes that ignore the recipe's; ``hold_at_most``: the bound of a hold.
+        ``demands``: two fresh ones, for the modes that ignore the recipe's demand; ``hold_at_most``: the bound of a
+        hold.
         """
         values = view.parameters = rig.values()
         view.note_further(rig)
@@ -32,7 +33,7 @@ class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
         )  # fmt: skip
 
     def enable(self, demand: DemandT, readings: ReadingsT) -> None:
-        """Give the drives power where they are wanted and may move; end a quick stop."""
+        """Switch the drives' power on where it is demanded and they may move; end a quick stop."""
         out = self.state.setpoints
         out.enable, out.quick_stop = demand.enabled and may_move(readings), False
 

@@ -1,4 +1,4 @@
-"""Control's memory between scans: mode, latched trip, timers of the interlocks, the stop under way."""
+"""Control's state between scans: mode, latched trip, timers of the interlocks, the stop under way."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ class Mode(Enum):
 
     IDLE = "idle"
     ARMED = "armed"
-    """Every level is clear; passed through on the way to RUN."""
+    """Every level is clear; an intermediate mode before RUN."""
     RUN = "run"
     HOLD = "hold"
     """Contact open, heat held, drives enabled: until the operator releases it."""
     STOPPING = "stopping"
     """Controlled stop: heat off, contact opened, drives ramp down together."""
     COOLDOWN = "cooldown"
-    """Unloaded creep, heat off, on a machine that a hot stop would harm; until it is cool."""
+    """Heat off, unloaded creep until the machine is cool, for a machine that would be damaged by stopping hot."""
     FAST_STOP = "fast stop"
     """Contact opened, quick stop of every drive, heat off: all in one scan."""
     EMERGENCY = "emergency stop mirrored"
@@ -45,9 +45,9 @@ class Trip:
 
 
 HELD: Final = "held"
-"""Kind of the event at the end of a hold; its text is the duration."""
+"""Kind of the event at the end of a hold; the event's text is the duration."""
 ACKNOWLEDGED: Final = "acknowledged"
-"""Kind of the event that ends a trip; its text names who acknowledged."""
+"""Kind of the event that ends a trip; the event's text names the person who acknowledged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,18 +64,18 @@ class StopProgress:
     """The stop under way."""
 
     began_s: float = inf
-    """When the rig left RUN, HOLD or COOLDOWN; infinity while no stop is under way."""
+    """Time at which the rig left RUN, HOLD or COOLDOWN; infinity while no stop is under way."""
     fast_s: float = inf
-    """When the quick stop began."""
+    """Time at which the quick stop began."""
     creeps: bool = False
-    """Something turns on purpose: cool-down."""
+    """Whether the cool-down keeps something turning on purpose."""
 
 
 SetpointsT_co = TypeVar("SetpointsT_co", bound=BaseSetpoints, covariant=True)
 
 
 class ControlState(Generic[SetpointsT_co]):
-    """Everything ``Control.step`` carries from one scan to the next; plain data, copyable. A kind adds its loops."""
+    """The state that ``Control.step`` keeps from one scan to the next: plain data, copyable. A kind adds its loops."""
 
     def __init__(self, setpoints: SetpointsT_co) -> None:
         """Begin in idle; ``setpoints``: the devices' setpoints."""
@@ -88,18 +88,18 @@ class ControlState(Generic[SetpointsT_co]):
         self.tripped = 0
         """Rows that have tripped (or warned, while their level holds) since the last acknowledgement."""
         self.pending_s: list[float] = []
-        """Since when each interlock's level has held (inf = it does not hold), in the table's order."""
+        """Time since when each interlock's level has held (inf = it does not hold), in the table's order."""
         self.events: list[ControlEvent] = []
-        """Events since the last scan, in order; the engine takes them out before the outputs leave."""
+        """Events since the last scan, in order; the engine removes them before the outputs leave."""
         self.last_s = -inf
         self.last_late_s = 0.0
-        """How much later than its period the last scan was, s."""
+        """Lateness of the last scan beyond its period, s."""
         self.stop = StopProgress()
         self.stop_requested = ""
         self.cooled = False
-        """The cool-down of this run is over (or not wanted), whether everything got cool or not."""
+        """Whether the cool-down of this run is over (or not wanted), even if not everything became cool."""
         self.ack_until_s = -inf
-        """An acknowledgement is pending: it counts if every cause is gone by then."""
+        """Deadline of a pending acknowledgement: it counts if every cause is gone by then."""
         self.ack_by = ""
         """Who acknowledged."""
 

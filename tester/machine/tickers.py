@@ -15,13 +15,13 @@ from tester.base.clock import Pace
 from tester.base.processes import RealTimePriority
 
 POLL_S: Final = 0.02
-"""Period of ``poll``, s of wall time: the delay of a STOP from a screen is at most this."""
+"""Period of ``poll``, s of wall time: the greatest delay of a STOP from a screen."""
 LEAVE_S: Final = 0.008
-"""No poll begins within this time before a tick is due, s: at 100 Hz it follows a tick, and may take long."""
+"""No poll begins within this time before a due tick, s. At 100 Hz the poll then follows a tick, and may take long."""
 
 
 class Ticked(Protocol):
-    """Driven by a ticker."""
+    """Something that a ticker ticks."""
 
     @property
     def finished(self) -> bool:
@@ -30,7 +30,7 @@ class Ticked(Protocol):
 
     @property
     def waiting(self) -> bool:
-        """Whether a prompt waits: simulated time stops until the answer."""
+        """Whether a prompt waits; simulated time then stops until the answer."""
         ...
 
     def tick(self, now: float) -> float:
@@ -58,19 +58,20 @@ class TickStatistics:
     ticks: int = 0
     late_max_s: float = 0.0
     overruns: int = 0
-    """Ticks that came later than their successor was due."""
+    """Ticks that came after the next tick was due."""
 
     def note(self, late_s: float) -> None:
-        """Count a tick with its lateness; a tick brought forward by something urgent is not late."""
+        """Count a tick and its lateness; a tick that something urgent brought forward is not late."""
         self.ticks += 1
         if late_s > self.late_max_s:
             self.late_max_s = late_s
 
 
 def next_tick(now: float, wanted: float, urgent: float) -> float:
-    """Return the time of the next tick: the earlier of both, on a grid of microseconds, and always after ``now``.
+    """Return the time of the next tick: the earlier of ``wanted`` and ``urgent``, on a grid of microseconds, always
+    after ``now``.
 
-    Simulated time is counted, not measured: on a grid, equal runs have equal times to the last bit.
+    Simulated time is counted, not measured: on the grid, equal runs have exactly equal times.
     """
     due = ceil((wanted if wanted < urgent else urgent) * 1e6 - 1e-3)
     soonest = floor(now * 1e6 + 0.5) + 1
@@ -78,10 +79,10 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
 
 
 def run_simulated(engine: Ticked, world: TickedWorld, *, lapse: float | None, poll: Callable[[float], None]) -> float:
-    """Run to the end in simulated time; return the rig seconds.
+    """Tick to the end in simulated time; return the rig seconds.
 
-    ``lapse``: rig seconds per second of wall time, or None for as fast as possible. ``poll`` is called about every
-    ``POLL_S`` of wall time (display, commands), also between two ticks; it must not block for long.
+    ``lapse``: rig seconds per second of wall time; None: as fast as possible. ``poll`` is called about every ``POLL_S``
+    of wall time (display, commands), also between two ticks; it must not block for long.
     """
     now = 0.0
     origin = clock.monotonic()
@@ -115,7 +116,7 @@ def run_real_time(
     statistics: TickStatistics,
     pace: Pace | None = None,
 ) -> float:
-    """Run to the end in real time on absolute deadlines; return the duration, s.
+    """Tick to the end in real time on absolute deadlines; return the duration, s.
 
     ``world``: a simulated rig in the same process, or None with hardware on the wire. ``pace``: the clock that stamps
     arrivals and can end a wait early; by default one that starts now.
@@ -142,12 +143,12 @@ def run_real_time(
 
 
 SWITCH_S: Final = 0.0005
-"""Longest time that another thread (recorder, reception) may delay a due scan, s (Python: 5 ms)."""
+"""Longest time for which another thread (recorder, reception) may delay a due scan, s (Python's default: 5 ms)."""
 
 
 @contextmanager
 def scan_first() -> Generator[None, None, None]:
-    """Give the scan the interpreter soon after it asks for it."""
+    """Give the scan's thread the interpreter within ``SWITCH_S`` of its request."""
     before = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_S)
     try:
@@ -158,10 +159,10 @@ def scan_first() -> Generator[None, None, None]:
 
 @contextmanager
 def in_time(lapse: float | None) -> Generator[None, None, None]:
-    """Keep a simulated rig punctual with real-time priority, if the system grants it.
+    """Keep a simulated rig punctual by real-time priority, if the system grants it.
 
-    ``lapse`` as in ``run_simulated``. Above 1 no priority is requested: such a run uses all the processor's time, and
-    would leave none to others.
+    ``lapse``: as in ``run_simulated``. Above 1 no priority is requested, because the run then uses all the processor's
+    time and would leave none for other processes.
     """
     if lapse is None or lapse > 1.0:
         yield
@@ -196,14 +197,14 @@ def _wait_paced(pace: Pace, due: float, now: float, poll: Callable[[float], None
 
 
 class collector_at_rest:  # noqa: N801 - reads as a statement
-    """Keeps the cyclic garbage collector away from the scan: existing objects are frozen, automatic runs are off.
+    """Keeps the cyclic garbage collector away from the scan: existing objects are frozen, automatic collection is off.
 
     Reference counting still frees nearly everything; the young generations are collected when the block ends.
     """
 
     def __enter__(self) -> None:
         """Freeze existing objects and stop automatic collection."""
-        gc.collect(1)  # skip the many old objects, because STOP would wait: garbage among them stays a while
+        gc.collect(1)  # skip the many old objects, because STOP would wait: garbage among them stays for a while
         gc.freeze()
         gc.disable()
 

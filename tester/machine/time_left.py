@@ -1,11 +1,10 @@
-"""The position of a run and its time left: the only place that counts steps, conditions and times to come.
+"""The position of a run and its time left: the only module that counts steps, conditions and expected times.
 
 The steps are those of the plan and, after each part of it, the way to standstill. The time left is the sum of the
-expected durations of the steps to come and of the rest of the present step, each in whole seconds, so that a list of
-the steps adds up to it. Only work counts: in a hold, or while a prompt waits, neither the share nor the time left
-changes. Once the run has been given up (a trip, a stop, a failure) there is no time left to show. Each kind of step has
-its own pace: rests that last as planned do not shorten conditions that take twice their estimate. Times in s of rig
-time.
+expected durations of the later steps and of the rest of the present step. Each is a whole number of seconds, so that a
+list of the steps adds up to it. Only work counts: in a hold, or while a prompt waits, neither the share nor the time
+left changes. After a trip, a stop or a failure there is no time left to show. Each kind of step has its own pace, so
+that rests that last as planned do not shorten conditions that take twice their estimate. Times are in s of rig time.
 """
 
 from __future__ import annotations
@@ -31,26 +30,26 @@ if TYPE_CHECKING:
 PRIOR_S: Final = 300.0
 """Weight of the estimate for a kind of step, as an equivalent duration of measurement, s [A]."""
 OVERRUN: Final = 0.1
-"""A step that overruns is expected to take this much longer, as a share of its time so far [A]."""
+"""A step that exceeds its expected duration is expected to take this much longer, as a share of its time so far [A]."""
 SHOWN: Final = 0.3
-"""A repeat's own pace counts once this share of it is done [A]."""
+"""A repeat's own pace counts once this share of the repeat is done [A]."""
 SHOWN_S: Final = 30.0
-"""... and not before this time of contacts, s [A]."""
+"""... and after at least this time of contacts, s [A]."""
 STANDSTILL: Final = "standstill"
-"""Kind of the entry after the last step of a part: the way to standstill, cooling included."""
+"""Kind of the entry after the last step of a part: the way to standstill, including cooling."""
 
 
 class Doing(Enum):
-    """How a run uses its time."""
+    """What a run is doing at present."""
 
     WORKING = "working"
     WAITING = "waiting"
-    """Held, or a prompt waits."""
+    """The run is held, or a prompt waits."""
     GIVEN_UP = "given up"
 
 
 def doing(run: Run) -> Doing:
-    """Return how a run uses its time."""
+    """Return what a run is doing at present."""
     executor, state = run.engine.executor, run.engine.control.state
     if run.outcome not in (Outcome.RUNNING, Outcome.DONE) or executor.failed:
         return Doing.GIVEN_UP
@@ -78,7 +77,7 @@ class PartTime:
 
 @dataclass(frozen=True, slots=True)
 class Earlier:
-    """What earlier stretches of an interrupted run completed; empty for a new run."""
+    """The work that earlier stretches of an interrupted run completed; empty for a new run."""
 
     seconds: float = 0.0
     over: frozenset[int] = frozenset()
@@ -91,8 +90,9 @@ class Earlier:
 class RunPosition:
     """Where a run is: steps and conditions counted, and times in s of rig time.
 
-    ``over`` of ``conditions`` are over, with a value or without. ``share`` of the rig time is done, 0..1. ``left_s``:
-    whole seconds still to go, None once the run was given up; ``step_left_s`` of them in the present step.
+    ``over`` of the ``conditions`` are finished, with a value or without. ``share`` of the rig time is done, 0..1.
+    ``left_s``: whole seconds to the end, None once the run was given up; ``step_left_s``: the present step's part of
+    these.
     """
 
     step: int = 0
@@ -105,11 +105,11 @@ class RunPosition:
     part: int = 1
     parts: int = 1
     beside: bool = False
-    """The figures cover only this part, which runs beside others."""
+    """Whether the figures cover only this part, because it runs beside others."""
 
 
 class TimeLeft:
-    """A run's steps beside the clock."""
+    """The steps of a run, with their expected and measured durations."""
 
     def __init__(self, parts: Sequence[PartTime], earlier: Earlier | None = None) -> None:
         """Begin before the first step of the first part."""
@@ -122,7 +122,7 @@ class TimeLeft:
         self.ahead: NDArray[np.float64] = self._estimated
         """Expected duration of each step, whole s."""
         self._ahead_s = 0.0
-        """Sum of those after the present step."""
+        """Sum of the expected durations of the steps after the present one."""
         self.revision = 0
         """Counts changes of the list of steps."""
         self._took: dict[str, tuple[float, float]] = {}
@@ -130,23 +130,25 @@ class TimeLeft:
         self._part, self._parts, self._end = 0, len(parts), len(self.steps) - 1
         self._step = self._repeat = 0
         self._open = self._fresh = False
-        """The step at ``position`` is under way."""
+        """Whether the step at ``position`` is under way, and whether it is the first condition on a specimen."""
         self._doing = Doing.WORKING
         self._now = 0.0
         self._worked_s = 0.0
-        """Work in all parts until ``_now``."""
+        """Work done in all parts until ``_now``, s."""
         self._began_s = 0.0
-        """Work when the present step began."""
+        """Work done when the present step began, s."""
         self._contact_s: float | None = None
-        """Work when the present repeat had its first contact: before, it may wait long for its temperature."""
+        """Work done when the present repeat had its first contact, s: before that, it may wait long for its
+        temperature.
+        """
         self._repeats_s: list[float] = []
         """Durations of the finished repeats of the present condition, s."""
         self._within, self._to_come = 0.0, 0
-        """Share of the present repeat that is done, and repeats behind it."""
+        """Completed share of the present repeat, and the number of repeats after it."""
         self._expect()
 
     def _read(self, parts: Sequence[PartTime]) -> None:
-        """List the steps of all parts, and work out what stays the same for the whole run."""
+        """List the steps of all parts, and compute what stays the same for the whole run."""
         self.steps: list[Step | None] = []
         """The plan's steps, with None after each part's last: the way to standstill."""
         self.estimated: list[float] = []
@@ -162,7 +164,7 @@ class TimeLeft:
         planned = {step.condition for step in self.steps if isinstance(step, ConditionStep)}
         over = accumulate((isinstance(step, ConditionStep) for step in self.steps), initial=0)
         self._over = [len(self._earlier.over - planned) + count for count in over]
-        """Conditions that are over before each step begins, and after the last."""
+        """Number of conditions finished before each step begins, and after the last step."""
         self._conditions = len(self._earlier.over | planned)
 
     def _list(self, part: PartTime) -> None:
@@ -180,14 +182,14 @@ class TimeLeft:
     # -- looking at a run -------------------------------------------------------------------------------------
 
     def begin_part(self, plan: Plan) -> None:
-        """Begin a part, on its own rig, whose time starts at 0."""
+        """Begin a part on its own rig, whose time starts at 0."""
         self._finish()
         self._part += 1
         self._now, self._step, self._doing = 0.0, 0, Doing.WORKING
         self._end = self._ends[id(plan.steps[-1])] if plan.steps else len(self.steps) - 1
 
     def look(self, now: float, run: Run) -> None:
-        """Update from a run at a rig time."""
+        """Update the position from a run at a rig time."""
         executor = run.engine.executor
         self.update(now, run.engine.ctx.progress, executor.steps, doing(run), measuring=executor.measuring,
                     finished=executor.finished and not executor.failed)  # fmt: skip
@@ -202,7 +204,9 @@ class TimeLeft:
         measuring: bool = False,
         finished: bool = False,
     ) -> None:
-        """Update from the executor. ``remaining``: its steps to come; ``finished``: none is left."""
+        """Update the position from the executor. ``remaining``: its later steps; ``finished``: whether no step is
+        left.
+        """
         if state is Doing.WORKING:
             self._worked_s += now - self._now
         self._now, self._doing = now, state
@@ -234,7 +238,7 @@ class TimeLeft:
             if id(step) in self._places:
                 break
             inserted += 1
-        # With steps inserted, the step that waits behind them is the present one.
+        # If steps were inserted, the present step is the one that waits after them.
         return self._end - (len(remaining) - inserted) - (0 if inserted else 1)
 
     def _move_to(self, position: int) -> None:
@@ -242,14 +246,14 @@ class TimeLeft:
             return
         self._finish()
         for place in range(self.position + 1, position):
-            self.measured[place] = 0.0  # it came and went between two updates: its time counts with the step before
+            self.measured[place] = 0.0  # it began and ended between two updates: its time counts with the step before
         self.position, self._open = position, True
         self._repeat, self._to_come, self._repeats_s = 0, 0, []
         self._fresh = self._is_fresh(position)
         self._expect()
 
     def _is_fresh(self, position: int) -> bool:
-        """Return whether a step is the first condition on a specimen: its first repeat runs in, and its pace does not
+        """Return whether a step is the first condition on a specimen: its first repeat runs in, so its pace does not
         count.
         """
         here = self.steps[position]
@@ -272,7 +276,7 @@ class TimeLeft:
     # -- what is expected -------------------------------------------------------------------------------------
 
     def _expect(self) -> None:
-        """Recompute the expected durations of all steps; the list changes now, and not again before the next event."""
+        """Recompute the expected durations of all steps. The list changes only here, at an event."""
         here = self._kinds[self.position] if self._open else ""
         paces: list[float] = []
         for kind in self._sorts:
@@ -286,7 +290,9 @@ class TimeLeft:
         self.revision += 1
 
     def _present_s(self) -> float:
-        """Return the time left in the present step, s: from its repeats if they show it, else from its estimate."""
+        """Return the time left in the present step, s: from its repeats once they show it, before that from its
+        estimate.
+        """
         if not self._open:
             return 0.0
         so_far_s = self._worked_s - self._began_s

@@ -1,9 +1,9 @@
-"""What rows of the interlock table watch: a number against its limit, a number between two, a state.
+"""What rows of the interlock table watch: a number against its limit, a number between two limits, a state.
 
-``at_most``, ``at_least`` and ``within`` hold a number against its limits: the condition of the row, what a trip records
-and the sentence on the safety page come from the same value and limit. ``condition`` watches a state. Their functions
-take the kind's inputs and run in every scan in which the row can apply (``When``); they change nothing and may run more
-than once in a scan. A number that is NaN is beyond its limit, so missing data trip.
+``at_most``, ``at_least`` and ``within`` compare a number with its limits. The row's condition, the record of a trip and
+the sentence on the safety page come from the same value and limit. ``condition`` watches a state. Their functions take
+the kind's inputs and run in every scan in which the row can apply (``When``); they change nothing and may run more than
+once in a scan. NaN is beyond every limit, so that missing data trip.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ from tester.inputs.rig.parameter import Parameter
 from tester.machine.row import NOTHING_COMPARED, Compared, Form, V, Watch
 
 Limit: TypeAlias = Parameter | str | float | Callable[[V], float]
-"""A parameter; the rig's own number by its place in the inputs ("limits.load_n"); a constant; or a function."""
+"""A limit: a parameter; a number of the rig by its place in the inputs ("limits.load_n"); a constant; or a function."""
 
 
 def at_most(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
     """Return the watch of a number that may not exceed its limit.
 
-    ``level``: the sentence for the safety page, with ``{}`` for the limit's name. ``unit``: of value and limit; a
-    parameter brings its own, and so does a place in the inputs, whose name ends with it.
+    ``level``: the sentence for the safety page, with ``{}`` for the limit's name. ``unit``: of value and limit. It is
+    not needed for a parameter, or for a place in the inputs, whose name ends with the unit.
     """
     return _one_sided(Form.AT_MOST, level, value, limit, unit)
 
 
 def at_least(level: str, value: Callable[[V], float], limit: Limit[V], unit: str = "") -> Watch[V]:
-    """Return the watch of a number that may not fall below its limit; arguments as of ``at_most``."""
+    """Return the watch of a number that may not fall below its limit; arguments as for ``at_most``."""
     return _one_sided(Form.AT_LEAST, level, value, limit, unit)
 
 
 def within(level: str, span: Callable[[V], tuple[float, float, float]], unit: str) -> Watch[V]:
-    """Return the watch of a number between two limits that may move; ``span``: lower limit, number, upper limit.
+    """Return the watch of a number between two variable limits; ``span`` returns lower limit, number, upper limit.
 
-    It also serves a row that watches several numbers: ``span`` returns the first that is beyond its limits.
+    For a row that watches several numbers, ``span`` returns the first that is beyond its limits.
     """
 
     def holds(v: V) -> bool:
@@ -55,7 +55,9 @@ def within(level: str, span: Callable[[V], tuple[float, float, float]], unit: st
 def condition(
     level: str, holds: Callable[[V], bool], compared: Callable[[V], Compared] = lambda _: NOTHING_COMPARED
 ) -> Watch[V]:
-    """Return the watch of a state. Write it so that missing data trip: ``not (x <= limit)``, never ``x > limit``."""
+    """Return the watch of a state. Write the condition so that missing data trip: ``not (x <= limit)``, never ``x >
+    limit``.
+    """
     return Watch(level, holds, compared)
 
 
@@ -74,7 +76,7 @@ def _one_sided(form: Form, level: str, value: Callable[[V], float], limit: Limit
 
 
 def _limit(limit: Limit[Any], unit: str) -> tuple[Callable[[Any], float], str, str]:
-    """Return how a limit is read from the inputs, its name and its unit."""
+    """Return the function that reads a limit from the inputs, the limit's name and its unit."""
     if isinstance(limit, Parameter):
         return lambda v: v.parameters[limit], limit.key, limit.unit
     if isinstance(limit, str):

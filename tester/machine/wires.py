@@ -1,4 +1,6 @@
-"""Rows of any machine: safety chain, wires and their masters, the scan's own clock, guard, Modbus devices as such."""
+"""Rows of any machine: safety chain, wires and their masters, the scan's own clock, guard, Modbus devices in
+general.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from tester.machine.row import ACK, CONTROLLED, EMERGENCY, WARN, Interlock
 from tester.machine.watches import at_least, at_most, condition
 
 Row: TypeAlias = Interlock[Any]
-"""A row over any kind's inputs: ``ScanInputs`` with readings, demand, and limits that have ``heartbeat_s``."""
+"""A row over any kind's inputs: ``ScanInputs`` with readings, demand, and limits that contain ``heartbeat_s``."""
 
 SAFETY_CHAIN: Final[Row] = Interlock(
     name="safety chain",
@@ -38,8 +40,8 @@ def _bus_silent(v: Any) -> bool:
     if r.drives_enabled:
         scans_s = p[SILENT_CAN_SCANS] * v.scan_s
         allowed_s = scans_s if scans_s < allowed_s else allowed_s
-    # A scan that comes late has not listened meanwhile: that is for "scan late" to judge. Nor has the one after it
-    # been answered yet.
+    # A late scan has not received frames in the meantime ("scan late" judges that), and drives have not yet answered
+    # the scan after it.
     late_s = v.late_before_s + (v.late_s if v.late_s > 0.0 else 0.0)
     return not (r.now_s - late_s - r.can_heard_s <= allowed_s)
 
@@ -138,9 +140,9 @@ STALE_CAN_S: Final = Parameter(
 
 
 def drive_data_allowed_s(v: Any) -> float:
-    """Return how old the drives' data may be, s."""
-    # Drives answer a scan's SYNC. What is looked at answers the scan before, or where that answer is lost the one
-    # before that: their data is older by what these two scans came late ("scan late" judges that).
+    """Return the greatest permitted age of the drives' data, s."""
+    # Drives answer a scan's SYNC. The data seen in a scan answer the scan before, or, where that answer was lost, the
+    # one before that. So they are older by the lateness of these two scans ("scan late" judges that).
     p = v.parameters
     late_s = v.late_before_s + (v.late_s if v.late_s > 0.0 else 0.0)
     allowed = p[STALE_CAN_SCANS] * v.scan_s + late_s
@@ -190,5 +192,5 @@ WARNINGS: Final[tuple[Row, ...]] = (SCAN_DELAYED,)
 
 
 def answered_s(silent: bool, now_s: float, at_s: float) -> float:
-    """Return how long ago a device last answered, s; NaN where several requests in a row went without an answer."""
+    """Return the time since a device last answered, s; NaN after several unanswered requests in a row."""
     return nan if silent else now_s - at_s

@@ -1,4 +1,4 @@
-"""Frame logs of a run: CAN as a candump log, Modbus with one line a frame.
+"""Frame logs of a run: CAN as a candump log, Modbus with one line for each frame.
 
 ``can.log`` is written by python-can's own candump writer, so any CAN tool reads it. ``modbus-<line>.log`` holds ``(time
 in s) direction bytes``; ``axes.json`` holds the factors from a drive's counts to engineering units.
@@ -21,7 +21,7 @@ CHANNEL = "can0"
 
 
 class CanLog:
-    """Writes CAN frames."""
+    """Writes CAN frames to a log."""
 
     def __init__(self, path: Path) -> None:
         """Create the file."""

@@ -1,4 +1,4 @@
-"""Runs a recipe within a commissioning: an ordinary run, with its results returned as plain data."""
+"""Runs a recipe within commissioning: an ordinary run, whose results are returned as plain data."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class PersonScreen(ReportScreen):
             self.person.message(f"  {100 * at.share:3.0f} %  {run.title}")
 
     def attend(self, prompts: Prompts) -> None:
-        """Let the person answer."""
+        """Let the person answer the prompts."""
         self.person.attend(prompts)
 
     def commands(self) -> list[str]:
@@ -54,7 +54,9 @@ class PersonScreen(ReportScreen):
 
 
 def run_recipe(options: SessionOptions, folder: Path, person: Person, name: str, text: str) -> Mapping[str, Any]:
-    """Run a recipe; ``options`` name the rig. Raises StepRefused if it did not complete, CannotStartError."""
+    """Run a recipe and return its results; ``options`` name the rig. Raises StepRefused if it did not complete,
+    CannotStartError.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{name}.yaml"
     path.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Commissions a rig from start to finish: its wires, record, locks and signals, and the recipe it runs."""
+"""Commissions a rig from start to finish: its wires, record, locks and signals, and the recipes of its steps."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from tester.run.session_options import SessionOptions
 
 @dataclass(frozen=True, slots=True)
 class CommissionOptions(SessionOptions):
-    """Options of the command line. ``lapse``: of the steps; recipes run as fast as possible."""
+    """Options of the command line. ``lapse``: speed of the steps; recipes run as fast as possible."""
 
     compound: str = ""
 
 
 def part_of(rig: Rig) -> CommissionPart:
-    """Return the commissioning of a rig; raises InvalidSource if its kind has none."""
+    """Return the commissioning part of a rig's kind; raises InvalidSource if the kind has none."""
     part = kinds.find(rig.kind).commissions
     if part is None:
         text = f"kind: a rig of the kind {rig.kind} has no guided commissioning"
@@ -70,7 +70,7 @@ def commission(rig: Rig, options: CommissionOptions, person: Person) -> Commissi
 
 
 def _connect(rig: Rig, seed: int, person: Person) -> tuple[Ports, TickedWorld | None, Any]:
-    """Open the wires of a rig for exclusive use until they are closed. Raises CannotStartError, BusLost."""
+    """Open the wires of a rig and lock them until they are closed. Raises CannotStartError, BusLost."""
     with ExitStack() as opened:
         use = opened.enter_context(ExclusiveUse())
         hold_rig(use, rig, FOLDER)

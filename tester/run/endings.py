@@ -1,4 +1,4 @@
-"""How parts end, the resulting end of the run, and its exit code."""
+"""How parts end, the end of the run that results, and its exit code."""
 
 from __future__ import annotations
 
@@ -37,25 +37,25 @@ class CannotStartError(Exception):
 
 
 class StopLevel(IntFlag):
-    """Who wants a run to stop. Requests add up; none takes back another's."""
+    """Who wants a run to stop. Requests add up; none cancels another."""
 
     NONE = 0
     OTHER_PART = 1
     UNSEEN = 2
-    """The run can no longer be shown: screen, pipe or file is gone."""
+    """The run can no longer be shown: the screen, pipe or file has gone."""
     HUNG_UP = 4
-    """The terminal is gone (HUP)."""
+    """The terminal has gone (HUP)."""
     TERMINATED = 8
     INTERRUPTED = 16
     FAST = 32
 
     @property
     def text(self) -> str:
-        """The recorded reason: that of the highest level."""
+        """The reason to record: that of the highest level."""
         return next((text for stop, text in _STOP_TEXTS.items() if stop in self), "")
 
     def tell(self, run: Run) -> None:
-        """Stop a run. After TERM or a closed terminal it ends at standstill, without the cool-down."""
+        """Stop a run. After TERM or a closed terminal the run ends at standstill, without the cool-down."""
         run.request_stop(self.text, fast=StopLevel.FAST in self, cool=not self & _NOT_COOLED)
 
 
@@ -72,7 +72,7 @@ _STOP_TEXTS = {
 
 @dataclass(frozen=True, slots=True)
 class PartEnd:
-    """How one part ended. ``failed``: why recording was incomplete, None if it was complete."""
+    """How one part ended. ``failed``: why its recording is incomplete, None if it is complete."""
 
     part: int
     outcome: Outcome
@@ -82,14 +82,14 @@ class PartEnd:
 
 @dataclass(frozen=True, slots=True)
 class RunEnding:
-    """How the whole run ended: the worst of its parts."""
+    """How the whole run ended: as the worst of its parts."""
 
     outcome: Outcome
     reason: str
     failed: str | None
 
     def exit_code(self, *, interrupted_once: bool, missing: bool) -> int:
-        """Return the exit code; ``missing``: a condition has no trustworthy value."""
+        """Return the exit code; ``missing``: whether a condition has no trustworthy value."""
         if self.outcome is Outcome.STOPPED and interrupted_once:
             return EXIT_INTERRUPTED
         if self.failed:
@@ -100,9 +100,10 @@ class RunEnding:
 
 
 def ending_of(ends: Sequence[PartEnd], parts: int, stop: StopLevel = StopLevel.NONE) -> RunEnding:
-    """Return the ending of a run of ``parts`` parts, with the ends of those that began; ``stop``: who wanted a stop.
+    """Return the ending of a run of ``parts`` parts from the ends of those that began; ``stop``: who wanted a stop.
 
-    The first of the worst gives the reason. A run with a part that never began counts as stopped, if nothing worse.
+    The first of the worst ends gives the reason. If a part never began, the run counts as stopped, unless an end is
+    worse.
     """
     failed = next((end.failed for end in ends if end.failed), None)
     worst = max(ends, key=lambda end: (_BY_SEVERITY.index(end.outcome), -end.part), default=None)

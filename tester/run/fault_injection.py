@@ -1,4 +1,4 @@
-"""A run on a simulated rig with scripted faults: a layer between ticker, run and rig."""
+"""A run on a simulated rig with scripted faults: a layer between the ticker and the run with its rig."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from sim.rig import SimRig
 from tester.machine.run import Run
 
 RIG_STEP_S = 0.01
-"""Step of the rig without a controlling process, s."""
+"""Time step of the rig while no controlling process runs, s."""
 
 
 class Skew:
-    """How far the computer's clock is ahead of the rig's, s."""
+    """How far the computer's clock is ahead of the rig's clock, s."""
 
     __slots__ = ("ahead_s",)
 
@@ -25,7 +25,7 @@ class Skew:
 
 
 class SkewedCan:
-    """A CAN port with times of the computer's own clock."""
+    """A CAN port that reports times of the computer's own clock."""
 
     def __init__(self, port: CanPort, skew: Skew) -> None:
         """Wrap ``port``."""
@@ -41,7 +41,7 @@ class SkewedCan:
         self.port.send_cycle(can_ids, payloads, now - self.skew.ahead_s)
 
     def receive(self, now: float) -> list[CanFrame]:
-        """Return what arrived, stamped with the computer's clock; raises BusLost."""
+        """Return the frames that arrived, stamped with the computer's clock; raises BusLost."""
         ahead_s = self.skew.ahead_s
         return [(t + ahead_s, can_id, data) for t, can_id, data in self.port.receive(now - ahead_s)]
 
@@ -51,7 +51,7 @@ class SkewedCan:
 
 
 class SkewedLine:
-    """A Modbus line with times of the computer's own clock."""
+    """A Modbus line that reports times of the computer's own clock."""
 
     def __init__(self, port: LinePort, skew: Skew) -> None:
         """Wrap ``port``."""
@@ -63,7 +63,7 @@ class SkewedLine:
         self.port.write(data, now - self.skew.ahead_s)
 
     def read(self, now: float) -> list[tuple[float, bytes]]:
-        """Return what arrived, stamped with the computer's clock; raises BusLost."""
+        """Return the bytes that arrived, stamped with the computer's clock; raises BusLost."""
         ahead_s = self.skew.ahead_s
         return [(t + ahead_s, data) for t, data in self.port.read(now - ahead_s)]
 
@@ -73,13 +73,13 @@ class SkewedLine:
 
 
 class FaultyRun:
-    """Run and rig under a fault script; a ticker drives it in place of both (``Ticked`` and ``World``).
+    """A run and its rig under a fault script. A ticker drives this object in place of both (``Ticked`` and ``World``).
 
-    ``killed`` is set when the controlling process is killed; ``on_kill``, if given, is called then.
+    ``killed`` is set when the controlling process is killed; ``on_kill``, if given, is then called.
     """
 
     def __init__(self, run: Run, rig: SimRig, script: FaultScript, on_kill: Callable[[], None] | None = None) -> None:
-        """Begin with the script's faults for time 0."""
+        """Begin with the script's faults for time 0 s."""
         self.run = run
         self.script = script
         self.killed = False
@@ -125,7 +125,7 @@ class FaultyRun:
             self._tell(now)
 
     def tick(self, now: float) -> float:
-        """Do whatever is due in the controlling process, unless it is killed or stalled."""
+        """Do what is due in the controlling process, unless it is killed or stalled."""
         if self.killed:
             return now + RIG_STEP_S
         if now < self._stalled_until_s:
@@ -144,7 +144,7 @@ class FaultyRun:
         self._now_s = until_s
 
     def _notice(self, now: float) -> None:
-        """Report the run's position to the script; the names of a step count once, when it begins."""
+        """Report the run's position to the script; the names of a step count once, when the step begins."""
         engine = self.run.engine
         progress = engine.ctx.progress
         names: list[str] = []
@@ -166,7 +166,7 @@ class FaultyRun:
         self.script.notice(now, engine.scans, names)
 
     def _tell(self, now: float) -> None:
-        """Record the faults in the run's journal."""
+        """Record the faults that occurred in the run's journal."""
         for t, text in self.script.happened:
             self.run.engine.ctx.journal.event(t, "injected", text)
         self.script.happened.clear()
@@ -174,17 +174,17 @@ class FaultyRun:
     # the script's side ---------------------------------------------------------------------------------------
 
     def stall(self, seconds: float) -> None:
-        """Do no scan for this long, s."""
+        """Perform no scan for this many seconds."""
         self._stalled_until_s = max(self._stalled_until_s, self._now_s + seconds)
 
     def kill(self) -> None:
-        """Do no further scan."""
+        """Perform no further scan."""
         self.killed = True
         if self._on_kill is not None:
             self._on_kill()
 
     def jump(self, seconds: float) -> None:
-        """Move the computer's clock ahead by this much more, s."""
+        """Move the computer's clock ahead by this many more seconds."""
         if self.skew.ahead_s == 0.0:
             devices = self.run.engine.devices
             lines = [SkewedLine(port, self.skew) for port, _ in devices.lines]
@@ -192,7 +192,7 @@ class FaultyRun:
         self.skew.ahead_s += seconds
 
     def operate(self, action: str) -> None:
-        """Press one of the operator's keys."""
+        """Press one of the operator's keys, by its name."""
         run = self.run
         if action == "hold":
             run.request_hold()

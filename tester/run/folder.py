@@ -26,15 +26,15 @@ from tester.store.resumable import ResumePoint
 from tester.store.writer import RunWriter
 
 PARTS = "parts"
-"""Folder of the parts' records until they are merged, each a numbered run folder."""
+"""Folder of the parts' records until they are merged; each part has a numbered run folder in it."""
 
 Begin = Callable[[RunWriter], None]
-"""Begins a record with the planned work."""
+"""Function that begins a record with the planned work."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A run as plain data: everything besides the folder's files that a process needs to run a part."""
+    """A run as plain data: what a process needs to run a part, in addition to the files in the folder."""
 
     folder: Path
     seed: int = 0
@@ -46,14 +46,14 @@ class Job:
     faults: tuple[str, ...] = ()
     """Lines of a fault script (sim.faults.language), in addition to the rig file's."""
     history: History | None = None
-    """What earlier runs show about the rig, None for nothing: the same for every part."""
+    """Facts about the rig from earlier runs, the same for every part; None if there are none."""
     good: GoodRun | None = field(default=None, compare=False)
     """The last good run on the rig, for comparison with the parameters read while connecting."""
 
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """The work of a run: rig, plan, and the plan's parts; ``point`` is where an interrupted run resumes."""
+    """The work of a run: rig, plan, and the plan's parts. ``point``: where an interrupted run resumes."""
 
     rig: Rig
     plan: Plan
@@ -72,7 +72,7 @@ def work_of(recipe: Recipe, rig: Rig) -> Work:
 
 
 def part_time(rig: Rig, plan: Plan, expected: Estimate | None = None) -> PartTime:
-    """Return a part's expected duration; ``expected``: the estimate of its plan, if known already."""
+    """Return a part's expected duration; ``expected``: the estimate of its plan, if already known."""
     estimate = expected or recipe_part(rig).estimate(plan, rig)
     seconds = tuple(step.seconds for step in estimate.steps)
     return PartTime(plan, seconds, max(estimate.rig_seconds - fsum(seconds), 0.0))
@@ -85,7 +85,7 @@ def parts_time(work: Work, expected: Estimate | None = None) -> list[PartTime]:
 
 
 def earlier_of(point: ResumePoint | None) -> Earlier:
-    """Return what earlier stretches of a run have completed, for the count of its steps."""
+    """Return what earlier stretches of a run completed, from which the count of its steps continues."""
     if point is None:
         return Earlier()
     repeats = {number: len(condition.results) for number, condition in point.conditions.items()}
@@ -93,19 +93,19 @@ def earlier_of(point: ResumePoint | None) -> Earlier:
 
 
 def write_sources(folder: Path, recipe_text: str, rig: Rig) -> None:
-    """Write the recipe and rig file in use into the run's folder."""
+    """Write the recipe and rig file of the run into its folder."""
     write_text(folder / "recipe.yaml", recipe_text)
     write_text(folder / "rig.yaml", rig.text)
 
 
 def read_work(folder: Path) -> Work:
-    """Return the work of a run's folder; raises InvalidSource if its files have become invalid."""
+    """Return the work in a run's folder; raises InvalidSource if its files are no longer valid."""
     rig = load_rig_text(folder / "rig.yaml")
     return work_of(checked_recipe(folder / "recipe.yaml", rig).recipe, rig)
 
 
 def make_folder(out: Path, name: str) -> Path:
-    """Create the run's folder, ``<date>T<time>-<slug>``; a second run within the second gets a number."""
+    """Create the run's folder, ``<date>T<time>-<slug>``; a second run in the same second has a number added."""
     slug = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")[:40] or "run"
     base = f"{clock.local_stamp()}-{slug}"
     out.mkdir(parents=True, exist_ok=True)
@@ -125,7 +125,8 @@ def specimens_of(plan: Plan) -> list[SpecimenInfo]:
 
 
 def beginning_of(part: Part, job: Job, work: Work) -> Begin:
-    """Return the function that begins a part's record. Texts and provenance are in the run's record, its merge target.
+    """Return the function that begins a part's record. Texts and provenance are only in the run's record, into which it
+    is merged.
     """
 
     def begin(writer: RunWriter) -> None:

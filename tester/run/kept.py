@@ -1,7 +1,7 @@
 """Reads drive settings that this program does not write, at a run's good end, and stores them with the run.
 
 ``tester bus params compare`` compares later readings with them. They are read after standstill, with the drives
-released: this takes no time from the scan, and no measurement depends on it.
+released, so that reading takes no time from the scan, and no measurement depends on it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ IDENTITY: tuple[Key, ...] = (
     (o.HARDWARE_VERSION, 0),
     (o.SOFTWARE_VERSION, 0),
 )
-"""Identity of a node; its texts are optional (CiA 301, 7.5.2)."""
+"""Objects that identify a node; the texts among them are optional (CiA 301, 7.5.2)."""
 
 KEPT: tuple[Key, ...] = (
     (o.SUPPORTED_MODES, 0),
@@ -52,7 +52,8 @@ current, motor (CiA 402-2, 6.3 and 6.4). Most are optional.
 STEP_S = 0.002
 """Period for reading the bus while waiting for answers, s."""
 MOST_S = 3.0
-"""Most time that this adds to a run's end, s: some twenty objects a drive, four drives at a time, take a tenth of it.
+"""Longest time that this adds to a run's end, s: reading some twenty objects a drive, four drives at a time, takes a
+tenth of it.
 """
 
 
@@ -62,12 +63,12 @@ def object_key(key: Key) -> str:
 
 
 def object_name(key: Key) -> str:
-    """Return an object's title, "" if the dictionary lacks it."""
+    """Return an object's title; "" if the dictionary does not contain it."""
     return DICTIONARY[key].name if key in DICTIONARY else ""
 
 
 def record_kept(rig: Rig, ports: Ports, world: TickedWorld | None, now_s: float, recorder: Recorder) -> None:
-    """Store identity and settings of every drive, as far as it has them; nothing if the bus is gone.
+    """Store identity and settings of every drive, as far as the drive has them; store nothing if the bus is gone.
 
     ``now_s``: the run's time. Drives are only read, by SDO.
     """

@@ -1,4 +1,4 @@
-"""Parts that a rig's kind provides; only this module and the commands look kinds up."""
+"""Looks up the parts that a rig's kind provides; only this module and the commands do that."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Part = TypeVar("Part")
 
 
 def to_be_run(rig: Rig) -> Rig:
-    """Return the rig; raises InvalidSource, as all here, if its kind cannot run recipes."""
+    """Return the rig. Raises InvalidSource, as every function here, if its kind cannot run recipes."""
     _brought(rig, "runs", find(rig.kind).runs)
     return rig
 
@@ -49,8 +49,8 @@ def recipe_part(rig: Rig) -> RecipePart:
 def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> LoadedRecipe:
     """Return a recipe that a rig can carry out (tester.inputs.recipe.loader.load_checked).
 
-    Raises InvalidSource with every problem. A recipe that does not name its kind, and is plainly written for another
-    packaged kind than the rig's, gives only that problem.
+    Raises InvalidSource with every problem. If a recipe does not name its kind, and is clearly written for a packaged
+    kind other than the rig's, the error gives only that problem.
     """
     from tester.inputs.recipe.loader import load_checked
 
@@ -68,7 +68,7 @@ def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> Loa
 
 
 def _kind_written_for(source: Path | str, rig: Rig, problems: int) -> str:
-    """Return the packaged kind whose schema gives a recipe less than half as many problems, "" without any."""
+    """Return the packaged kind whose schema finds less than half as many problems in a recipe; "" if there is none."""
     from tester.inputs.recipe.loader import validated
 
     try:
@@ -94,7 +94,7 @@ def _brought(rig: Rig, what: str, part: Callable[[], Part] | None) -> Callable[[
 def load_rig(source: str | Path = kinds.SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
     """Return the rig of a file, or the packaged rig of that name (tester.inputs.rig.rig_files.load).
 
-    Raises InvalidSource, even for a valid rig if its kind cannot run recipes.
+    Raises InvalidSource, also for a valid rig whose kind cannot run recipes.
     """
     return to_be_run(kinds.load_rig(source, overrides, accept_risk))
 
@@ -102,7 +102,8 @@ def load_rig(source: str | Path = kinds.SIMULATED, overrides: Sequence[str] = ()
 def load_rig_text(text: str | Path) -> Rig:
     """Return the rig of a stored text or file; raises InvalidSource as ``load_rig``.
 
-    Its risks were accepted when the run began, or are checked when it resumes (tester.run.session).
+    Its risks are not checked here: they were accepted when the run began, and are checked when it resumes
+    (tester.run.session).
     """
     return to_be_run(kinds.load_rig_text(text))
 
@@ -126,7 +127,7 @@ def ring_part(kind: str) -> RingPart | None:
 
 
 def ring_in(folder: Path) -> RingFound | None:
-    """Return the ring of a run; None if its kind has none. Raises StoreError."""
+    """Return a run's record of its ring; None if its kind has no ring. Raises StoreError."""
     with RunReader(folder) as reader:
         info = reader.run().info
         part = ring_part(info.kind)
@@ -134,5 +135,5 @@ def ring_in(folder: Path) -> RingFound | None:
 
 
 def of_one_rig(found: Sequence[RingFound], like: RingFound) -> list[RingFound]:
-    """Return the rings of one rig, in order of time: rings of other rigs age separately."""
+    """Return the records that belong to one rig, in order of time: rings of other rigs age separately."""
     return sorted((ring for ring in found if ring.rig == like.rig), key=lambda ring: ring.run.started)

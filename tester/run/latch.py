@@ -1,4 +1,4 @@
-"""An unacknowledged trip blocks the next start on a real rig, even after a restart. It is stored in the run.
+"""An unacknowledged trip, stored in the run, blocks the next start on a real rig, even after a restart.
 
 The service asks for an acknowledgement. In the foreground the next start is the acknowledgement.
 """
@@ -24,7 +24,7 @@ from tester.store.run_reader import RunReader
 MANUAL_RUNS = ".manual"
 """Folder beside the runs for the journals of manual mode."""
 NEWEST_RUNS = 50
-"""Number of newest runs, and of stays in manual mode, searched for trips [A]."""
+"""Number of newest runs, and of newest stays in manual mode, in which to search for trips [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class OpenTrip:
     trip: StoredTrip
 
     def __str__(self) -> str:
-        """Return interlock, run and time."""
+        """Return interlock, run and time as text."""
         compared = f" ({self.trip.compared})" if self.trip.compared else ""
         return f"{self.trip.interlock}{compared} in {self.folder.name}, {self.trip.utc}"
 
@@ -53,7 +53,7 @@ def made_on(rig: Rig, reader: RunReader) -> bool:
 
 
 def open_trips(runs: Path, rig: Rig, own: Path | None = None) -> list[OpenTrip]:
-    """Return the unacknowledged trips on a hardware rig; a simulated rig has none, being new at every start.
+    """Return the unacknowledged trips on a real rig. A simulated rig has none, because it is new at every start.
 
     Skips runs under way, except ``own``.
     """
@@ -72,9 +72,9 @@ def _found(runs: Path, rig: Rig, own: Path | None) -> Iterator[OpenTrip]:
 
 
 def acknowledge(found: Sequence[OpenTrip], by: str, own: Path | None = None) -> None:
-    """Record who acknowledged trips, and rewrite tables and manifest of their runs, except for ``own``.
+    """Record who acknowledged the trips, and write tables and manifest of their runs again, except for ``own``.
 
-    A folder that differs from its manifest keeps it: a new manifest would hide the difference. Raises StoreError,
+    If a folder differs from its manifest, the manifest stays: a new one would hide the difference. Raises StoreError,
     OSError.
     """
     for folder in dict.fromkeys(trip.folder for trip in found):

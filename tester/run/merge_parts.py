@@ -22,7 +22,7 @@ from tester.store.record_schema import NotBegunError, StoreError
 from tester.store.writer import RunWriter
 
 MERGED = "parts.merged"
-"""Name of the parts' folder once the run's own record holds everything: to be deleted."""
+"""Name of the parts' folder once the run's own record contains everything: the folder may be deleted."""
 
 
 def put_together(
@@ -33,10 +33,10 @@ def put_together(
     wanted: Callable[[], StopLevel],
     tell: Callable[[PartEnd], None],
 ) -> RunEnding:
-    """Merge the parts' records into the run's own, in the plan's order, as they end; return the run's ending.
+    """Merge the parts' records into the run's own, in the plan's order, as the parts end; return the run's ending.
 
-    ``wanted`` returns who wants a stop, ``tell`` gets every part's end. The parts' own records are deleted when all are
-    in.
+    ``wanted`` returns who wants a stop; ``tell`` is called with every part's end. The parts' own records are deleted
+    when all are merged.
     """
     ended: dict[int, PartEnd] = {}
     failed: str | None = None
@@ -55,16 +55,16 @@ def put_together(
 
 
 def recover(folder: Path) -> None:
-    """Merge the recorded parts of an interrupted run; do nothing without parts.
+    """Merge the recorded parts of an interrupted run; do nothing if there are none.
 
-    Afterwards the run's own record holds everything, and the run can resume there. Raises StoreError, OSError.
+    Afterwards the run's own record contains everything, and the run can resume from it. Raises StoreError, OSError.
     """
     if (folder / PARTS).is_dir():
         records = sorted((folder / PARTS).glob(f"*/{DATABASE}"), key=lambda record: int(record.parent.name))
         try:
             with Merge(folder) as merge:
                 for record in records:
-                    with suppress(NotBegunError):  # interrupted as it began: it has no measurements
+                    with suppress(NotBegunError):  # interrupted at its beginning: it has no measurements
                         merge.add(record.parent)
         except sqlite3.Error as error:
             raise StoreError(f"the parts of {folder.name} cannot be put together: {error}") from error
@@ -72,7 +72,7 @@ def recover(folder: Path) -> None:
 
 
 def drop_parts(folder: Path) -> None:
-    """Delete the parts' records atomically: after a power cut a reader sees all of them or none."""
+    """Delete the parts' records atomically: after a power cut a reader finds all of them or none."""
     if (folder / PARTS).is_dir():
         (folder / PARTS).rename(folder / MERGED)
         sync_folder(folder)
@@ -81,7 +81,7 @@ def drop_parts(folder: Path) -> None:
 
 
 def _begin(folder: Path, quantities: Quantities, begin: Begin) -> None:
-    """Record the planned work, so that an interrupted run shows its intent."""
+    """Record the planned work, so that the record of an interrupted run shows it."""
     record = folder / DATABASE
     with closing(RunWriter(record, quantities, clock=clock.monotonic, utc=clock.utc_now, synchronous=True)) as writer:
         begin(writer)
@@ -95,7 +95,9 @@ def _merge(
     merge: Merge,
     tell: Callable[[PartEnd], None],
 ) -> None:
-    """Add each part once those before it are in; then the parts behind one that never began."""
+    """Merge each part once all parts before it are merged; at the end, merge the parts that follow one that never
+    began.
+    """
     folders = {part.number: work.folder_of(part, job.folder) for part in work.parts}
     for end in ends:
         ended[end.part] = end

@@ -1,4 +1,4 @@
-"""Runs one part from its connection to its standstill, recorded in its own file."""
+"""Runs one part from its connection to its standstill, with a record in its own file."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from sim.rig import SimRig
 
 KILLED = 137
-"""Exit status of a process killed by a fault script: the one a shell shows for SIGKILL."""
+"""Exit status of a process killed by a fault script: the status that a shell shows for SIGKILL."""
 INTERRUPTED = "interrupted"
 """Status of a run that ended with an error of the program."""
 STATE_EVERY_S = 1.0
@@ -42,41 +42,41 @@ STATE_EVERY_S = 1.0
 
 
 class PartWatch:
-    """Watches a part while it runs; this one only counts."""
+    """Watches a part while it runs; this class only counts."""
 
     def __init__(self, track: TimeLeft) -> None:
-        """``track`` counts the run's steps; updated before each poll."""
+        """``track`` counts the run's steps; it is updated before each poll."""
         self.track = track
         self.statistics = TickStatistics()
-        """Receives how punctual the ticks are, in real time."""
+        """How punctual the ticks are, in real time."""
 
     def begun(self, run: Run) -> None:
-        """Receive the run: from now on it can be stopped."""
+        """Receive the run: from now on it can be stopped. Called by the code that runs the part."""
 
     def say(self, text: str) -> None:
-        """Show a message about the run under way; the record has it as well."""
+        """Show a message about the run under way; the record contains it too."""
 
     def rested(self) -> None:
-        """Note that the run is at rest: nothing ticks any more, but its record is still open."""
+        """Called when the run is at rest: no ticks follow, but its record is still open."""
 
     def poll(self, now_s: float, run: Run) -> None:
-        """Look at the run, about ten times a second of wall time."""
+        """Read the state of the run; called about ten times a second of wall time."""
 
 
 class Unsampled(RunWriter):
-    """A record without samples, with only repeats and conditions."""
+    """A record without samples: it contains only repeats and conditions."""
 
     def sample(self, row: tuple[float, ...]) -> None:
         """Drop the sample."""
 
 
 class RunNotes:
-    """Stores data beside the scan: the parameters read from devices, and the specimen's state."""
+    """Stores what no scan records: the parameters read from devices, and the specimen's state."""
 
     def __init__(self, run: Run, recorder: RunWriter, good: GoodRun | None, say: Callable[[str], None]) -> None:
         """Store nothing before the rig is connected.
 
-        ``good``: the last good run, for comparison of the parameters; ``say`` shows the differences.
+        ``good``: the last good run, with which the parameters are compared; ``say`` shows the differences.
         """
         self.run = run
         self.recorder = recorder
@@ -87,7 +87,7 @@ class RunNotes:
         self.state_due_s = 0.0
 
     def poll(self, now_s: float) -> None:
-        """Store whatever is due; ``now_s`` is rig time."""
+        """Store what is due; ``now_s`` is rig time."""
         if not self.run.connected:
             return
         if not self.connected:
@@ -123,7 +123,7 @@ def run_part(job: Job, work: Work, part: Part, begin: Begin, watch: PartWatch, p
 
 
 class closed_early:  # noqa: N801 - reads as a statement
-    """Marks the run interrupted, with the error, if the block raises; it can be resumed later."""
+    """Marks the run as interrupted, with the error, if the block raises; the run can be resumed later."""
 
     def __init__(self, writer: RunWriter) -> None:
         """``writer``: writer of the open record."""
@@ -139,7 +139,7 @@ class closed_early:  # noqa: N801 - reads as a statement
 
 
 class left_safe:  # noqa: N801 - reads as a statement
-    """Sends safe outputs once if the block ends with the rig still running, for any reason."""
+    """Sends safe outputs once if the block ends for any reason while the rig is still running."""
 
     def __init__(self, run: Run) -> None:
         """``run``: the run that the block ticks."""
@@ -149,7 +149,7 @@ class left_safe:  # noqa: N801 - reads as a statement
         """Do nothing."""
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
-        """Send safe outputs, record it, and let the error propagate."""
+        """Send safe outputs, record that, and let the error propagate."""
         if kind is not None and not self.run.finished:
             self.run.abandon()
             ctx = self.run.engine.ctx
@@ -178,7 +178,7 @@ def _execute(
             attendant = Witnessed(attendant, truth, part.plan, writer)
         build = run_parts(rig).build
         run = build(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
-        run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be one part of a larger plan
+        run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be part of a larger plan
         watch.track.begin_part(part.plan)
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
         with collector_at_rest():  # before the first tick: STOP must not wait for a collection
@@ -223,13 +223,13 @@ def _tick(
             run.request_stop(f"the run can no longer be recorded: {recorder.failed}")
 
     if world is not None:
-        # Even at --speed 1, count ticks instead of measuring them: no speed may change a result.
+        # Even at --speed 1, time is counted by ticks, not measured, so that the speed cannot change a result.
         return run_simulated(ticked, world, lapse=lapse, poll=poll)
     return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
 
 
 def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked, TickedWorld]:
-    """Return a stand-in for run and rig that injects faults, for the ticker to drive."""
+    """Return an object that replaces run and rig for the ticker and injects faults."""
     from sim import machines
     from sim.faults import FaultScript
     from tester.run.fault_injection import FaultyRun
@@ -240,5 +240,5 @@ def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked,
 
 
 def _die() -> None:
-    """End this process as a kill does: at once, with nothing closed or flushed."""
+    """End this process as a kill does: at once, without closing or flushing anything."""
     os._exit(KILLED)

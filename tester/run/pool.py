@@ -1,7 +1,7 @@
 """Worker processes that can be stopped, and that report their progress.
 
 A pool of ``concurrent.futures`` with two additions: a level that every worker can read (who wants a stop, StopLevel),
-and a queue for the workers' reports. Processes are spawned, not forked: the same on every system.
+and a queue for the workers' reports. Processes are spawned, not forked, because spawning works alike on every system.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ R = TypeVar("R")
 
 
 class WorkerPool:
-    """Up to ``jobs`` processes; use it in a ``with`` block, whose end stops them."""
+    """Up to ``jobs`` processes, for a ``with`` block, at whose end they are stopped."""
 
     def __init__(self, jobs: int) -> None:
-        """Start nothing yet: a process starts with the first call that needs it."""
+        """Start no process yet: each starts with the first call that needs it."""
         context = multiprocessing.get_context("spawn")
-        with not_inherited():  # the first of these starts the tracker process for shared memory
+        with not_inherited():  # the first of these also starts the tracker process for shared memory
             self._level: Synchronized[int] = context.Value("i", StopLevel.NONE)
             self._reports: SimpleQueue[object] = context.SimpleQueue()
         self._executor = ProcessPoolExecutor(jobs, context, _enlist, (self._level, self._reports))
@@ -50,8 +50,8 @@ class WorkerPool:
         return self._executor
 
     def submit(self, work: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> Future[R]:
-        """Run a call in a worker: a function of a module, with plain data as arguments."""
-        # A starting worker has no handlers yet: it inherits that signals are ignored.
+        """Run a call in a worker. The function must belong to a module, and its arguments must be plain data."""
+        # A starting worker has no signal handlers yet: until then it inherits that signals are ignored.
         with not_inherited():
             return self._executor.submit(work, *args, **kwargs)
 
@@ -67,7 +67,7 @@ class WorkerPool:
 
 @dataclass(slots=True)
 class _Worker:
-    """The worker's end of a pool's connections."""
+    """The worker's end of the pool's level and queue."""
 
     level: Synchronized[int]
     reports: SimpleQueue[object]
@@ -78,7 +78,7 @@ _worker: _Worker | None = None
 
 
 def stop_level() -> StopLevel:
-    """Return who wants this worker to stop; NONE without a pool."""
+    """Return who wants this worker to stop; NONE in a process without a pool."""
     if _worker is None:
         return StopLevel.NONE
     return _worker.own | StopLevel(_worker.level.value)
@@ -91,7 +91,9 @@ def say(report: object) -> None:
 
 
 def _enlist(level: Synchronized[int], reports: SimpleQueue[object]) -> None:
-    """Make this process a worker: the parent handles interrupts and hang-ups; TERM stops it in a controlled way."""
+    """Make this process a worker. The parent handles interrupts and hang-ups; TERM stops the worker in a controlled
+    way.
+    """
     global _worker
     _worker = _Worker(level, reports)
     leave_to_parent()
@@ -105,7 +107,7 @@ def _on_term(_number: int, _frame: object) -> None:
 
 
 def _leave_with_parent() -> None:
-    """End when the parent has been killed: an orphaned worker would wait for ever. Committed data stays."""
+    """End this process when the parent has been killed: an orphaned worker would wait for ever. Committed data stay."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

@@ -1,4 +1,4 @@
-"""Before a run begins: reads and plans its recipe, checks room on the disk, locks buses and folder."""
+"""Checks before a run begins: reads and plans its recipe, checks the disk space, locks buses and folder."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tester.store.disk import expected_bytes, too_little_room
 
 
 def enough_room(folder: Path, plan: Plan, rig: Rig, expected: Estimate | None = None) -> None:
-    """Raise CannotStartError unless twice the run's expected size is free; ``expected``: its estimate."""
+    """Raise CannotStartError unless twice the run's expected size is free; ``expected``: the run's estimate."""
     missing = too_little_room(folder, expected_bytes(plan, expected or recipe_part(rig).estimate(plan, rig)))
     if missing:
         raise CannotStartError(missing, EXIT_CODES[Outcome.FAILED])
@@ -38,7 +38,7 @@ def hold_rig(use: ExclusiveUse, rig: Rig, run: str) -> None:
 
 
 def hold_run(use: ExclusiveUse, folder: Path) -> None:
-    """Lock a run's folder, so that a run under way cannot be resumed. Raises CannotStartError."""
+    """Lock a run's folder, so that no other process resumes a run under way. Raises CannotStartError."""
     try:
         use.lock_file(f"the run {folder.name}", folder / RUN_LOCK, folder.name, lasting=False)
     except RigInUseError as error:
@@ -46,7 +46,7 @@ def hold_run(use: ExclusiveUse, folder: Path) -> None:
 
 
 def buses_of(rig: Rig) -> list[str]:
-    """Return the buses of a rig that only one process may use."""
+    """Return the names of a rig's buses, each of which only one process may use."""
     if rig.can.interface == "sim":
         return []
     lines = [f"line {line.port}" for line in rig.lines.values()]
@@ -56,7 +56,8 @@ def buses_of(rig: Rig) -> list[str]:
 def warnings_before(rig: Rig, today: date) -> list[str]:
     """Return warnings before a rig starts: expired certificates, lines with other settings.
 
-    Raises CannotStartError if a certificate has expired and that refuses a start (``calibration.overdue``).
+    Raises CannotStartError if a certificate has expired and the rig file forbids a start in that case
+    (``calibration.overdue``).
     """
     calibration = rig.certificates()
     over = calibration.over(today)
@@ -68,7 +69,7 @@ def warnings_before(rig: Rig, today: date) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A recipe planned for a rig: its work and its estimate."""
+    """A recipe planned for a rig, with its work and its estimate."""
 
     path: Path
     recipe: LoadedRecipe

@@ -37,7 +37,7 @@ LIBRARIES = ("friction-tester", "numpy", "pyarrow", "pydantic", "pymodbus", "pys
 """Distributions whose versions are stored with a run."""
 
 ABSENT = "not installed"
-"""Version of a distribution that is not installed, for example one from an extra."""
+"""Version stored for a distribution that is not installed, for example one that belongs to an extra."""
 
 PACKAGED = "packaged: "
 """Prefix of the source of a recipe that comes with the program."""
@@ -58,7 +58,7 @@ def run_info(
     risks: Mapping[str, str] | None = None,
     materials: Sequence[StoredMaterial] = (),
 ) -> RunInfo:
-    """Return the store's record of a run's beginning. ``risks``: as ``accepted_risks`` returns them."""
+    """Return the record of a run's beginning for the store. ``risks``: as ``accepted_risks`` returns them."""
     return RunInfo(
         name=name,
         recipe_name=plan.name,
@@ -85,7 +85,9 @@ def run_info(
 
 
 def _known_slopes(plan: Plan, rig: Rig, materials: Sequence[StoredMaterial]) -> tuple[KnownSlope, ...]:
-    """Return friction's slopes over temperature from the compounds' files, if they apply to the rubber on the rig."""
+    """Return the slopes of friction over temperature from the compounds' files, if they apply to the rubber on the
+    rig.
+    """
     if not recipe_part(rig).rubs_as_described(rig):
         return ()
     files = [file for file in materials if file.role == "compound" and file.text]
@@ -93,13 +95,13 @@ def _known_slopes(plan: Plan, rig: Rig, materials: Sequence[StoredMaterial]) -> 
 
 
 def accepted_risks(rig: Rig, reason: str) -> dict[str, str]:
-    """Return the metadata about safety keys that are looser than they should be; empty without any."""
+    """Return the metadata about safety keys that are looser than they should be; empty if there are none."""
     risks = risks_of(rig)
     return {ACCEPTED_RISK: reason, LOOSE_KEYS: "; ".join(map(str, risks))} if risks else {}
 
 
 def session_info(number: int, origin_s: float, operator: str) -> SessionInfo:
-    """Return the store's record of the stretch that begins now."""
+    """Return the store's record of the stretch of the run that begins now."""
     return SessionInfo(
         session=number,
         origin_s=origin_s,
@@ -114,9 +116,10 @@ def session_info(number: int, origin_s: float, operator: str) -> SessionInfo:
 
 
 def library_versions() -> dict[str, str]:
-    """Return the versions of what a result depends on: libraries (ABSENT where one is not there), Python, platform.
+    """Return the versions of everything on which a result depends: libraries (ABSENT if not installed), Python,
+    platform.
 
-    And every extension that this process has loaded, with its package and the hash of its file.
+    They include every extension that this process has loaded, with its package and the hash of its file.
     """
     versions = {package: _version(package, ABSENT) for package in LIBRARIES}
     versions |= {f"{EXTENSION}{plugin.group}/{plugin.name}": plugin.describe() for plugin in plugins().loaded}
@@ -124,21 +127,22 @@ def library_versions() -> dict[str, str]:
 
 
 def recipe_source(path: Path) -> str:
-    """Return where a recipe was read from, as it is stored: its path, or the name of a packaged one."""
+    """Return the source of a recipe, as it is stored: its path, or the name of a packaged recipe."""
     if path.parent == recipes.FOLDER:
         return f"{PACKAGED}{path.stem}"
     return str(path.absolute())
 
 
 def rig_source(name: str, overrides: tuple[str, ...]) -> str:
-    """Return where a rig was read from, as it is stored: path or a packaged rig's name, then the overrides, quoted for
-    a shell."""
+    """Return the source of a rig, as it is stored: path or name of a packaged rig, then the overrides, quoted for a
+    shell.
+    """
     where = name if kinds.shipping(name) is not None else str(Path(name).absolute())
     return shlex.join([where, *overrides])
 
 
 def calibration_of(rig: Rig) -> tuple[Calibration, ...]:
-    """Return every figure that converts device readings into quantities."""
+    """Return every figure that converts a device's reading into a quantity."""
     return tuple(_calibration_of(rig))
 
 
@@ -165,7 +169,7 @@ def _calibration_of(rig: Rig) -> Iterator[Calibration]:
 
 
 def read_back(rig: Rig, devices: DeviceList, now_s: float) -> Iterator[StoredParameter]:
-    """Yield everything read from the devices before the run is armed."""
+    """Yield everything that was read from the devices before arming."""
     for drive in devices.drives:
         name, drive_profile = drive.config.name, drive.config.drive
         if drive_profile.name != GENERIC:
@@ -183,7 +187,7 @@ def read_back(rig: Rig, devices: DeviceList, now_s: float) -> Iterator[StoredPar
 def record_parameters(
     rig: Rig, devices: DeviceList, recorder: Recorder, now_s: float, good: GoodRun | None = None
 ) -> str:
-    """Store the parameters read from devices; return the differences from the last good run, "" without any."""
+    """Store the parameters read from devices; return the differences from the last good run, "" if there are none."""
     rows = list(read_back(rig, devices, now_s))
     for row in rows:
         recorder.device_parameter(row.t_s, row.device, row.parameter, row.value, row.name)
@@ -211,7 +215,7 @@ def record_statistics(devices: DeviceList, recorder: Recorder, now_s: float) -> 
 
 
 def git_revision() -> str:
-    """Return the revision of this program, with ``-dirty`` if files differ; empty outside a checkout."""
+    """Return the revision of this program, with ``-dirty`` if files differ from it; empty outside a checkout."""
     root = Path(__file__).resolve().parent.parent
     if not (root / ".git").exists():
         return ""

@@ -1,4 +1,4 @@
-"""Records frames of live wires in the format of a run's own bus log, for a test to replay to the drivers."""
+"""Records frames of live wires in the format of a run's own bus log, so that a test can replay them to the drivers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tester.base import clock
 from tester.run.bus_log import CanLog, LineLog
 
 LOOK_S = 0.002
-"""Period for reading the wires, s: time stamps are no better than this [A]."""
+"""Period for reading the wires, s: the resolution of the time stamps [A]."""
 _MASTER_FUNCTIONS = frozenset((0x000, 0x200, 0x300, 0x400, 0x500, 0x600))
 """Function codes of a master's frames, besides SYNC: NMT, RPDOs, SDO requests (CiA 301, 7.3.3)."""
 _SYNC, _HEARTBEAT = 0x080, 0x700
@@ -22,7 +22,7 @@ _SYNC, _HEARTBEAT = 0x080, 0x700
 
 @dataclass(frozen=True, slots=True)
 class LineTapped:
-    """A serial port to listen on: its name in the record, and its settings (bit/s)."""
+    """A serial port to record: its name in the record, and its settings (bit/s)."""
 
     name: str
     port: str
@@ -31,14 +31,14 @@ class LineTapped:
 
 @dataclass(frozen=True, slots=True)
 class RecordOptions:
-    """Wires to listen on, and for how long (s)."""
+    """The wires to record, and for how long (s)."""
 
     folder: Path
     seconds: float
     can: tuple[str, str] | None = None
     bitrate: int = 500_000
     master: int = 127
-    """Node id of the master, whose heartbeats count as the master's."""
+    """Node id of the master, whose heartbeats count as a master's frames."""
     lines: tuple[LineTapped, ...] = ()
 
 
@@ -56,7 +56,7 @@ def from_master(can_id: int, master: int) -> bool:
 
 
 def record(options: RecordOptions, stopped: Callable[[], bool]) -> Recorded:
-    """Listen until the time is over, or ``stopped``; return the counts. Raises BusLost and OSError.
+    """Record until the time is over, or ``stopped`` returns True; return the counts. Raises BusLost and OSError.
 
     Sends nothing, but a CAN adapter acknowledges frames as any node does.
     """

@@ -15,7 +15,7 @@ P = ParamSpec("P")
 
 
 class ReportScreen:
-    """Shows a run to people; this one shows nothing. A method raises OSError if its screen, pipe or file is gone."""
+    """Shows a run to people; this class shows nothing. A method raises OSError if its screen, pipe or file has gone."""
 
     answer_yes: bool = False
     """Whether prompts are answered without asking."""
@@ -26,13 +26,13 @@ class ReportScreen:
         """Show that a run has begun."""
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Show where the run is, or one of its parts when they run side by side."""
+        """Show where the run is, or where one of its parts is when they run side by side."""
 
     def attend(self, prompts: Prompts) -> None:
         """Ask and answer prompts without blocking."""
 
     def commands(self) -> list[str]:
-        """Return a person's commands since the last call, out of those in ``tester.base.keys``."""
+        """Return a person's commands since the last call, from those in ``tester.base.keys``."""
         return []
 
     def end(self) -> None:
@@ -42,17 +42,17 @@ class ReportScreen:
         """Show a message."""
 
     def emit(self, record: dict[str, object]) -> None:
-        """Write a record for programs."""
+        """Write a record for other programs to read."""
 
     def result(self, line: str) -> None:
-        """Write the run's folder."""
+        """Write the path of the run's folder."""
 
 
 class LastingScreen(ReportScreen):
     """A screen whose failure does not break the run.
 
-    After its first error it shows and asks nothing more, and calls ``lost`` with the cause. It still tries messages and
-    records, in case only one of two outputs is gone.
+    After its first error it shows nothing and asks nothing more, and calls ``lost`` with the cause. It still tries to
+    write messages and records, because only one of two outputs may have gone.
     """
 
     def __init__(self, screen: ReportScreen, lost: Callable[[str], None]) -> None:

@@ -1,7 +1,7 @@
 """Prepares an interrupted run to resume: the rest of its plan, and a check that recipe and rig are unchanged.
 
-The run's folder holds the texts it began with. These, or the files they were copied from, may have been changed on
-purpose: hashes find both, and each is reported with the remedy.
+The run's folder holds the texts with which it began. These, or the files from which they were copied, may have been
+changed on purpose. Hashes reveal both cases, and each is reported with the remedy.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from tester.store.sql import calibration_sha256, text_sha256
 from tester.store.writer import RunWriter
 
 LATER = "asked for once it is known with which text the run resumes"
-"""Stands in for the reason that a rig's risks need, while texts are compared."""
+"""Placeholder for the reason that a rig's risks require, while texts are compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Resumed:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """The texts to resume with, and their changes."""
+    """The texts with which to resume, and their changes."""
 
     recipe_text: str
     rig: Rig
@@ -55,7 +55,7 @@ class Found:
     rig_source: str
     changes: tuple[Change, ...]
     where: tuple[str, ...]
-    """The files that differ, a line each."""
+    """The files that differ, as text, a line each."""
 
     @property
     def subjects(self) -> list[str]:
@@ -68,7 +68,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
 
     ``reason``: why it may resume although recipe, rig or calibration changed; stored with each change. ``accept_risk``:
     why safety keys of the rig may be looser than they should be; needed again at every resume. Raises StoreError for an
-    unreadable record, InvalidSource for a recipe or rig file that is invalid now.
+    unreadable record, InvalidSource for a recipe or rig file that is no longer valid.
     """
     with RunReader(folder) as reader:
         run, stored, point = reader.run(), reader.conditions(), resume_point(reader)
@@ -94,7 +94,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
     to_come = [c for c in conditions if c.condition not in begun]
     session = session_info(point.session, point.origin_s, operator)
     if "calibration" in found.subjects:
-        # A new scale or zero makes the old reference meaningless.
+        # After a change of scale or zero the old reference means nothing.
         point = replace(point, reference_tare=None)
     return Resumed(
         rig=found.rig,
@@ -115,7 +115,7 @@ def _beginning(
     risks: Mapping[str, str],
     reason: str,
 ) -> Callable[[RunWriter], None]:
-    """Return the function that records the resumption, and writes changed texts and added materials to the folder."""
+    """Return the function that records the resumption, and writes changed texts and added materials into the folder."""
 
     def begin(writer: RunWriter) -> None:
         writer.begin_session(session)
@@ -138,7 +138,7 @@ def _beginning(
 
 
 def _added_materials(folder: Path, run: StoredRun, recipe: Recipe, found: Found) -> tuple[KeptFile, ...]:
-    """Return the files that only the changed recipe names; recorded files stay as they are."""
+    """Return the files that the changed recipe names in addition; files already recorded stay as they are."""
     if "recipe" not in found.subjects:
         return ()
     recorded = run.info.materials
@@ -188,7 +188,9 @@ def _found(folder: Path, run: StoredRun, session: int, reason: str) -> Found:
 def _present(
     stored: str, copy: Path, read: Callable[[Path], str], source: str, at_source: str | None, where: list[str]
 ) -> tuple[str, str]:
-    """Return the text to resume with, and its source: the folder's copy if it was changed, else the original."""
+    """Return the text with which to resume, and its source: the folder's copy if that was changed, else the original
+    file.
+    """
     if copy.is_file():
         text = read(copy)
         if text != stored:
@@ -205,7 +207,9 @@ def _text_of(path: Path) -> str:
 
 
 def _rig_text(path: Path | str, stored: str, overrides: Sequence[str] = ()) -> str:
-    """Return a rig file's present text, or the stored text if it is the same rig, written by an older version."""
+    """Return a rig file's present text; the stored text if it describes the same rig and only an older version wrote
+    it.
+    """
     rig = load_rig(path, overrides, LATER)
     return stored if rig == load_rig_text(stored) else rig.text
 
@@ -230,7 +234,7 @@ def _begun(stored: StoredCondition) -> bool:
 
 
 def _another_plan(conditions: Sequence[ConditionInfo], stored: Sequence[StoredCondition]) -> str:
-    """Return why a changed recipe is a different test: it lacks, or alters, a condition that has begun."""
+    """Return why a changed recipe is a different test: it omits or alters a condition that has begun."""
     now = {condition.condition: condition for condition in conditions}
     for begun in stored:
         if _begun(begun) and now.get(begun.info.condition) != begun.info:

@@ -1,4 +1,6 @@
-"""Opens the wires to a rig: simulated in this process, or a CAN adapter and Modbus lines stamped by one clock."""
+"""Opens the wires to a rig: simulated in this process, or a CAN adapter and Modbus lines whose arrivals one clock
+stamps.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ if TYPE_CHECKING:
     from sim.rig import SimRig
 
 CATCH_UP_S = 0.002
-"""Time to read the frames of a late scan, s [A]: the CAN thread takes some 0.1 ms a frame, and 20 may be waiting."""
+"""Time allowed for reading the frames of a late scan, s [A]: the CAN thread takes some 0.1 ms a frame, and 20 may be
+waiting.
+"""
 
 
 def connect_ports(
@@ -35,7 +39,7 @@ def connect_ports(
 ) -> tuple[Ports, SimRig | None, Any]:
     """Open the wires to the rig: simulated in this process (with a faulty bus if ``faulty``), or real.
 
-    ``recipe`` and ``surface`` as in ``simulated_ports``. Returns the wires, the simulated rig, and the hands at the rig
+    ``recipe`` and ``surface``: as in ``simulated_ports``. Returns the wires, the simulated rig, and the attendant
     (tester.machine.run_parts).
     """
     if rig.can.interface == "sim":
@@ -49,7 +53,7 @@ def connect_ports(
 
 
 def hardware_ports(rig: Rig, log: BusLog | None) -> Ports:
-    """Open every wire of a rig file; raises BusLost for the first that fails, leaving none open."""
+    """Open every wire of a rig file; raises BusLost for the first that fails, and then leaves none open."""
     pace = UrgentPace(CATCH_UP_S)
     with ExitStack() as opened:
         bus = open_can(rig.can.interface, rig.can.channel, rig.can.bitrate, pace.now, pace.hurry)

@@ -1,7 +1,7 @@
 """Material files of a recipe: finds those of its compounds and surface, copies them to the run's folder, records them.
 
-The copies lie beside the run's recipe as the originals lie beside theirs, so a reader of the run's recipe finds them
-first. A name without a file remains just a name.
+In the run's folder the copies have the same places next to the recipe as the originals have, so that a reader of that
+recipe finds the copies first. A name without a file remains only a name.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tester.store.records import StoredMaterial
 from tester.store.sql import text_sha256
 
 SHORT_BYTES = 256 * 1024
-"""Limit for recording the content of a data file, if it is a text, bytes."""
+"""Greatest size up to which the content of a data file is recorded, if it is text, bytes."""
 PACKAGED = "packaged: "
 
 
@@ -40,19 +40,20 @@ class KeptFile:
 
 @dataclass(frozen=True, slots=True)
 class UsedMaterials:
-    """The files that a recipe's names stand for, and the names without a file (role and name)."""
+    """The files for the names in a recipe, and the names without a file (role and name)."""
 
     files: tuple[MaterialFile, ...] = ()
     bare: tuple[tuple[Role, str], ...] = ()
 
     @property
     def doubts(self) -> list[str]:
-        """Return the doubts about the files, a line each."""
+        """Return the doubtful points of the files, a line each."""
         return [str(doubt) for file in self.files for doubt in file.doubts]
 
 
 def used_materials(recipe: Recipe, path: Path, leave_out: Iterable[str] = ()) -> UsedMaterials:
-    """Return the files that a recipe at ``path`` names; raises InvalidSource with all problems of the first bad file.
+    """Return the files for the names in a recipe at ``path``; raises InvalidSource with all problems of the first
+    invalid file.
 
     ``leave_out``: names to skip.
     """
@@ -76,7 +77,7 @@ def described_compounds(recipe: Recipe, path: Path, rig: Rig) -> dict[str, Compo
     """Return the models in the files of a recipe's compounds, by name; empty if they do not apply to the rubber on the
     rig.
 
-    Skips unreadable files: the recipe's check reports them.
+    Skips unreadable files, which the recipe's check reports.
     """
     if not recipe_part(rig).rubs_as_described(rig):
         return {}
@@ -95,9 +96,9 @@ def _named(recipe: Recipe) -> Iterator[tuple[Role, str]]:
 
 
 def kept_files(files: Sequence[MaterialFile], taken: Iterable[str] = ()) -> tuple[KeptFile, ...]:
-    """Return the copies for a run's folder, each file before the files it refers to.
+    """Return the copies for a run's folder, each file before the files to which it refers.
 
-    ``taken``: files that exist there already. A second file of the same name gets its own folder.
+    ``taken``: names of files that already exist there. A second file of the same name is put into a folder of its own.
     """
     there = {name.casefold() for name in taken}
     kept: list[KeptFile] = []
@@ -129,7 +130,7 @@ def _at(folder: str, name: str) -> str:
 
 
 def _source(path: Path) -> str:
-    """Return where a file was read from, as stored."""
+    """Return the source of a file, as it is stored."""
     if recipes.FOLDER in path.parents:
         return f"{PACKAGED}{path.relative_to(recipes.FOLDER).as_posix()}"
     return str(path.absolute())
@@ -162,7 +163,8 @@ def _write(path: Path, content: bytes) -> None:
 def put_back(folder: Path, stored: Iterable[StoredMaterial]) -> tuple[list[str], list[str]]:
     """Restore the copies in a run's folder from the record.
 
-    Returns the restored files, and those that cannot be restored: changed, with only their hash on record.
+    Returns the restored files, and those that cannot be restored: they were changed, and the record has only their
+    hash.
     """
     restored: list[str] = []
     lost: list[str] = []

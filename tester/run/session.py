@@ -69,11 +69,11 @@ class Session(PartWatch):
         self.screen = LastingScreen(screen, self._lose_screen)
         self.interrupts = 0
         self.run_: Run | None = None
-        """The part that runs, or ran last, in this process."""
+        """The part that is running, or ran last, in this process."""
         self.folder: Path | None = None
         self.ending: RunEnding | None = None
         self.prompts = Prompts(automatic=screen.answer_yes)
-        """Prompts of all parts in this process; each prompt has its own number."""
+        """Prompts of all parts in this process, numbered through."""
         self._level = StopLevel.NONE
         self._pool: WorkerPool | None = None
 
@@ -115,7 +115,7 @@ class Session(PartWatch):
         return TimeLeft(parts_time(work), earlier_of(work.point))
 
     def prepare(self) -> Prepared:
-        """Read and plan the recipe; raises as ``run`` does."""
+        """Read and plan the recipe; raises the same errors as ``run``."""
         options = self.options
         return prepared(options.recipe, options.rig, options.overrides, options.accept_risk)
 
@@ -133,7 +133,7 @@ class Session(PartWatch):
             return 0
         with ExclusiveUse() as use:
             hold_run(use, folder)
-            if finished:  # cut off between its end and its tables
+            if finished:  # interrupted between its end and the writing of its tables
                 return self._report(folder, RunEnding(Outcome.DONE, "", None))
             self.aside(lambda: recover(folder))
             resumed = self.aside(lambda: prepare(folder, reason, self.options.operator, self.options.accept_risk))
@@ -146,16 +146,16 @@ class Session(PartWatch):
             enough_room(folder, resumed.plan, resumed.rig)
             hold_rig(use, resumed.rig, folder.name)
             self.screen.message(resumed.summary)
-            # The rest is recorded in the run's own record, one specimen after the other.
+            # The rest goes into the run's own record, one specimen after the other.
             work = Work(resumed.rig, resumed.plan, (Part(1, resumed.plan),), resumed.point)
             return self._record(self._job(folder, resumed.seed, resumed.rig), work, resumed.begin)
 
     def aside(self, work: Callable[[], Got]) -> Got:
-        """Run slow file work while nothing moves; a service keeps serving its clients meanwhile."""
+        """Run slow file work while nothing moves; a service overrides this to keep serving its clients meanwhile."""
         return work()
 
     def stop(self, level: StopLevel) -> None:
-        """Stop the run, even from a signal handler or another thread: the present part ends, and no further part
+        """Stop the run, also from a signal handler or another thread: the present part ends, and no further part
         begins.
         """
         self._level |= level
@@ -165,7 +165,7 @@ class Session(PartWatch):
             self._level.tell(self.run_)
 
     def _lose_screen(self, text: str) -> None:
-        """Stop a run that can no longer be shown: it must not continue unwatched."""
+        """Stop a run that can no longer be shown: it must not continue without a person watching."""
         if self.run_ is not None:
             self.run_.reason = self.run_.reason or text
         self.stop(StopLevel.UNSEEN)
@@ -173,7 +173,7 @@ class Session(PartWatch):
     # -- a watch over the part in this process (tester.run.part_run.PartWatch) -----------------------------------
 
     def begun(self, run: Run) -> None:
-        """Store the run of a part, and apply a stop that arrived between two parts."""
+        """Store a part's run, and apply a stop that arrived between two parts."""
         self.run_ = run
         if self._level:
             self.stop(self._level)
@@ -183,7 +183,7 @@ class Session(PartWatch):
         self.screen.message(text)
 
     def poll(self, now_s: float, run: Run) -> None:
-        """Show the run and attend to its prompts."""
+        """Show the run and handle its prompts."""
         ctx = run.engine.ctx
         self.screen.show(now_s, ctx.progress, self.track.standing())
         self.screen.attend(ctx.prompts)
@@ -191,7 +191,7 @@ class Session(PartWatch):
             self._command(run, command)
 
     def _command(self, run: Run, command: str) -> None:
-        """Carry out a command from the screen, or report why it has no effect."""
+        """Carry out a command from the screen, or report why it had no effect."""
         refused = ""
         if command == "hold":
             refused = run.request_hold()
@@ -206,14 +206,14 @@ class Session(PartWatch):
     # -- parts ------------------------------------------------------------------------------------------------
 
     def _foretell(self, rig: Rig) -> None:
-        """Show warnings about a rig before it starts. Raises CannotStartError."""
+        """Show warnings before a rig starts. Raises CannotStartError."""
         for text in warnings_before(rig, date.fromisoformat(utc_now()[:10])):
             self.screen.message(text)
 
     def _job(self, folder: Path, seed: int, rig: Rig) -> Job:
         o = self.options
         history = self.aside(lambda: run_parts(rig).history(folder.parent, rig))
-        # A rig simulated in this process is rebuilt from its file each time: it keeps no settings.
+        # A rig simulated in this process keeps no settings, because it is rebuilt from its file for each run.
         good = self.aside(lambda: last_good_run(rig, folder.parent)) if rig.can.interface != "sim" else None
         return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history, good)
 
@@ -244,7 +244,7 @@ class Session(PartWatch):
         return begin
 
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
-        """Carry out the work into the folder; write the tables and return the exit code."""
+        """Carry out the work and record it in the folder; write the tables and return the exit code."""
         self.folder = job.folder
         self.track = self.tracked(work)
         self.prompts.real = not counts_as_simulated(work.rig)
@@ -272,7 +272,7 @@ class Session(PartWatch):
         acknowledge(trips, f"{self.options.operator or user()}, by the start of {folder.name}", folder)
 
     def _ends(self, job: Job, work: Work) -> Generator[PartEnd]:
-        """Yield the parts' ends: run in turn in this process, or side by side in others."""
+        """Yield the ends of the parts, which run one after another in this process, or side by side in others."""
         if self.options.jobs > 1:
             yield from side_by_side(job, work, self.options.jobs, self._show, self._take)
             return
@@ -296,7 +296,7 @@ class Session(PartWatch):
     # -- signals ----------------------------------------------------------------------------------------------
 
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
-        """Stop in a controlled way on TERM, HUP and a first INT, fast on a second INT and on QUIT."""
+        """Stop in a controlled way on TERM, HUP and the first INT, fast on a second INT and on QUIT."""
         if number == QUIT:
             self.stop(StopLevel.FAST)
             return
@@ -311,7 +311,7 @@ class Session(PartWatch):
     def _report(self, folder: Path, ending: RunEnding) -> int:
         """Write the tables, print advice about missing values, and return the exit code.
 
-        Conditions that the run did not reach are not listed; the screen's result counts them.
+        Conditions that the run did not reach are not listed, only counted in the screen's result.
         """
         say, missing, failed = self.screen.message, list[str](), ""
         try:
@@ -337,7 +337,7 @@ class Session(PartWatch):
 
 
 def _tables(folder: Path) -> tuple[list[TableRow], list[str]]:
-    """Write a run's tables; return the rows without a value, and lines of advice and of wear."""
+    """Write a run's tables; return the rows without a value, and lines of advice and about wear."""
     lost = list(write_all(folder))
     advice = [row.advise() for row in [*(row for row in lost if row.tried), *doubtful(folder)]]
     with RunReader(folder) as reader:

@@ -46,7 +46,7 @@ def only_plain(**texts: str) -> None:
 
 
 def refusal(options: SessionOptions, rig: Rig, screen: ReportScreen) -> str:
-    """Return why the options do not fit the rig or the screen, "" if they do."""
+    """Return why the options do not fit the rig or the screen; "" if they do."""
     jobs = options.jobs
     if jobs > 1 and not rig.simulated:
         return f"--jobs {jobs}: only a simulated rig can run several parts at a time, and this rig is real"

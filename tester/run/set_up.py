@@ -1,4 +1,4 @@
-"""Device settings in stored runs: what a connect writes, and what differs from the last good run."""
+"""Device settings in stored runs: what each connection writes, and what differs from the last good run."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from tester.store.run_folders import WENT_THROUGH, run_folders
 from tester.store.run_reader import RunReader
 
 NAMED = 8
-"""Most differences listed at a run's start; further ones are counted."""
+"""Greatest number of differences listed at a run's start; further ones are only counted."""
 
 
 def written(config: AxisConfig) -> dict[Key, int]:
-    """Return what every connect writes into an axis' drive, by object, except for its process data.
+    """Return what every connection writes into an axis' drive, by object, except for its process data.
 
-    Left out: substitutes for objects that the maker's drive lacks, whose values follow from the drive, and homing
+    Left out are substitutes for objects that the drive lacks, because their values come from the drive, and the homing
     parameters of an axis that is not homed.
     """
     settings_plan = plan(config)
@@ -36,7 +36,7 @@ def written(config: AxisConfig) -> dict[Key, int]:
 
 
 def mapped(config: AxisConfig) -> dict[Key, int]:
-    """Return what every connect writes into the objects of an axis' process data, by object."""
+    """Return what every connection writes into the objects of an axis' process data, by object."""
     values: dict[Key, int] = {}
     for pdo in plan(config).pdos:
         if pdo.mapped is None:
@@ -51,22 +51,22 @@ def mapped(config: AxisConfig) -> dict[Key, int]:
 
 @dataclass(frozen=True, slots=True)
 class DeviceParameter:
-    """One parameter, as read."""
+    """One parameter, as read from a device."""
 
     value: str
     name: str = ""
-    """Its name, in words."""
+    """The parameter's name in words."""
     written: bool = False
-    """A connect writes it, so a difference before the connect is no fault."""
+    """Whether every connection writes the parameter, so that a difference before connecting is no fault."""
 
 
 Parameters = Mapping[str, Mapping[str, DeviceParameter]]
-"""By device, then by object (``0x6076:00``) or register (``0x0064``)."""
+"""Parameters by device, then by object (``0x6076:00``) or register (``0x0064``)."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterDifference:
-    """A changed parameter; ``str`` gives its line. ``was`` or ``found`` is None if it is missing."""
+    """A changed parameter; ``str`` returns its printed line. ``was`` or ``found`` is None if that value is missing."""
 
     device: str
     key: str
@@ -74,7 +74,7 @@ class ParameterDifference:
     was: str | None
     found: str | None
     written: bool = field(default=False)
-    """A connect writes it, so the difference does not matter before a connect."""
+    """Whether every connection writes the parameter, so that the difference does not matter before connecting."""
 
     def __str__(self) -> str:
         """Return the printed line."""
@@ -85,9 +85,9 @@ class ParameterDifference:
 
 
 def stored(rig: Rig, rows: Iterable[StoredParameter]) -> Parameters:
-    """Return a run's stored device parameters, as far as a dump has them; the last value of each counts.
+    """Return a run's stored device parameters, as far as a dump contains them; the last value of each counts.
 
-    Leaves out commands that a connect reads back: they are not settings.
+    Leaves out commands that are read back while connecting, because they are not settings.
     """
     written = {name: written_at_connect(config) for name, config in rig.drives().items()}
     kept = {object_key(key) for key in (*IDENTITY, *KEPT)}
@@ -104,7 +104,7 @@ def written_at_connect(config: AxisConfig) -> set[str]:
 
 
 def last_good(rig: Rig, runs: Path) -> Path | None:
-    """Return the folder of the newest run on a rig of this name that completed its plan; None without any."""
+    """Return the folder of the newest run that completed its plan on a rig of this name; None if there is none."""
     for folder in sorted(run_folders(runs), key=lambda path: path.name, reverse=True):
         try:
             with RunReader(folder) as reader:
@@ -119,7 +119,7 @@ def last_good(rig: Rig, runs: Path) -> Path | None:
 
 
 def differences(before: Parameters, now: Parameters) -> list[ParameterDifference]:
-    """Return the parameters of ``before`` that differ, by device, in its order."""
+    """Return the parameters of ``before`` that now differ, by device, in the order of ``before``."""
     changes: list[ParameterDifference] = []
     for device, parameters in before.items():
         present = now.get(device, {})
@@ -141,7 +141,7 @@ class GoodRun:
     devices: Parameters
 
     def differences(self, rig: Rig, rows: Iterable[StoredParameter]) -> str:
-        """Return the differences between ``rows``, read while connecting, and the good run; "" without any."""
+        """Return the differences between ``rows``, read while connecting, and the good run; "" if there are none."""
         now = stored(rig, rows)
         before = {
             device: {key: value for key, value in parameters.items() if key in now[device]}
@@ -153,7 +153,7 @@ class GoodRun:
 
 
 def last_good_run(rig: Rig, runs: Path) -> GoodRun | None:
-    """Return the newest run on a rig of this name that completed its plan; None without a readable one."""
+    """Return the newest readable run that completed its plan on a rig of this name; None if there is none."""
     folder = last_good(rig, runs)
     if folder is None:
         return None

@@ -13,7 +13,7 @@ from sim.rig import SimRig
 from tester.base import clock
 
 SLOWEST, FASTEST = 0.01, 100.0
-"""Bounds of a speed [A]: a slower rig takes too long to watch; no computer keeps up with a faster one."""
+"""Limits of the speed [A]: a slower rig takes too long to watch; no computer keeps up with a faster one."""
 
 HELP = (
     "fault WHAT [VALUE] [for TIME]   from now on, e.g.: fault belt drive heartbeat lost for 3 s",
@@ -29,14 +29,14 @@ HELP = (
 
 
 class RigClock:
-    """Seconds of the rig: this computer's clock, ``speed`` times as fast.
+    """The rig's time in s: this computer's clock, ``speed`` times as fast.
 
-    At any speed but 1, every program at the rig sees it run faster or slower than its own clock: a time-out of T s in a
-    simulated device is over after T/speed s of the program's clock.
+    At any speed but 1, a program connected to the rig sees it run faster or slower than the program's own clock: a
+    time-out of T s in a simulated device takes T/speed s of that clock.
     """
 
     def __init__(self, speed: float = 1.0, idle_speed: float | None = None, now: Callable[[], float] = clock.monotonic):
-        """Begin at 0 s. ``idle_speed`` applies while no program is on the CAN bus; None = ``speed`` applies always."""
+        """Begin at 0 s. ``idle_speed`` applies while no program is on the CAN bus; None: ``speed`` always applies."""
         self._now = now
         self._origin_s = now()
         self._rig_s = 0.0
@@ -45,7 +45,7 @@ class RigClock:
 
     @property
     def speed(self) -> float:
-        """Seconds of the rig in a second of this computer's clock, at present."""
+        """Present number of rig seconds in a second of this computer's clock."""
         always, idle = self._speeds
         return always if self._controlled or idle is None else idle
 
@@ -59,11 +59,11 @@ class RigClock:
         return self._rig_s + (self._now() - self._origin_s) * self.speed
 
     def computer_s(self, rig_s: float) -> float:
-        """Return this computer's clock at a time of the rig, s, assuming the present speed since then."""
+        """Return the time of this computer's clock at a rig time, s, as if the present speed had applied since then."""
         return self._origin_s + (rig_s - self._rig_s) / self.speed
 
     def set(self, speed: float | None = None, idle_speed: float | None = None) -> None:
-        """Change the speeds; None keeps a speed. Raises ValueError for a speed out of bounds."""
+        """Change the speeds; None keeps a speed. Raises ValueError for a speed beyond the limits."""
         for value in (speed, idle_speed):
             if value is not None and not SLOWEST <= value <= FASTEST:
                 raise ValueError(f"a speed is {SLOWEST:g} to {FASTEST:g}, not {value:g}")
@@ -72,7 +72,7 @@ class RigClock:
         self._speeds = (was if speed is None else speed, idle if idle_speed is None else idle_speed)
 
     def controlled(self, so: bool) -> None:
-        """Note whether a program is on the CAN bus."""
+        """Set whether a program is on the CAN bus."""
         if so is not self._controlled:
             self._settle()
             self._controlled = so
@@ -84,7 +84,7 @@ class RigClock:
 
 
 class SpoiledLife:
-    """Advances a rig, with faults that come by command."""
+    """Advances a rig, with faults that commands cause."""
 
     def __init__(self, rig: SimRig) -> None:
         """Begin without faults."""
@@ -94,7 +94,7 @@ class SpoiledLife:
 
     @property
     def due_s(self) -> float:
-        """Return when the next fault begins or ends, in s of rig time."""
+        """Return when the next fault begins or ends, in rig seconds."""
         return self.script.due_s
 
     def advance(self, now: float) -> None:
@@ -116,7 +116,7 @@ class SpoiledLife:
 
 
 class _NotHere:
-    """Stands in for the controlling program, which is another process: faults cannot stop it or press its keys."""
+    """Replaces the controlling program, which runs in another process: faults cannot stop it or press its keys."""
 
     def stall(self, seconds: float) -> None:
         """Do nothing."""
@@ -134,7 +134,7 @@ class _NotHere:
 class SimConsole:
     """Answers commands: ``command`` takes a line and the rig's time, and returns the lines of the answer.
 
-    ``ended`` is set by the command ``end``. ``happened`` returns the faults that began or ended by themselves.
+    ``ended`` is set by the command ``end``. ``happened`` returns the faults that began or ended without a command.
     """
 
     def __init__(self, life: SpoiledLife, machine: SimulatedMachine, rig: SimRig, clock: RigClock) -> None:
@@ -147,7 +147,7 @@ class SimConsole:
         self.ended = False
 
     def command(self, line: str, now: float) -> Sequence[str]:
-        """Carry out a command at ``now`` s of the rig. An error is answered as text, never raised."""
+        """Carry out a command at rig time ``now``, s. The answer reports an error as text; none is raised."""
         words = line.split()
         match words:
             case []:

@@ -29,10 +29,11 @@ from tester.run.simulated import simulated_ports
 
 
 def reached(rig: OneRig, can: tuple[str, str], lines: Mapping[str, tuple[str, bool]], how: str) -> OneRig:
-    """Return ``rig`` as a machine, its bus at ``can`` (python-can's interface and channel), its lines at ``lines``.
+    """Return ``rig`` as a real machine, with its bus at ``can`` (python-can's interface and channel) and its lines at
+    ``lines``.
 
-    Those are port, and whether it is one of Modbus TCP. ``how`` goes into its name. What it is to believe of the air
-    around it is what the simulated rig's air is.
+    The latter are each line's port, and whether it uses Modbus TCP. ``how`` is added to the rig's name. The ambient
+    values that the rig file states are those of the simulated rig.
     """
     interface, channel = can
     return replace(
@@ -50,8 +51,8 @@ def reached(rig: OneRig, can: tuple[str, str], lines: Mapping[str, tuple[str, bo
 SHOWN_EVERY_S = 1.0
 """Period of the status line, s of this computer's clock."""
 LOG_COLUMNS = ("time_s", "clock_s", "controlled")
-"""First columns of a state log, with a row every step of 10 ms: seconds of the rig and of this machine's monotonic
-clock, 1 while a program is on the CAN bus. The plant's true values follow; its kind names them.
+"""First columns of a state log, which has a row for every step of 10 ms: rig seconds, seconds of this machine's
+monotonic clock, and 1 while a program is on the CAN bus. The plant's true values follow; the plant's kind names them.
 """
 
 
@@ -68,19 +69,19 @@ class SimOptions:
     speed: float = 1.0
     idle_speed: float | None = None
     control: int | None = None
-    """Port for commands, 0 = any free port; None = no such door."""
+    """Port for commands, 0 = any free port; None = no port."""
     typed: bool = False
-    """Read commands from standard input."""
+    """Whether to read commands from standard input."""
     write_rig: Path | None = None
     log: Path | None = None
     bus_log: Path | None = None
 
 
 class StateLog:
-    """Writes the rig's state as CSV, unbuffered: every row goes to the operating system at once."""
+    """Writes the rig's state as CSV, unbuffered: each row is passed to the operating system at once."""
 
     def __init__(self, path: Path, rig_clock: RigClock, machine: machines.SimulatedMachine) -> None:
-        """Create the file; ``machine``: the rig's kind."""
+        """Create the file; ``machine``: the simulated machine of the rig's kind."""
         self._file = path.open("w", encoding="utf-8", newline="\n", buffering=1)
         self._clock = rig_clock
         self._machine = machine
@@ -100,10 +101,10 @@ class StateLog:
 def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str], None] | None = None) -> float:
     """Run a simulated rig until this process is asked to end (TERM, INT, or a command).
 
-    Returns the greatest lateness, s of this computer's clock at the last speed. ``say`` gets a line with all addresses,
-    once clients can connect and the rig file is written, and then the answers to commands; ``show``, if given, gets the
-    rig's state in one line every second. Raises InvalidSource for an invalid rig file, ValueError for an unknown door
-    or fault, and OSError if a port, a device, an interface or a file is not available.
+    Returns the greatest lateness, s of this computer's clock at the last speed. ``say`` is called with a line of all
+    addresses, once clients can connect and the rig file is written, and then with the answers to commands. ``show``, if
+    given, is called every second with the rig's state in one line. Raises InvalidSource for an invalid rig file,
+    ValueError for an unknown door or fault, and OSError if a port, a device, an interface or a file is not available.
     """
     config = _on_doors(load_rig(options.rig, options.overrides, options.accept_risk), options.doors)
     kind = run_parts(config)
@@ -142,7 +143,7 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
 def _opened(
     options: SimOptions, config: Rig, server: RigServer, console: SimConsole, say: Callable[[str], None]
 ) -> list[str]:
-    """Open the doors for commands and write the rig file, as far as wanted; return all places, in words."""
+    """Open the requested doors for commands and write the rig file if requested; return all addresses, in words."""
     places = [f"CAN {server.can.place}"] + [f"{name} {place}" for name, place in server.line_places.items()]
     if options.control is not None:
         door = CommandDoor(listen(options.doors.host, options.control), console.command)
@@ -157,8 +158,7 @@ def _opened(
 
 
 class _Observers:
-    """Everything that looks at the rig in every step: the log, the clock (is the rig idle?), and the reader of events.
-    """
+    """What observes the rig in every step: the log, the clock (is the rig idle?), and the reader of events."""
 
     def __init__(
         self,
@@ -169,7 +169,7 @@ class _Observers:
         say: Callable[[str], None],
         show: Callable[[str], None] | None,
     ) -> None:
-        """Observe from now on."""
+        """Store the parts that observe the rig."""
         self._server, self._clock, self._console = server, rig_clock, console
         self._state_log, self._say, self._show = state_log, say, show
         self._shown_s = -SHOWN_EVERY_S
@@ -190,7 +190,7 @@ class _Observers:
 
 
 def _on_doors(config: Rig, doors: Doors) -> Rig:
-    """Return the rig as its doors can carry it: a pseudo-terminal has no parity bit, so its lines have none."""
+    """Return the rig as its doors can serve it: a pseudo-terminal has no parity bit, so the rig's lines have none."""
     if doors.lines != "rtu":
         return config
     return replace(config, lines={name: replace(line, parity="N") for name, line in config.lines.items()})

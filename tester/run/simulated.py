@@ -30,11 +30,11 @@ def simulated_ports(
     recipe: Path | None = None,
     surface: str = "",
 ) -> tuple[Ports, SimRig, Any]:
-    """Return the wires of a new simulated rig, the rig, and the hands at it (the same object).
+    """Return the wires of a new simulated rig, the rig, and its attendant (the same object).
 
     Raises InvalidSource if a sensor shows a quantity that the plant lacks. ``can_wire``: the class of the bus,
-    ``sim.faults.can.FaultyCanWire`` for faults. ``recipe``: materials are searched beside this file first; ``surface``:
-    the recipe's name of the track.
+    ``sim.faults.can.FaultyCanWire`` for faults. ``recipe``: a file; materials are searched first in its folder.
+    ``surface``: the recipe's name of the track.
     """
     try:
         world = machines.find(run_parts(rig).plant).world(spec_of(rig), rig.plant, seed, can_wire)
@@ -66,16 +66,16 @@ def _device(config: DeviceConfig) -> DeviceSpec:
 
 
 Truth = Callable[[Mapping[str, float]], Mapping[str, float]]
-"""Function of setpoints by axis that returns the true figures of the repeat under way."""
+"""Function that takes setpoints by axis and returns the true values of the present repeat."""
 
 
 def truth_of(world: Any, plant: Any) -> Truth | None:
-    """Return the function for a simulated rig's true values; None if not wanted, or not available."""
+    """Return the function for a simulated rig's true values; None if they are not requested or not available."""
     return getattr(world, "truth", None) if getattr(plant, "record_truth", False) else None
 
 
 class Witnessed:
-    """The hands at a simulated rig; records the true values whenever a repeat begins."""
+    """The attendant of a simulated rig, which also records the true values whenever a repeat begins."""
 
     def __init__(self, attendant: Any, truth: Truth, plan: Plan, recorder: Recorder) -> None:
         """``plan``: of this part of the run; a row of the table is one condition."""
@@ -85,11 +85,11 @@ class Witnessed:
         self._steps = {step.row: step for step in plan.conditions()}
 
     def __getattr__(self, name: str) -> Any:
-        """Return the hands' other methods."""
+        """Return any other method of the attendant."""
         return getattr(self._attendant, name)
 
     def begin_repeat(self, row: int, repeat: int, attempt: int, *more: Mapping[str, float]) -> None:
-        """Begin a repeat at the rig, and record its true values; ``more``: further arguments of the kind."""
+        """Begin a repeat at the rig, and record its true values; ``more``: further arguments that the kind defines."""
         self._attendant.begin_repeat(row, repeat, attempt, *more)
         step = self._steps.get(row)
         if step is not None:

@@ -20,7 +20,7 @@ from tester.run.part_run import PartWatch, run_part
 from tester.run.pool import WorkerPool, say, stop_level
 
 POLL_S = 0.1
-"""Period at which the parent reads reports, s of wall time."""
+"""Period at which the parent process reads reports, s of wall time."""
 
 
 class Sight(NamedTuple):
@@ -34,10 +34,10 @@ class Sight(NamedTuple):
 def side_by_side(
     job: Job, work: Work, jobs: int, show: Callable[[Sight], None], pool_made: Callable[[WorkerPool], None]
 ) -> Iterator[PartEnd]:
-    """Run the parts in up to ``jobs`` processes; yield their ends as they come.
+    """Run the parts in up to ``jobs`` processes; yield their ends as they arrive.
 
-    A part that fails stops the others in a controlled way; parts not begun by then yield nothing. ``pool_made`` gets
-    the pool, for ordering a stop.
+    If a part fails, the others are stopped in a controlled way; parts that have not begun by then yield nothing.
+    ``pool_made`` is called with the pool, through which a stop can be ordered.
     """
     with WorkerPool(min(jobs, len(work.parts))) as pool:
         pool_made(pool)
@@ -57,7 +57,7 @@ def side_by_side(
 
 
 def longest_first(work: Work) -> list[int]:
-    """Return the numbers of a run's parts, the longest expected first, so that it is not left for the end."""
+    """Return the numbers of a run's parts, longest expected first, so that the longest is not left for the end."""
     expected_s = {part.number: recipe_part(work.rig).estimate(part.plan, work.rig).rig_seconds for part in work.parts}
     return sorted(expected_s, key=lambda number: (-expected_s[number], number))
 
@@ -70,7 +70,7 @@ def _end_of(future: Future[PartEnd | None], part: int) -> PartEnd | None:
 
 
 def run_in_worker(job: Job, number: int) -> PartEnd | None:
-    """Run a part in this process, answering prompts with yes; return None if a stop came first."""
+    """Run a part in this process, answering prompts with yes; return None if a stop came before it began."""
     if stop_level():
         return None
     work = _work_of(job)
@@ -93,11 +93,11 @@ class _Reporting(PartWatch):
         self._level = StopLevel.NONE
 
     def begun(self, run: Run) -> None:
-        """Obey a stop that arrived meanwhile."""
+        """Apply a stop that arrived in the meantime."""
         self._obey(run)
 
     def poll(self, now_s: float, run: Run) -> None:
-        """Report progress and obey a stop."""
+        """Report progress, and apply a stop."""
         at = replace(self.track.standing(), part=self.part, parts=self.parts, beside=True)
         say(Sight(now_s, run.engine.ctx.progress, at))
         self._obey(run)

@@ -1,7 +1,7 @@
 """Addresses of the service: a Unix socket of one user, or loopback TCP with a token on systems without Unix sockets.
 
-Both are in a folder that only the user may enter. A TCP service writes its address and token to ``service.json`` there
-(mode 0600), so that a client finds either in the same place.
+Both use a folder that only the user may enter. A TCP service writes its address and token to ``service.json`` there
+(mode 0600), so that a client finds either kind of service in the same place.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ CREDENTIALS = struct.Struct("iII")
 
 
 STOP_SUFFIX = ".stop"
-"""Suffix of the socket for STOP, which lies beside the service's socket."""
+"""Suffix of the socket for STOP, in the same folder as the service's socket."""
 
 
 class AddressError(MisuseError):
@@ -41,13 +41,13 @@ class UnixAddress:
     path: Path
 
     def __str__(self) -> str:
-        """Return the form that ``--connect`` takes."""
+        """Return the form that ``--connect`` accepts."""
         return f"unix:{self.path}"
 
 
 @dataclass(frozen=True, slots=True)
 class TcpAddress:
-    """A loopback port and the token that opens it."""
+    """A loopback port and the token that a client must send."""
 
     host: str
     port: int
@@ -66,8 +66,8 @@ Address = UnixAddress | TcpAddress
 def folder() -> Path:
     """Return the folder of the user's service, creating it (0700) if needed.
 
-    ``TESTER_RUNTIME_DIR``, else ``XDG_RUNTIME_DIR/friction-tester``, else a folder of the user's in the temporary one.
-    Raises AddressError if it belongs to another user or others may enter it.
+    It is ``TESTER_RUNTIME_DIR``, else ``XDG_RUNTIME_DIR/friction-tester``, else the user's own folder in the temporary
+    one. Raises AddressError if it belongs to another user or others may enter it.
     """
     chosen = os.environ.get("TESTER_RUNTIME_DIR")
     base = os.environ.get("XDG_RUNTIME_DIR")
@@ -94,7 +94,7 @@ def default_address(where: Path | None = None) -> Address:
 
 
 def address_of(text: str) -> Address:
-    """Return the address in a text: ``unix:PATH``, a path, or ``ws://HOST:PORT`` (token from the card)."""
+    """Return the address in a text: ``unix:PATH``, a path, or ``ws://HOST:PORT`` (the token is read from the card)."""
     if text.startswith("ws://"):
         card = read_card(folder() / CARD)
         host, _, port = text.removeprefix("ws://").rstrip("/").rpartition(":")
@@ -110,7 +110,7 @@ def new_tcp_address(port: int = 0) -> TcpAddress:
 
 
 def write_card(address: TcpAddress, path: Path) -> None:
-    """Write address and token for the user's clients (mode 0600), atomically."""
+    """Write the card: address and token for the user's clients (mode 0600), atomically."""
     part = path.with_name(f"{path.name}.part")
     part.unlink(missing_ok=True)
     descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -121,7 +121,7 @@ def write_card(address: TcpAddress, path: Path) -> None:
 
 
 def read_card(path: Path) -> TcpAddress:
-    """Read address and token. Raises AddressError."""
+    """Read address and token from the card. Raises AddressError."""
     try:
         card: object = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -134,7 +134,7 @@ def read_card(path: Path) -> TcpAddress:
 
 
 def stop_path(service: Path) -> Path:
-    """Return the path of the socket for STOP beside a service's socket."""
+    """Return the path of the socket for STOP that belongs to a service's socket."""
     return service.with_name(service.name + STOP_SUFFIX)
 
 
@@ -150,7 +150,8 @@ def unlink_socket(path: Path) -> None:
 
 
 def peer_of(connection: socket.socket) -> tuple[int, int | None]:
-    """Return process and user id at the other end of a Unix socket; 0 and None where the system does not report them.
+    """Return process id and user id at the other end of a Unix socket; 0 and None where the system does not report
+    them.
 
     Linux: SO_PEERCRED (unix(7)), three ints pid, uid, gid. Elsewhere the modes of folder and socket protect.
     """
@@ -163,9 +164,9 @@ def peer_of(connection: socket.socket) -> tuple[int, int | None]:
 
 
 def peer_text(connection: socket.socket) -> str:
-    """Return the other end for the record: the user id on a Unix socket, else the address.
+    """Return a name of the other end for the record: the user id on a Unix socket, else the address.
 
-    Never raises: an unknown peer, or one that has disconnected, gives a text that reports it.
+    Never raises: for an unknown peer, or one that has disconnected, the text reports that.
     """
     try:
         if connection.family == getattr(socket, "AF_UNIX", None):

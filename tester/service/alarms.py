@@ -17,8 +17,8 @@ Priority = Literal[1, 2, 3]
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """The cause of an alarm in words and figures. ``consequence``: its next effect; ``command``: the command that
-    answers it.
+    """The cause of an alarm in words and figures. ``consequence``: what happens next; ``command``: the command that
+    answers the alarm.
     """
 
     name: str
@@ -32,7 +32,7 @@ class Cause:
 
 
 class AlarmList:
-    """The alarms of a rig. ``tell`` gets each change: kind, text, severity."""
+    """The alarms of a rig. ``tell`` is called with each change: kind, text, severity."""
 
     def __init__(self, utc: Callable[[], str], tell: Callable[[str, str, str], None]) -> None:
         """Begin without alarms."""
@@ -50,7 +50,7 @@ class AlarmList:
         return tuple(sorted(self._alarms.values(), key=_urgency))
 
     def raise_(self, cause: Cause, t_s: float) -> None:
-        """Raise an alarm; an active alarm takes the new words and figures, silently."""
+        """Raise an alarm; if it is already active, update its words and figures without a report."""
         old = self._alarms.get(cause.name)
         if old is not None and old.state != "returned":
             if (old.text, old.value) != (cause.text, cause.value):
@@ -65,7 +65,7 @@ class AlarmList:
         self._tell("alarm", f"{cause.name}: {cause.text}", "warning" if cause.priority > 1 else "alarm")
 
     def clear(self, name: str) -> None:
-        """Note that a cause is gone."""
+        """Record that a cause is gone."""
         alarm = self._alarms.get(name)
         if alarm is None or alarm.state == "returned":
             return
@@ -83,7 +83,7 @@ class AlarmList:
             self.clear(cause.name)
 
     def acknowledge(self, number: int, by: str) -> int:
-        """Acknowledge one alarm (all for 0); return the number acknowledged."""
+        """Acknowledge an alarm by its number (0: all); return how many were acknowledged."""
         count = 0
         for name, alarm in list(self._alarms.items()):
             if number not in (0, alarm.number) or alarm.state == "acknowledged":

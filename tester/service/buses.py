@@ -16,18 +16,18 @@ class BusWatch:
     """Reads the devices of one run."""
 
     def __init__(self, devices: DeviceList, rig: Rig) -> None:
-        """Only read: sends nothing."""
+        """Only read: send nothing."""
         self.devices = devices
         self.rig = rig
         self._emergencies: dict[str, int] = {}
 
     def count_emergency(self, text: str) -> None:
-        """Count an emergency by the drive's name, with which its text begins."""
+        """Count an emergency for the drive whose name begins its text."""
         name = text.partition(" drive")[0]
         self._emergencies[name] = self._emergencies.get(name, 0) + 1
 
     def device_views(self, now: float) -> tuple[DeviceView, ...]:
-        """Return every device at ``now`` s of the run."""
+        """Return the view of every device at ``now`` s of the run."""
         hours = max(now, 60.0) / 3600.0
         drives = [self._drive(drive, now, hours) for drive in self.devices.drives]
         nodes = [self._node(node, now, hours) for node in self.devices.nodes]
@@ -63,8 +63,8 @@ class BusWatch:
                           _age(now, device.stamp_s), counters.requests, errors, errors / hours, detail)  # fmt: skip
 
     def bus_views(self) -> tuple[BusView, ...]:
-        """Return the buses."""
-        busy = getattr(self.devices.can, "load", None)  # a share; only a simulated bus knows it
+        """Return the view of every bus."""
+        busy = getattr(self.devices.can, "load", None)  # a share of time; only a simulated bus reports it
         load = 100.0 * busy if isinstance(busy, float) else None
         errors = sum(drive.malformed for drive in self.devices.drives) + sum(self._emergencies.values())
         views = [BusView("can", "can", load, errors, f"{self.rig.can.bitrate // 1000} kbit/s")]
@@ -78,5 +78,5 @@ class BusWatch:
 
 
 def _age(now: float, at_s: float) -> float | None:
-    """Return the age of data in s, None without data."""
+    """Return the age of data in s; None if there are none."""
     return None if at_s == -inf else max(now - at_s, 0.0)

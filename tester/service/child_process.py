@@ -1,6 +1,7 @@
 """A child process of the service and a socket to it: inherited where the system allows it, else over loopback.
 
-POSIX hands the child one end of a socket pair. On Windows (not tried) the child connects back and sends a secret first.
+On POSIX the child inherits one end of a socket pair. On Windows (not tried) the child connects back and sends a secret
+first.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes
                 module_command(module, f"fd:{theirs.fileno()}", *arguments),
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
-                start_new_session=True,  # Ctrl+C at the terminal is only for the owner
+                start_new_session=True,  # Ctrl+C at the terminal is for the owner only
             )
         return process, ours
     secret = secrets.token_hex(32)
@@ -51,10 +52,10 @@ def spawn(module: str, arguments: Sequence[str]) -> tuple[subprocess.Popen[bytes
 
 
 def link_to_owner(nice: int = 0) -> socket.socket:
-    """Return the child's end from the first argument, which ``spawn`` made. Raises OSError.
+    """Return the child's end of the link, which ``spawn`` passed as the first argument. Raises OSError.
 
-    From now on the process ignores signals: it ends with its owner, after the rig's standstill. ``nice`` lowers its
-    priority.
+    From now on the process ignores signals: it ends with its owner, after the rig has come to standstill. ``nice``
+    lowers its priority.
     """
     for asking in (signal.SIGINT, signal.SIGTERM, HANG_UP):
         if asking:

@@ -51,7 +51,7 @@ MAX_INCOMING = 64 * 1024 * 1024
 """Longest message from the service, bytes: a hello holds ten minutes of trend and two thousand events."""
 CONNECT_S = 10.0
 ANSWER_S = 30.0
-"""A command without an answer after this time has failed, s; checking and planning take seconds."""
+"""A command without an answer after this time has failed, s; checking and planning may take seconds."""
 AGAIN_S = 0.5
 """Time between two attempts to reconnect, s."""
 
@@ -65,7 +65,7 @@ class RefusedError(Exception):
 
 
 class LostError(Exception):
-    """The connection has ended; the message gives the reason if the service sent one."""
+    """The connection has ended; the message gives the service's reason if it sent one."""
 
 
 Gone: TypeAlias = Literal["", "ended", "died"]
@@ -92,16 +92,16 @@ class Client:
         self.plan: PlanView | None = hello.plan
         self.events: deque[Event] = deque(hello.events, maxlen=EVENTS_KEPT)
         self.complete = hello.complete
-        """No event is missing between those seen before and ``events``."""
+        """Whether no event is missing between those seen before and ``events``."""
         self.trend: deque[tuple[float | None, ...]] = deque(hello.trend, maxlen=TREND_ROWS)
         self.machine: MachineView = hello.machine
         """Tables of the kind of rig; ``machine.trend`` names the columns of ``trend``."""
         self.received_s = clock.monotonic()
-        """When the newest state came (tester.base.clock.monotonic)."""
+        """Time at which the newest state arrived (tester.base.clock.monotonic)."""
         self.lost = ""
-        """Why the connection has ended, "" while it is open."""
+        """Why the connection has ended; "" while it is open."""
         self.ended = False
-        """The service has announced that it ends on request."""
+        """Whether the service has announced that it ends on request."""
         self._goodbye = ""
         self._ids = 0
         self._sending: set[asyncio.Task[None]] = set()
@@ -124,8 +124,8 @@ class Client:
     ) -> Client:
         """Open a connection and introduce this client. Raises NoServiceError.
 
-        ``control``: ask for control. ``service``, ``since``: the service and the event seen last (``Client.service``
-        and ``last_seq``); the service then sends every later event.
+        ``control``: request control. ``service``, ``since``: the service and the last event that this client has seen
+        (``Client.service`` and ``last_seq``); the service then sends every later event.
         """
         try:
             connection = await _open(address or default_address())
@@ -148,7 +148,7 @@ class Client:
 
     @property
     def age_s(self) -> float:
-        """Seconds since the newest state arrived; above 2, distrust every value."""
+        """Seconds since the newest state arrived; above 2 s no value is reliable."""
         return clock.monotonic() - self.received_s
 
     @property
@@ -157,7 +157,7 @@ class Client:
         return self.events[-1].seq if self.events else 0
 
     async def command(self, action: Action, *, within_s: float = ANSWER_S) -> JsonValue:
-        """Send a command and return the answer's result. Raises RefusedError, LostError, TimeoutError."""
+        """Send a command and return its result. Raises RefusedError, LostError, TimeoutError."""
         self._ids += 1
         number = self._ids  # other commands may raise the counter while this one waits
         answer: asyncio.Future[Accepted] = asyncio.get_running_loop().create_future()
@@ -210,7 +210,7 @@ class Client:
     async def _read(self) -> None:
         try:
             async for text in self._connection:
-                with suppress(BadMessageError):  # skip the message of a newer service
+                with suppress(BadMessageError):  # skip an unknown message of a newer service
                     self._take(from_server(text))
             self._end(self._goodbye or "the service has closed the connection")
         except ConnectionClosed as error:
@@ -267,17 +267,17 @@ class Client:
 
 
 class Link:
-    """A connection that reconnects by itself: ``client`` is the present one, None while there is none."""
+    """A connection that reconnects by itself. ``client`` is the present one, None while there is no connection."""
 
     def __init__(self, address: Address | None = None, *, name: str = "client", control: bool = False) -> None:
-        """Open nothing before ``messages``. ``control`` as in ``Client.connect``."""
+        """Open no connection before ``messages`` is called. ``control`` as in ``Client.connect``."""
         self.address = address
         self.name = name
         self.control = control
         self.client: Client | None = None
 
     async def messages(self) -> AsyncIterator[ServerMessage | Lost]:
-        """Yield messages for ever, and a ``Lost`` when the connection breaks. Each event arrives exactly once.
+        """Yield messages without end, and a ``Lost`` when the connection breaks. Each event arrives exactly once.
 
         Each new connection begins with a ``Hello``. If its ``complete`` is False, or its ``service`` differs, the
         events in between are lost.
@@ -308,7 +308,7 @@ class Link:
             await asyncio.sleep(AGAIN_S)
 
     async def _gone(self, service: str) -> Gone:
-        """Return "died" for a service that has died, "" for one whose gateway is restarting (it still takes STOP)."""
+        """Return "died" for a service that has died, "" if only its gateway is restarting (STOP then still works)."""
         there = not service or await asyncio.to_thread(takes_stop, self.address)
         return "" if there else "died"
 

@@ -1,4 +1,4 @@
-"""Clients' commands for the rig: carries them out, or refuses them."""
+"""Carries out clients' commands for the rig, or refuses them."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from tester.service.state_publisher import Desk
 
 
 class Orders:
-    """Carries out orders between two ticks. Longer work (``job``) is left to the service's loop."""
+    """Carries out orders between two ticks. It leaves longer work (``job``) to the service's loop."""
 
     def __init__(self, desk: Desk) -> None:
         """Begin with nothing under way."""
         self.desk = desk
         self.job: Order | None = None
         self.armed_by = 0
-        """The client that armed manual mode."""
+        """Number of the client that armed manual mode."""
         self.ending = False
         desk.obey, desk.stop, desk.lost_control = self.obey, self.stop, self.lost_control
 
@@ -59,13 +59,13 @@ class Orders:
             gateway.accept(order)
 
     def stop(self, name: str, fast: bool) -> None:
-        """Carry out STOP, from any client, whatever is under way."""
+        """Carry out STOP from any client, whatever is under way."""
         desk = self.desk
         kind = "fast stop" if fast else "stop"
         desk.command(f"{kind} by {name}", "warning")
         if desk.watch is not None:
             if desk.watch.run.engine.control.state.mode is Mode.LATCHED:
-                desk.watch.run.stays_latched = False  # its cause may never go; the desk stays latched
+                desk.watch.run.stays_latched = False  # its cause may never clear; the desk stays latched
             desk.watch.run.request_stop(f"{kind} by {name}", fast=fast)
             desk.stop_rest(fast)
         elif self.job is not None:
@@ -87,8 +87,8 @@ class Orders:
     def _acknowledge(self, order: Order, action: Acknowledge) -> None:
         """Acknowledge alarms, a latched rig, and interrupted runs. Nothing moves.
 
-        A latched rig is acknowledged with all alarms or with its trip's alarm; another alarm's number leaves it
-        latched.
+        A latched rig is acknowledged with all alarms, or with the alarm of its trip. The number of another alarm leaves
+        it latched.
         """
         desk, watch = self.desk, self.desk.watch
         tripped = watch.tripped if watch is not None else desk.tripped
@@ -136,7 +136,7 @@ class Orders:
             hand.disarm()
 
     def _begin(self, order: Order) -> None:
-        """Accept an order that begins something, if nothing is under way."""
+        """Accept an order that begins work, if no work is under way."""
         refusal = self._occupied()
         if refusal:
             self.desk.gateway.refuse(order, refusal)

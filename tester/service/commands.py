@@ -1,4 +1,4 @@
-"""Messages from a client: ``join``, then commands. An unknown key makes the service refuse the command."""
+"""Messages from a client: ``join``, then commands. The service refuses a command with an unknown key."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pydantic import AfterValidator, ConfigDict, Field
 from tester.base.words import plain_text
 
 VERSION = 2
-"""Version of this protocol. A change that an older client cannot ignore raises it."""
+"""Version of this protocol. It increases with any change that an older client cannot ignore."""
 MAX_MESSAGE = 400_000
 """Longest message that the service accepts, bytes: the largest recipe, escaped."""
 
@@ -34,8 +34,8 @@ class StrictMessage:
 class RecipeCommand(StrictMessage):
     """A message about a recipe.
 
-    ``recipe``: a file on the service's machine or the name of a shipped recipe; or ``text``, the recipe itself, which
-    ``recipe`` then names. ``rig``: "" = the service's.
+    ``recipe``: a file on the service's machine or the name of a shipped recipe; with ``text``, which is the recipe
+    itself, only its name. ``rig``: "" = the service's.
     """
 
     recipe: PathText
@@ -46,9 +46,10 @@ class RecipeCommand(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class Join(StrictMessage):
-    """The first message of a client. ``control``: it asks for control, if no client has it.
+    """The first message of a client. ``control``: request control, which the client gets if no other client has it.
 
-    ``service`` and ``since``: the service and the event it saw last; it gets every later event.
+    ``service`` and ``since``: the service and the last event that the client has seen; it then receives every later
+    event.
     """
 
     name: Name
@@ -63,8 +64,8 @@ class Join(StrictMessage):
 class RunRecipe(RecipeCommand):
     """Start a run. Result: ``{"run": name, "folder": path}``.
 
-    ``recipe``: a file on the service's machine or the name of a shipped recipe; or ``text``, the recipe itself, which
-    ``recipe`` then names. ``rig``: "" = the service's. ``speed``: rig seconds per second, None = as fast as it goes;
+    ``recipe``: a file on the service's machine or the name of a shipped recipe; with ``text``, which is the recipe
+    itself, only its name. ``rig``: "" = the service's. ``speed``: rig seconds per second, None = as fast as possible;
     simulated rigs only. ``yes``: answer prompts without asking. ``experiment``: free fields, stored.
     """
 
@@ -78,7 +79,7 @@ class RunRecipe(RecipeCommand):
 
 @dataclass(frozen=True, slots=True)
 class ResumeRun(StrictMessage):
-    """Resume an interrupted run at its first uncommitted repeat. Result as of ``run``."""
+    """Resume an interrupted run at its first uncommitted repeat. The result is that of ``run``."""
 
     run: PathText
     speed: Speed | None = 1.0
@@ -89,7 +90,7 @@ class ResumeRun(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class Hold(StrictMessage):
-    """HOLD: lift, set slip to zero, keep heating; the current repeat is void and is repeated."""
+    """HOLD: lift, set slip to zero, keep heating. The current repeat is void and is measured again."""
 
     command: Literal["hold"] = "hold"
 
@@ -103,7 +104,7 @@ class Release(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class Acknowledge(StrictMessage):
-    """Acknowledge one alarm, or all (``number`` 0), including a latched trip once its cause is gone. Nothing moves."""
+    """Acknowledge one alarm, or all (``number`` 0), including a latched trip whose cause is gone. Nothing moves."""
 
     number: Annotated[int, Field(ge=0)] = 0
     command: Literal["ack"] = "ack"
@@ -111,7 +112,7 @@ class Acknowledge(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class Stop(StrictMessage):
-    """STOP: a controlled stop, or a fast one. Any client may send it; it is never refused, and idempotent."""
+    """STOP: a controlled stop, or a fast one. Any client may send it. It is never refused, and is idempotent."""
 
     fast: bool = False
     command: Literal["stop"] = "stop"
@@ -136,14 +137,14 @@ class Arm(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class Attend(StrictMessage):
-    """A sign of life from the screen that moves the rig by hand: a second without one ends manual mode."""
+    """A sign of life from the screen with which a person moves the rig. After a second without one manual mode ends."""
 
     command: Literal["attend"] = "attend"
 
 
 @dataclass(frozen=True, slots=True)
 class Jog(StrictMessage):
-    """Move an axis by one bounded step, up or down, for a key press. More than five a second are refused.
+    """Move an axis by one bounded step, up or down, for one key press. More than five a second are refused.
 
     ``axis``: a name in the machine's table (``hello``).
     """
@@ -162,7 +163,7 @@ class Tare(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class TakeControl(StrictMessage):
-    """Take control (``take``; ``force``: even from another client), or give it back."""
+    """Take control (``take``; with ``force`` even from another client), or return it."""
 
     take: bool = True
     force: bool = False
@@ -193,7 +194,7 @@ class ShowPlan(RecipeCommand):
 
 @dataclass(frozen=True, slots=True)
 class ListRecipes(StrictMessage):
-    """List the shipped recipes and those beside the service. Result: ``{"recipes": [{"name", "path"}]}``."""
+    """List the shipped recipes and those in the service's folder. Result: ``{"recipes": [{"name", "path"}]}``."""
 
     command: Literal["recipes"] = "recipes"
 
@@ -208,13 +209,13 @@ class ListRuns(StrictMessage):
 RigAction: TypeAlias = RunRecipe | ResumeRun | Hold | Release | Acknowledge | Stop | Answer | Arm | Jog | Tare
 """Commands for the rig's owner; all but ``stop`` require control."""
 Query: TypeAlias = CheckRecipe | ShowPlan | ListRecipes | ListRuns
-"""Questions that a separate process answers, beside the rig."""
+"""Questions that a separate process answers, without involving the rig."""
 Action: TypeAlias = Annotated[RigAction | TakeControl | WatchFrames | Attend | Query, Field(discriminator="command")]
 
 
 @dataclass(frozen=True, slots=True)
 class Command(StrictMessage):
-    """A command: ``id`` is the client's own number and comes back with the answer."""
+    """A command. ``id`` is a number that the client chooses; the answer contains it."""
 
     id: int
     action: Action

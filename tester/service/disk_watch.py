@@ -1,4 +1,4 @@
-"""Free space where runs are stored: looked at every few seconds, with an alarm where it is low or the disk hangs."""
+"""Free space where runs are stored: measured every few seconds, with an alarm if it is low or the disk hangs."""
 
 from __future__ import annotations
 
@@ -14,17 +14,19 @@ from tester.store.disk import MARGIN, FreeRoom
 EVERY_S = 10.0
 """Period of measurements, s."""
 FIRST_S = 1.0
-"""How long the starting service waits for the first answer about the disk, s."""
+"""How long the service waits at its start for the first measurement, s."""
 LOW_BYTES = 500_000_000
 """Less than this counts as low, whatever the run needs [A]: one compound of Table 2 takes some tens of MB."""
 _CONSEQUENCE = "a run that cannot be recorded is stopped"
 
 
 class DiskWatch:
-    """Measures the free space under a folder, raises alarms about it, and runs the user's hook when it becomes low."""
+    """Measures the free space under a folder, raises alarms about it, and runs the user's hook when the space becomes
+    low.
+    """
 
     def __init__(self, runs: Path, alarms: AlarmList, notify: Callable[[str, str], None]) -> None:
-        """Start the first measurement and wait a little for it. ``notify`` takes an event and its text."""
+        """Start the first measurement and wait briefly for it. ``notify`` is called with an event and its text."""
         self._runs = runs
         self._alarms = alarms
         self._notify = notify
@@ -35,7 +37,8 @@ class DiskWatch:
         self._room.wait(FIRST_S)
 
     def view(self, now_s: float, needed: int) -> DiskView:
-        """Return the present state, and set its alarms; ``now_s``: rig time, ``needed``: bytes that the run will take.
+        """Return the present state, and set its alarms. ``now_s``: rig time; ``needed``: bytes that the run will
+        take.
         """
         if clock.monotonic() >= self._due_s:
             self._due_s = clock.monotonic() + EVERY_S
@@ -55,7 +58,7 @@ class DiskWatch:
 
 
 def disk_check(disk: DiskView) -> Check:
-    """Return whether there is room to record a run."""
+    """Return the check whether there is room to record a run."""
     if disk.free is None:
         return Check("disk space", None, "the disk does not report its free space")
     return Check("disk space", not disk.low, f"{disk.free / 1e9:.1f} GB free")

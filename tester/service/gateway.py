@@ -1,9 +1,9 @@
 """The gateway: the WebSocket side of the service. It forwards messages between clients and owner and decides who
 controls.
 
-It runs in a process of its own (docs/decisions/0021), so that a slow, stalled or hostile client costs the scan nothing.
-It keeps everything a new client needs - newest state, plan, events, ten minutes of trend - as JSON, of which it reads
-only the mode.
+It runs in a process of its own (docs/decisions/0021), so that a slow, stalled or hostile client does not delay the
+scan. It keeps what a new client needs (newest state, plan, events, ten minutes of trend) as JSON, and reads only the
+mode in it.
 """
 
 from __future__ import annotations
@@ -55,34 +55,34 @@ from tester.service.queries import Queries, QueryError
 from tester.service.service_link import GatewayEnd, Order
 
 EVENTS_AT_FIRST = 200
-"""Events in the ``hello`` to a client that has seen none."""
+"""Number of events in the ``hello`` to a client that has seen none."""
 FELL_BEHIND = 4001
-"""Close code for a client that does not read its events."""
+"""Close code for a client that does not read its events fast enough."""
 JOIN_WITHIN_S = 10.0
 """The gateway closes a connection without a ``join`` after this time, s."""
 QUESTIONS = 4
-"""Questions of one client that may run or wait at the same time."""
+"""Greatest number of questions of one client that may run or wait at the same time."""
 FULL = 1013
 """Close code when the service has no place left (try again later)."""
 LAST_WORDS, LAST_WORDS_S = 8, 1.0
-"""The gateway reads this many more messages, for this long (s), from a client that it turns away: STOP may be among
-them.
+"""Number of messages that the gateway still reads, and for how long (s), from a client that it rejects: STOP may be
+among them.
 """
 STRANGER = 0
 """Number of a client that has not joined."""
 NOT_JOINED = "a client that has not joined"
 """Name in the record of a client that has not joined."""
 GREETED_WITHIN_S = 30.0
-"""The owner sends its first state within this time, s."""
+"""Time within which the owner must send its first state, s."""
 
 
 class Gateway:
-    """State that all connections share."""
+    """The state that all connections share."""
 
     def __init__(
         self, tell: Callable[[bytes], None], service: str, software: str, queries: Queries, hook: Hook
     ) -> None:
-        """``tell`` sends a line to the owner; ``service`` identifies this life of the service."""
+        """``tell`` sends a line to the owner; ``service`` identifies this instance of the service."""
         self.owner = GatewayEnd(tell)
         self.strangers = Strangers()
         self.service = service
@@ -103,7 +103,7 @@ class Gateway:
     # -- from the owner ---------------------------------------------------------------------------------------
 
     def take(self, line: bytes) -> None:
-        """Take one line from the owner and forward it to the clients concerned."""
+        """Receive one line from the owner and forward it to the clients concerned."""
         kind, rest = line[:1], line[1:]
         if kind == b"s":
             self._state, _, row = rest.partition(b"\t")
@@ -143,7 +143,7 @@ class Gateway:
                     guest.outbox.newest("frames", rest)
 
     def _take_machine(self, machine: bytes) -> None:
-        """Take the tables of a kind of rig. A change drops the trend, whose columns belong to the old kind."""
+        """Store the tables of a kind of rig. If they change, drop the trend, whose columns belong to the old kind."""
         if machine == self._machine:
             return
         self._machine = machine
@@ -152,7 +152,7 @@ class Gateway:
             self._reply(guest, b'{"machine":' + machine + b',"type":"machine"}')
 
     def farewell(self) -> None:
-        """Send every client a ``goodbye``: the owner has ended, or, without its own goodbye, has died."""
+        """Send every client a ``goodbye``: the owner has ended or, if it sent no goodbye itself, has died."""
         last = Goodbye("the service has ended", ended=True) if self._ended else Goodbye("the service has died")
         for guest in self.guests.values():
             guest.outbox.reply(encode(last))
@@ -165,7 +165,7 @@ class Gateway:
     # -- a connection -----------------------------------------------------------------------------------------
 
     async def serve(self, connection: ServerConnection) -> None:
-        """Serve one client until it or the service ends."""
+        """Serve one client until the client or the service ends."""
         raw = cast("socket.socket | None", connection.transport.get_extra_info("socket"))
         peer = peer_text(raw) if raw is not None else "peer not known"
         try:
@@ -188,7 +188,7 @@ class Gateway:
                     await asyncio.wait({sending}, timeout=wait_s)  # read nothing more from this client meanwhile
                 self._obey(guest, text, gone=sending.done())
         except ConnectionClosed:
-            pass  # a client may disappear: that is no error of the service
+            pass  # a client may disconnect at any time: that is not an error of the service
         finally:
             sending.cancel()
             self.guests.leave(guest)
@@ -208,7 +208,7 @@ class Gateway:
         return message
 
     async def _turn_away(self, connection: ServerConnection, peer: str, reason: str, code: int = 1008) -> None:
-        """Close a client's connection with a reason, after a last chance to send STOP."""
+        """Close a client's connection with a reason; before that, read a few messages in case one is STOP."""
         with suppress(ConnectionClosed):
             await connection.send(encode(Goodbye(reason)), text=True)
         with suppress(ConnectionClosed, TimeoutError):
@@ -219,7 +219,7 @@ class Gateway:
             await connection.close(code, reason[:100])
 
     def _stop_of_stranger(self, text: str | bytes, peer: str) -> bool:
-        """Forward a STOP from a client that has not joined; return whether the message is a STOP."""
+        """Forward a STOP from a client that has not joined; return whether the message was a STOP."""
         stop = stop_in(text)
         if stop is None or not isinstance(stop.action, Stop):
             return False
@@ -250,7 +250,7 @@ class Gateway:
         )
 
     async def _send(self, guest: Guest) -> None:
-        """Send pending messages, the most urgent first; wait while the client does not read."""
+        """Send pending messages, the most urgent first, and wait while the client does not read."""
         try:
             while True:
                 await guest.connection.send(await guest.outbox.next(), text=True)
@@ -258,7 +258,9 @@ class Gateway:
             return
 
     async def _drop(self, guest: Guest) -> None:
-        """Disconnect a client that does not keep up. Events are never left out, so there is no gentler way."""
+        """Disconnect a client that does not keep up. Events are never left out, so the gateway cannot skip some
+        instead.
+        """
         await guest.connection.close(FELL_BEHIND, f"{guest.outbox.behind} messages behind: come back with since")
 
     def _reply(self, guest: Guest, message: bytes) -> None:
@@ -271,18 +273,18 @@ class Gateway:
         self._reply(guest, encode(Refused(number, refusal) if refusal else Accepted(number)))
 
     def _keep(self, guest: Guest) -> None:
-        """Disconnect a client that does not read its messages; keep any other."""
+        """Disconnect a client that does not read its messages; do nothing for any other client."""
         if guest.outbox.behind and not guest.leaving:
             guest.leaving = asyncio.create_task(self._drop(guest))
 
     # -- commands ---------------------------------------------------------------------------------------------
 
     def _obey(self, guest: Guest, text: str | bytes, *, gone: bool) -> None:
-        """Carry out a message. From a client that has disconnected (``gone``), carry out STOP only."""
+        """Carry out a message. If the client has disconnected (``gone``), carry out only STOP."""
         try:
             message = to_server(text)
         except BadMessageError as error:
-            stop = stop_in(text)  # STOP counts, even in an otherwise invalid message
+            stop = stop_in(text)  # STOP counts, even in a message that is otherwise invalid
             if stop is None:
                 self._answer(guest, id_in(text), str(error))
                 return
@@ -308,7 +310,7 @@ class Gateway:
             self._order(guest, message.id, action)
 
     def _order(self, guest: Guest, number: int, action: RigAction) -> None:
-        """Forward a command to the rig's owner if this client may give it. Every client may send STOP."""
+        """Forward a command to the rig's owner if this client may send it. Every client may send STOP."""
         if not isinstance(action, Stop) and (refusal := self.guests.refusal(guest)):
             self._answer(guest, number, refusal)
             return
@@ -321,7 +323,7 @@ class Gateway:
             self._answer(guest, number, "too many commands at once: wait for their answers")
 
     def _ask(self, guest: Guest, number: int, question: Query) -> None:
-        """Start answering a question, unless the client has too many already."""
+        """Start answering a question, unless too many questions of this client are open."""
         if guest.questions >= QUESTIONS:
             self._answer(guest, number, f"{QUESTIONS} questions are being worked out already: wait for their answers")
             return

@@ -1,6 +1,7 @@
 """The owner's side of the link to clients: the gateway process, numbered events, states. It never waits.
 
-A gateway that dies or hangs is replaced and gets events, trend and plan again; the run is not affected.
+A gateway that dies or hangs is replaced, and the new one receives events, trend and plan again; the run is not
+affected.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from tester.service.stop_lane import StopLane
 AGAIN_S = 1.0
 """Shortest time between two starts of a gateway, s."""
 END_S = 5.0
-"""Time for a gateway to end before it is killed, s."""
+"""Time that a gateway has to end before it is killed, s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,7 @@ class GatewayLink:
     """Time of the controller's newest sign of life (tester.base.clock.monotonic)."""
     sequence: int = 0
     lane: StopLane = field(default_factory=StopLane)
-    """STOP's own lane, past the gateway."""
+    """The separate connection for STOP, which bypasses the gateway."""
     _end: OwnerEnd | None = None
     _process: subprocess.Popen[bytes] | None = None
     _events: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=EVENTS_KEPT))
@@ -100,7 +101,7 @@ class GatewayLink:
         self._send(line)
 
     def state(self, view: StateView, row: tuple[float | None, ...]) -> None:
-        """Send the state; it replaces a state still waiting."""
+        """Send the state; it replaces an earlier state that is still waiting."""
         encoded = to_json(row, inf_nan_mode="null")
         self._rows.append(encoded)
         if self._end is not None:
@@ -110,8 +111,8 @@ class GatewayLink:
                 self._lose(lost)
 
     def machine(self, machine: MachineView) -> None:
-        """Send the tables of the kind of rig, before its first state. Another kind's trend ends here: its columns
-        differ.
+        """Send the tables of the kind of rig, before its first state. If the kind has changed, drop the trend: the
+        columns differ.
         """
         line = b"m" + to_json(machine)
         if line != self._machine:
@@ -129,11 +130,11 @@ class GatewayLink:
         self._send(b"f" + encode(frames))
 
     def accept(self, order: Order, result: JsonValue = None) -> None:
-        """Answer an order: accepted."""
+        """Answer that an order is accepted."""
         self._send(b"a%d " % order.client + encode(Accepted(order.id, result)))
 
     def refuse(self, order: Order, reason: str) -> None:
-        """Answer an order: refused, with the reason."""
+        """Answer that an order is refused, with the reason."""
         self._send(b"a%d " % order.client + encode(Refused(order.id, reason)))
 
     def notify(self, event: str, text: str, run: str, folder: str) -> None:
@@ -143,7 +144,7 @@ class GatewayLink:
     # -- receiving ----------------------------------------------------------------------------------------------
 
     def receive(self) -> list[Order | Presence]:
-        """Return a bounded number of clients' messages; restart a gateway that is gone."""
+        """Return clients' messages, a limited number at a time; restart a gateway that is gone."""
         self.lane.look()
         if self._end is None:
             self._revive()
@@ -172,7 +173,7 @@ class GatewayLink:
     # -- the gateway ------------------------------------------------------------------------------------------
 
     def open(self) -> None:
-        """Open the lane for STOP, then start the gateway. Raises OSError."""
+        """Open the connection for STOP, then start the gateway. Raises OSError."""
         self.lane.open(self.config.address)
         self._open_gateway()
 
@@ -181,7 +182,7 @@ class GatewayLink:
         self.adopt(OwnerEnd(ours))
 
     def adopt(self, end: OwnerEnd) -> None:
-        """Use ``end`` from now on, and send the gateway behind it everything it needs."""
+        """Use ``end`` from now on, and send everything that its gateway needs."""
         address = self.config.address
         self._end = end
         tcp = isinstance(address, TcpAddress)
@@ -200,7 +201,7 @@ class GatewayLink:
         self._send(self._plan)
 
     def close(self) -> None:
-        """End the gateway, which sends a goodbye to every client. STOP works until then."""
+        """End the gateway, which sends a goodbye to every client. STOP works until the gateway has ended."""
         self._send(b"b")
         if self._end is not None:
             self._end.drain(END_S)
@@ -228,7 +229,7 @@ class GatewayLink:
             self._lose(lost)
 
     def _lose(self, lost: LinkLost) -> None:
-        """Give up a gateway; the next ``receive`` starts another."""
+        """Abandon a gateway; the next ``receive`` starts another."""
         if self._end is not None:
             self._end.close()
         self._end = None

@@ -1,4 +1,6 @@
-"""The gateway's process, `python -m tester.service.gateway_process LINK`: the link's first line holds its settings."""
+"""The gateway's process, `python -m tester.service.gateway_process LINK`. The first line from the link holds its
+settings.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +22,14 @@ from tester.service.queries import Queries
 from tester.service.service_link import MOST_QUEUED
 
 NICE = 5
-"""Lower priority than the ticking process and STOP's door: busy clients may keep the gateway busy."""
+"""Priority below that of the ticking process and of STOP's door, because many clients may keep the gateway busy."""
 
 
 @dataclass(frozen=True, slots=True)
 class GatewaySettings:
-    """The owner's settings for its gateway. ``path``: a Unix socket, or with ``token`` the card of a TCP service."""
+    """The owner's settings for its gateway. ``path``: a Unix socket or, if there is a ``token``, the card of a TCP
+    service.
+    """
 
     service: str
     software: str
@@ -56,7 +60,7 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
     async with listening(gateway, address) as listens:
         if isinstance(listens, TcpAddress):
             write_card(listens, path)
-        with suppress(ConnectionError):  # an owner that dies with unread input resets the link
+        with suppress(ConnectionError):  # an owner that dies with unread input resets the connection
             while line := await reader.readline():
                 gateway.take(line[:-1])
         gateway.farewell()
@@ -66,7 +70,7 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
 
 
 async def serve_link(link: socket.socket) -> None:
-    """Serve clients for the owner at the other end of ``link``, until it ends."""
+    """Serve clients for the owner at the other end of ``link``, until the owner ends."""
     reader, writer = await asyncio.open_connection(sock=link, limit=2 * MOST_QUEUED)
     settings = SETTINGS.validate_json(await reader.readline())
     with suppress(ConnectionError):

@@ -14,9 +14,9 @@ from tester.service.outbox import Outbox
 from tester.service.service_link import GatewayEnd, Presence
 
 AT_REST = frozenset({"OFFLINE", "INTERRUPTED"})
-"""Modes without a run and without manual mode."""
+"""Modes in which there is no run and no manual mode."""
 _MODE = re.compile(rb'\{"mode":"([^"]*)"')
-"""Start of an encoded state."""
+"""Pattern of the start of an encoded state."""
 
 
 @dataclass(slots=True, eq=False)
@@ -27,29 +27,29 @@ class Guest:
     number: int
     name: str
     peer: str
-    """Its user or address, as the operating system reports it."""
+    """The client's user or address, as the operating system reports it."""
     asked: bool = False
-    """It asked for control in its ``join``."""
+    """Whether the client requested control in its ``join``."""
     outbox: Outbox = field(default_factory=Outbox)
     frames: bool = False
     leaving: asyncio.Task[None] | None = None
-    """Closes the connection of a client that fell behind."""
+    """The task that closes the connection of a client that fell behind."""
     bucket: Bucket = field(default_factory=Bucket)
     questions: int = 0
-    """How many of its questions are being answered."""
+    """Number of the client's questions that are being answered."""
 
 
 class Guests(dict[int, Guest]):
-    """Clients by number. One of them, the controller, may give every command; the owner learns of each change."""
+    """The clients by number. One of them, the controller, may send every command; the owner receives each change."""
 
     def __init__(self, owner: GatewayEnd) -> None:
         """Begin without clients."""
         super().__init__()
         self.controller = 0
-        """Number of the client that has control, 0 for none."""
+        """Number of the client that has control; 0 if none has."""
         self._owner = owner
         self._lender = 0
-        """The client that had control before another borrowed it on an idle rig; it gets control back."""
+        """Number of the client that had control before another borrowed it on an idle rig; control returns to it."""
         self._mode = ""
         """The rig's mode in the newest state, "" while unknown."""
         self._signs = 0
@@ -60,12 +60,12 @@ class Guests(dict[int, Guest]):
         return self.get(self.controller)
 
     def take_state(self, state: bytes) -> None:
-        """Read the rig's mode in an encoded state."""
+        """Read the rig's mode from an encoded state."""
         match = _MODE.match(state)
         self._mode = match.group(1).decode() if match is not None else ""
 
     def forget_mode(self) -> None:
-        """Note that an order may change the mode: it is unknown until the next state."""
+        """Forget the mode, which an order may change: it is unknown until the next state."""
         self._mode = ""
 
     def join(self, guest: Guest) -> None:
@@ -74,7 +74,7 @@ class Guests(dict[int, Guest]):
         self.tell()
 
     def leave(self, guest: Guest) -> None:
-        """Remove a client; what it borrowed goes back."""
+        """Remove a client; control that it borrowed returns to the lender."""
         del self[guest.number]
         if self.controller == guest.number:
             self.controller = self._lender if self._lender in self else 0
@@ -82,10 +82,10 @@ class Guests(dict[int, Guest]):
         self.tell()
 
     def refusal(self, guest: Guest) -> str:
-        """Return why a client may not command the rig, "" if it may.
+        """Return why a client may not command the rig; "" if it may.
 
-        A client that asked for control in its ``join`` borrows it while it stays connected, but only on an idle rig (no
-        run, no manual mode), where a command cannot disturb the present controller.
+        A client that requested control in its ``join`` may borrow it while connected, but only on an idle rig (no run,
+        no manual mode), where a command cannot disturb the present controller.
         """
         if self.controller == guest.number:
             return ""
@@ -111,13 +111,13 @@ class Guests(dict[int, Guest]):
         return ""
 
     def sign(self, guest: Guest) -> None:
-        """Forward a sign of life from the controller; ignore those of other clients."""
+        """Forward the controller's sign of life to the owner; ignore those of other clients."""
         if self.controller == guest.number:
             self._signs += 1
             self.tell()
 
     def tell(self) -> None:
-        """Send the owner who is connected, and who controls."""
+        """Report to the owner which clients are connected and which has control."""
         holder = self.holder
         frames = any(guest.frames for guest in self.values())
         name, peer = (holder.name, holder.peer) if holder is not None else ("", "")

@@ -1,7 +1,7 @@
 """The notify hook: the user's command, run when a person should look at the rig. It never blocks anything.
 
-It gets one JSON object on its standard input, and the same as ``TESTER_EVENT``, ``TESTER_TEXT``, ``TESTER_RUN``,
-``TESTER_FOLDER`` in its environment. Events: trip, hold, prompt, finished, disk.
+The command receives one JSON object on its standard input, and the same values as ``TESTER_EVENT``, ``TESTER_TEXT``,
+``TESTER_RUN``, ``TESTER_FOLDER`` in its environment. Events: trip, hold, prompt, finished, disk.
 """
 
 from __future__ import annotations
@@ -18,14 +18,16 @@ from pydantic_core import from_json
 from tester.base.trouble import in_words
 
 WITHIN_S = 30.0
-"""A command that takes longer is killed, s [A]."""
+"""Time after which the command is killed, s [A]."""
 AT_ONCE = 4
-"""Most commands at a time; further ones are skipped: a hook that hangs must not pile up processes [A]."""
+"""Greatest number of commands at a time; further ones are skipped, so that a hook that hangs cannot accumulate
+processes [A].
+"""
 SHOWN = {"event", "text", "run", "folder"}
 
 
 class Hook:
-    """Runs the command. ``command``: parsed as a shell would, but run without a shell; "" = none."""
+    """Runs the command. ``command``: split as a shell would, but run without a shell; "" = none."""
 
     def __init__(self, command: str) -> None:
         """Run nothing yet."""
@@ -33,7 +35,7 @@ class Hook:
         self.running = 0
 
     async def notify(self, note: bytes) -> None:
-        """Run the command, if there is one, with a note (a JSON object); report its failure on standard error."""
+        """Run the command, if there is one, with a note (a JSON object); report a failure on standard error."""
         if not self.arguments or self.running >= AT_ONCE:
             return
         self.running += 1

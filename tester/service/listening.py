@@ -20,22 +20,22 @@ from tester.service.gateway import Gateway
 from tester.service.manners import sparse_logger
 
 BACKLOG_BYTES = 65_536
-"""A client that leaves more than this unread waits for its next message, bytes."""
+"""Unread bytes of a client above which the server stops receiving more from it."""
 LOG = "tester.gateway"
 CLOSE_S = 2.0
-"""Time for a client to say goodbye, s."""
+"""Time for a client to complete the closing handshake, s."""
 
 
 class Door:
     """Decides who may connect, before any message is read."""
 
     def __init__(self, uid: int | None, token: str) -> None:
-        """``uid``: the only user on a Unix socket; ``token``: the token required on TCP."""
+        """``uid``: the only permitted user on a Unix socket; ``token``: the token required on TCP."""
         self.uid = uid
         self.token = token
 
     def __call__(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Return None to let the client in."""
+        """Return None to admit the client, else the response that rejects it."""
         if self.token:
             shown = request.headers.get("Authorization", "")
             if not hmac.compare_digest(shown.encode(), f"Bearer {self.token}".encode()):
@@ -53,9 +53,9 @@ class Door:
 
 @asynccontextmanager
 async def listening(gateway: Gateway, address: Address, uid: int | None = None) -> AsyncGenerator[Address]:
-    """Serve clients at an address until the block ends; yields the address with its port.
+    """Serve clients at an address until the block ends; yield the address with its port.
 
-    ``uid``: the user allowed on a Unix socket, by default the user of this process.
+    ``uid``: the permitted user on a Unix socket, by default the user of this process.
     """
     if isinstance(address, UnixAddress):
         unlink_socket(address.path)
@@ -76,7 +76,7 @@ async def listening(gateway: Gateway, address: Address, uid: int | None = None) 
 
 
 def _settings(gateway: Gateway) -> dict[str, Any]:
-    """Return the settings of either server."""
+    """Return the settings common to both kinds of server."""
     return {
         "origins": [None], "compression": None, "max_size": MAX_MESSAGE, "write_limit": BACKLOG_BYTES,
         "close_timeout": CLOSE_S, "server_header": None, "create_connection": _counted(gateway),
@@ -85,10 +85,10 @@ def _settings(gateway: Gateway) -> dict[str, Any]:
 
 
 def _counted(gateway: Gateway) -> type[ServerConnection]:
-    """Return a connection class that reports each connection to the gateway from its first byte on."""
+    """Return a connection class that reports each connection to the gateway as soon as it opens."""
 
     class CountedConnection(ServerConnection):
-        """A connection that counts as a stranger until it joins, so that their number is bounded."""
+        """A connection that counts as not joined until it joins, so that the number of these is limited."""
 
         def connection_made(self, transport: asyncio.BaseTransport) -> None:
             gateway.strangers.came(self, cast("asyncio.Transport", transport))
@@ -102,5 +102,5 @@ def _counted(gateway: Gateway) -> type[ServerConnection]:
 
 
 def _port(server: Server) -> int:
-    """Return the port that the system gave."""
+    """Return the port that the system assigned."""
     return int(next(iter(server.sockets)).getsockname()[1])

@@ -1,4 +1,4 @@
-"""Limits for the gateway's clients: their rate of messages, their number, their lines in the log."""
+"""Limits for the gateway's clients: message rate, number of clients, lines in the log."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from websockets.asyncio.server import ServerConnection
 from tester.base import clock
 
 MOST_CLIENTS = 32
-"""Most clients that have joined."""
+"""Greatest number of clients that have joined."""
 MOST_STRANGERS = 64
-"""Most connections that have not joined yet; beyond that, the oldest is closed."""
+"""Greatest number of connections that have not joined; above it, the oldest is closed."""
 MESSAGES_PER_S = 50.0
-"""Lasting rate of a client's messages [A]: a person with a key held down makes 30."""
+"""Sustained rate of a client's messages [A]: a person who holds a key down makes 30."""
 MESSAGES_AT_ONCE = 100.0
-"""Most messages in a burst: a screen that opens asks for every recipe's check."""
+"""Greatest number of messages in a burst: a screen that opens requests every recipe's check."""
 BYTES_PER_MESSAGE = 8192
-"""A longer message counts as several."""
+"""Size that counts as one message; a longer message counts as several."""
 LINES_PER_MINUTE = 10
-"""Most lines in the log for one kind of trouble; further ones are counted."""
+"""Greatest number of log lines for one kind of trouble; further lines are counted."""
 
 
 class Bucket:
-    """A client's allowance of messages. It refills with time; a client that has spent it waits."""
+    """A client's allowance of messages. It refills with time; a client that has used it up must wait."""
 
     def __init__(self, now: Callable[[], float] = clock.monotonic) -> None:
-        """Begin full. ``now`` returns seconds."""
+        """Begin with a full allowance. ``now`` returns seconds."""
         self._now = now
         self._left = MESSAGES_AT_ONCE
         self._at_s = now()
@@ -51,7 +51,7 @@ class Strangers:
         self._there: dict[ServerConnection, asyncio.Transport] = {}
 
     def __len__(self) -> int:
-        """Return how many there are."""
+        """Return the number of connections."""
         return len(self._there)
 
     def came(self, connection: ServerConnection, transport: asyncio.Transport) -> None:
@@ -67,7 +67,7 @@ class Strangers:
 
 
 class SparseLog(logging.Handler):
-    """Writes one line for each error, without its trace, and a limited number a minute."""
+    """A log handler that writes one line for each error, without its trace, and a limited number of lines a minute."""
 
     def __init__(
         self, write: Callable[[str], object] | None = None, now: Callable[[], float] = clock.monotonic
@@ -80,7 +80,7 @@ class SparseLog(logging.Handler):
         self._lines = self._left_out = 0
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write the record, or count it."""
+        """Write the record, or only count it."""
         now = self._now()
         if now - self._since_s >= 60.0:
             if self._left_out:
@@ -96,7 +96,7 @@ class SparseLog(logging.Handler):
 
 
 def sparse_logger(name: str) -> logging.Logger:
-    """Return a logger that writes sparsely, and nowhere else."""
+    """Return a logger that writes only through a ``SparseLog``."""
     logger = logging.getLogger(name)
     logger.handlers[:] = [SparseLog()]
     logger.propagate = False

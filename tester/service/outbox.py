@@ -6,9 +6,9 @@ import asyncio
 from collections import deque
 
 MOST_BEHIND = 1000
-"""Most events waiting for a client; one more disconnects it. A run makes some hundred an hour."""
+"""Greatest number of events waiting for a client; one more disconnects it. A run makes some hundred an hour."""
 MOST_REPLIES = 128
-"""Most answers waiting for a client; one more disconnects it, for it does not read."""
+"""Greatest number of answers waiting for a client; one more disconnects it, because it does not read."""
 
 
 class Outbox:
@@ -21,14 +21,14 @@ class Outbox:
         self._newest: dict[str, bytes] = {}
         self._something = asyncio.Event()
         self.behind = 0
-        """Number of waiting events or answers when there were too many; 0 while the client keeps up."""
+        """Number of waiting events or answers when the limit was exceeded; 0 while the client keeps up."""
 
     def __len__(self) -> int:
-        """Return how many messages wait."""
+        """Return the number of waiting messages."""
         return len(self._replies) + len(self._events) + len(self._newest)
 
     def reply(self, message: bytes) -> None:
-        """Queue an answer; a client with too many unread answers gets no more."""
+        """Queue an answer; drop it if too many answers wait."""
         if len(self._replies) >= MOST_REPLIES:
             self.behind = len(self._replies) + 1
         else:
@@ -36,7 +36,7 @@ class Outbox:
         self._something.set()
 
     def event(self, message: bytes) -> None:
-        """Queue an event; a client with too many unread events gets no more."""
+        """Queue an event; drop it if too many events wait."""
         if len(self._events) >= MOST_BEHIND:
             self.behind = len(self._events) + 1
         else:

@@ -1,8 +1,8 @@
-"""Plans a recipe in a process of its own: the owner keeps serving its clients, and a STOP ends the planning.
+"""Plans a recipe in a process of its own, so that the owner keeps serving its clients and STOP can end the planning.
 
-``python -m tester.service.planning LINK``: the link's first line is a ``Task``. The answer is a series of pickles from
-one pickler, each preceded by its length: the plan's steps in small pieces, then the object that refers to them. So no
-piece keeps the owner for long, however many conditions there are.
+``python -m tester.service.planning LINK``: the first line from the link is a ``Task``. The answer is a series of
+pickles from one pickler, each preceded by its length: the plan's steps in small pieces, then the object that refers to
+them. Reading a piece therefore never occupies the owner for long, however many conditions there are.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from tester.run.preconditions import Prepared, prepared
 from tester.service.child_process import link_to_owner, spawn
 
 STEPS_AT_ONCE = 200
-"""Steps in a piece: some milliseconds of the owner's time."""
+"""Number of steps in a piece, which takes some milliseconds of the owner's time."""
 LOOK_S = 0.02
-"""Period at which the owner serves its clients, s, as between two ticks."""
+"""Period at which the owner serves its clients during planning, s, as between two ticks."""
 NICE = 5
 """Lower priority: other rigs on this machine come first."""
 LENGTH = struct.Struct("<I")
@@ -49,7 +49,7 @@ TASK: TypeAdapter[Task] = TypeAdapter(Task)
 def planned(task: Task, meanwhile: Callable[[], str]) -> Prepared:
     """Return a recipe planned for a rig. Raises CannotStartError if the recipe or rig is wrong.
 
-    ``meanwhile`` is called every ``LOOK_S``; it returns why planning must end, or "".
+    ``meanwhile`` is called every ``LOOK_S`` and returns why planning must end, "" if it may continue.
     """
     process, link = spawn("tester.service.planning", ())
     try:
@@ -62,7 +62,7 @@ def planned(task: Task, meanwhile: Callable[[], str]) -> Prepared:
 
 
 class _collector_off:  # noqa: N801 - reads as a statement
-    """Turns the garbage collector off: planning makes millions of objects and drops none, so a collection would only
+    """Turns the garbage collector off. Planning makes millions of objects and drops none, so a collection would only
     delay STOP, by up to a second.
     """
 
@@ -104,7 +104,7 @@ def _received(link: socket.socket, meanwhile: Callable[[], str]) -> Prepared:
 
 
 def _piece(received: bytearray) -> bytes | None:
-    """Take the next pickle from the received bytes; return None while it is incomplete."""
+    """Remove the next pickle from the received bytes and return it; None while it is incomplete."""
     if len(received) < LENGTH.size:
         return None
     (length,) = LENGTH.unpack_from(received)
@@ -124,7 +124,7 @@ class _Pieces:
         self._piece = io.BytesIO()
 
     def feed(self, piece: bytes) -> None:
-        """Continue with the next piece."""
+        """Set the piece to be read next."""
         self._piece = io.BytesIO(piece)
 
     def read(self, count: int = -1, /) -> bytes:

@@ -1,7 +1,8 @@
-"""The pre-flight list: the checks before motion begins, as far as they need no connection to the rig.
+"""The pre-flight list: the checks before motion begins that need no connection to the rig.
 
-The rig's own checks (guard, safety chain, mounted specimen) are added while it is connected (``RunWatch.preflight``);
-these are shown before a drive is armed. None of them prevents a start: the session, the arming and the interlocks do.
+While the rig is connected, its own checks (guard, safety chain, mounted specimen) are added (``RunWatch.preflight``).
+The list is shown before a drive is armed. No check in it prevents a start: the session, the arming and the interlocks
+do.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ from tester.store.run_folders import RunStatus, run_folders
 from tester.store.run_reader import RunReader
 
 SOON = timedelta(days=30)
-"""A certificate that ends within this time is shown with its date [A]: a laboratory wants weeks for a calibration."""
+"""A certificate that expires within this time is shown with its date [A]: a laboratory needs weeks for a
+calibration.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +41,9 @@ class Past:
 
 
 def past_of(runs: Path, kind: ServedKind) -> Past | None:
-    """Return what the newest readable run in a folder left, None without any.
+    """Return the outcome of the newest readable run in a folder and what it left on the rig; None if there is no run.
 
-    Runs on rigs of another kind are skipped: nothing of theirs is on this rig.
+    Runs on rigs of another kind are skipped: they left nothing on this rig.
     """
     for folder in reversed(list(run_folders(runs))):
         with suppress(StoreError, OSError, sqlite3.Error), RunReader(folder) as reader:
@@ -52,7 +55,7 @@ def past_of(runs: Path, kind: ServedKind) -> Past | None:
 
 
 NEWEST_RUNS = 50
-"""Number of newest runs searched for one on this rig that mounted something [A]."""
+"""Number of newest runs in which to search for one on this rig that mounted something [A]."""
 
 
 def left_on_rig(runs: Path, rig: Rig, kind: ServedKind) -> Left | None:
@@ -76,10 +79,10 @@ def known_checks(
     now_utc: str,
     history: History | None = None,
 ) -> tuple[Check, ...]:
-    """Return the list without the rig's own part.
+    """Return the list without the checks of the connected rig.
 
     ``latched``: why nothing may start; ``now_utc``: the wall clock; ``history``: what stored runs show about the rig,
-    None before they are read.
+    None until they have been read.
     """
     return (
         disk_check(disk),
@@ -91,13 +94,13 @@ def known_checks(
 
 
 def alarms_check(alarms: Iterable[Alarm]) -> Check:
-    """Return whether alarms are active or unacknowledged."""
+    """Return the check whether alarms are active or unacknowledged."""
     names = [alarm.name for alarm in alarms]
     return Check("alarms", not names, f"{len(names)} in the list: {', '.join(names)}" if names else "none")
 
 
 def last_run_check(past: Past | None, latched: str) -> Check:
-    """Return how the last run ended; a trip is wrong until it is acknowledged."""
+    """Return the check of how the last run ended; a trip fails it until the trip is acknowledged."""
     if past is None:
         return Check("last run", None if not latched else False, latched or "none is stored")
     if past.status == RunStatus.INTERRUPTED:
@@ -109,7 +112,7 @@ def last_run_check(past: Past | None, latched: str) -> Check:
 
 
 def calibration_check(calibration: CalibrationConfig, now_utc: str, *, simulated: bool) -> Check:
-    """Return whether every certificate in the rig file is in date; missing entries are listed."""
+    """Return the check whether every certificate in the rig file is valid; missing entries are listed."""
     if simulated:
         return Check("calibration", True, "simulated sensors need none")
     today = date.fromisoformat(now_utc[:10])

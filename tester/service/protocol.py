@@ -1,9 +1,9 @@
-"""The messages between the service and its clients: JSON objects, one a WebSocket message (docs/protocol.md).
+"""The messages between the service and its clients: JSON objects, one in each WebSocket message (docs/protocol.md).
 
-A client sends ``join`` first and gets ``hello``; from then on the service sends ``snapshot`` (four a second, newest
-wins), ``plan`` (newest wins), ``event`` (numbered, never dropped), ``machine`` where a run is on another kind of rig
-and, to a client that watches them, ``frames``. Each command is answered by ``accepted`` or ``refused``. ``goodbye``
-gives the reason for which the service closes the connection.
+A client sends ``join`` first and receives ``hello``. From then on the service sends ``snapshot`` (four a second, only
+the newest counts), ``plan`` (only the newest counts), ``event`` (numbered, never dropped), ``machine`` when a run uses
+another kind of rig and, to a client that watches them, ``frames``. Each command is answered by ``accepted`` or
+``refused``. ``goodbye`` gives the reason why the service closes the connection.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from tester.service.state_view import PlanView, StateView
 SNAPSHOT_S = 0.25
 """Period of snapshots, s of wall time."""
 TREND_ROWS = 2400
-"""Ten minutes of snapshots."""
+"""Number of rows in the trend: ten minutes of snapshots."""
 EVENTS_KEPT = 2000
 """Number of events kept for clients that reconnect."""
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An event. ``seq`` counts from 1 in one life of the service, without gaps.
+    """An event. ``seq`` counts from 1 in one instance of the service, without gaps.
 
     ``severity``: debug, info, warning, alarm, trip. ``kind``: mode, trip, alarm, step, condition, repeat, prompt,
     command, run, tare, wear, emergency, heat, rest, control ...
@@ -48,10 +48,10 @@ class Event:
 class Hello:
     """The first message: the present state of everything.
 
-    ``service`` identifies this life of the service: ``since`` counts only within it. ``events``: those after ``since``,
-    or the last 200; ``complete`` is False when some of them are no longer kept. ``client``: this client's number;
-    ``control``: it is the controller. ``machine``: the tables of the kind of rig; ``trend``: rows of its columns,
-    oldest first; None is a missing value.
+    ``service`` identifies this instance of the service: ``since`` counts only within it. ``events``: those after
+    ``since``, or the last 200; ``complete`` is False when some of them are no longer kept. ``client``: this client's
+    number; ``control``: whether it is the controller. ``machine``: the tables of the kind of rig; ``trend``: rows of
+    its columns, oldest first; None is a missing value.
     """
 
     version: int
@@ -70,9 +70,9 @@ class Hello:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """The state, four times a second; a slow client gets only the newest.
+    """The state, four times a second; a slow client receives only the newest.
 
-    ``row``: this moment's row of the trend.
+    ``row``: the present row of the trend.
     """
 
     state: StateView
@@ -82,7 +82,7 @@ class Snapshot:
 
 @dataclass(frozen=True, slots=True)
 class MachineMessage:
-    """The tables of another kind of rig, which the run uses. The trend starts again."""
+    """The tables of another kind of rig, which the run uses. The trend begins again."""
 
     machine: MachineView
     type: Literal["machine"] = "machine"
@@ -90,7 +90,7 @@ class MachineMessage:
 
 @dataclass(frozen=True, slots=True)
 class PlanMessage:
-    """The plan, at the start of a run and whenever a step begins. ``plan`` None: there is no plan."""
+    """The plan, at the start of a run and whenever a step begins. ``plan`` is None if there is no plan."""
 
     plan: PlanView | None
     type: Literal["plan"] = "plan"
@@ -98,7 +98,7 @@ class PlanMessage:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One frame on a bus: rig seconds, bus, direction (sent by the PC or not), CAN id or unit, bytes in hex."""
+    """One frame on a bus: rig seconds, bus, direction (whether the PC sent it), CAN id or unit, bytes in hex."""
 
     t_s: float
     bus: str
@@ -109,7 +109,9 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Frames:
-    """Frames since the last such message. ``dropped``: how many more there were; a log for people, not a record."""
+    """Frames since the last message of this kind. ``dropped``: number of frames left out; a log for people, not a
+    record.
+    """
 
     frames: tuple[Frame, ...]
     dropped: int
@@ -118,7 +120,7 @@ class Frames:
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """The service has accepted a command; ``result`` is its result (docs/protocol.md, per command)."""
+    """The service has accepted a command; ``result`` is the command's result (docs/protocol.md)."""
 
     id: int
     result: JsonValue = None
@@ -136,7 +138,7 @@ class Refused:
 
 @dataclass(frozen=True, slots=True)
 class Goodbye:
-    """The last message: why the service closes the connection. ``ended``: the service ended on request, in order."""
+    """The last message: why the service closes the connection. ``ended``: whether the service ended on request."""
 
     reason: str
     ended: bool = False
@@ -167,7 +169,7 @@ def to_server(text: str | bytes) -> Join | Command:
 
 
 def stop_in(text: str | bytes) -> Command | None:
-    """Return the STOP in a message of any version, whatever else it holds; None without one.
+    """Return the STOP in a message of any version, whatever else the message holds; None if there is none.
 
     STOP is never refused: another error in the message is no reason to let a machine run on.
     """
@@ -180,7 +182,7 @@ def stop_in(text: str | bytes) -> Command | None:
 
 
 def id_in(text: str | bytes) -> int:
-    """Return the id of an otherwise invalid command, so that its refusal reaches the sender; 0 without an id."""
+    """Return the id of an otherwise invalid command, so that its refusal reaches the sender; 0 if it has no id."""
     match _json(text):
         case {"id": int(number)}:
             return number
@@ -242,7 +244,7 @@ def schema() -> dict[str, JsonValue]:
 
 
 def _words(error: ValidationError) -> str:
-    """Return the first error of a message and its place in one line, without repeating the message."""
+    """Return the first error of a message and its place in one line, without quoting the message."""
     first = error.errors(include_url=False, include_input=False, include_context=False)[0]
     at = ".".join(str(piece) for piece in first["loc"])
     reason = str(first["msg"]).removeprefix("Value error, ")

@@ -1,6 +1,7 @@
-"""Answers questions that take computing (check, plan, lists) with a short-lived process each, beside the scan.
+"""Answers questions that need computing (check, plan, lists), each in a short-lived process, so that the scan is not
+delayed.
 
-That process is the command of the same name with ``--json``, so a question has one answer everywhere.
+That process is the command of the same name with ``--json``, so that a question has the same answer everywhere.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from tester.base.processes import EXIT_INVALID, tester_command
 from tester.service.commands import CheckRecipe, ListRecipes, ListRuns, Query, ShowPlan
 
 AT_ONCE = 2
-"""Questions answered at the same time; more wait."""
+"""Number of questions answered at the same time; further ones wait."""
 WITHIN_S = 120.0
 """Time limit of an answer, s [A]: a plan of 100,000 conditions takes some seconds."""
 MOST = 32_000_000
@@ -32,7 +33,7 @@ NICE = 10
 
 
 class QueryError(Exception):
-    """A question without an answer; the message gives the reason."""
+    """A question could not be answered; the message gives the reason."""
 
 
 @dataclass(slots=True)
@@ -104,7 +105,7 @@ async def _ask(arguments: list[str]) -> JsonValue:
     except TimeoutError:
         raise QueryError(f"no answer within {WITHIN_S:g} s") from None
     finally:
-        if process.returncode is None:  # timed out, or the client is gone
+        if process.returncode is None:  # timed out, or the client has disconnected
             with suppress(ProcessLookupError):
                 process.kill()
             await process.wait()

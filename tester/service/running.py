@@ -1,4 +1,6 @@
-"""A run in the service: the session of `tester run`, with clients in place of a terminal. Records of manual mode."""
+"""A run in the service: the session of `tester run`, with clients in place of a terminal. Also the records of manual
+mode.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,7 @@ from tester.store.records import RunInfo
 from tester.store.writer import RunWriter
 
 LOOK_S: Final = 0.02
-"""Period at which the owner serves its clients, s, as between two ticks."""
+"""Period at which the owner serves its clients while other work is under way, s, as between two ticks."""
 
 
 def aside(work: Callable[[], Got], look: Callable[[], object]) -> Got:
@@ -54,11 +56,13 @@ def aside(work: Callable[[], Got], look: Callable[[], object]) -> Got:
 Got = TypeVar("Got")
 
 RECENT_S = 1.0
-"""Lateness covers one to two of these periods, s: longer than the period of states, so that no late scan is missed."""
+"""Period of measuring lateness, s. The reported value covers one to two periods, more than the time between states, so
+that no late scan is missed.
+"""
 
 
 class ServiceSession(Session):
-    """A session with its runs attached to the desk. ``begun`` is called once, with the view of the run."""
+    """A session that attaches its runs to the desk. ``begun`` is called once, with the view of the run."""
 
     def __init__(
         self,
@@ -70,7 +74,7 @@ class ServiceSession(Session):
     ) -> None:
         """``on_signal`` is called when the process is asked to end, ``meanwhile`` during planning.
 
-        ``meanwhile`` returns why planning must stop, or "".
+        ``meanwhile`` returns why planning must stop, "" if it may continue.
         """
         super().__init__(options, screen)
         self.desk = screen.desk
@@ -90,7 +94,9 @@ class ServiceSession(Session):
         return plan
 
     def aside(self, work: Callable[[], Got]) -> Got:
-        """Run ``work`` in a thread while serving clients. After a STOP, nothing begins."""
+        """Run ``work`` in a thread while serving clients. Raises CannotStartError if STOP arrives before the run
+        begins.
+        """
         given_up: list[str] = []
 
         def look() -> None:
@@ -104,7 +110,7 @@ class ServiceSession(Session):
         return got
 
     def begun(self, run: Run) -> None:
-        """Attach a part's run to the desk; the first part begins the whole run."""
+        """Attach the run of a part to the desk; the first part also begins the whole run."""
         super().begun(run)
         track = self.track
         assert isinstance(track, PlanTrack)
@@ -118,7 +124,7 @@ class ServiceSession(Session):
         run.stays_latched = True
         self.desk.attach(run, track, self.view)
         self.desk.stop_rest = self._stop_rest
-        self.desk.stop_first()  # a STOP that arrived during preparation
+        self.desk.stop_first()  # carry out a STOP that arrived during preparation
         if first:
             self._tell_begun(self.view)
 
@@ -127,19 +133,19 @@ class ServiceSession(Session):
         self.desk.gateway.lane.end_ticking()
 
     def poll(self, now_s: float, run: Run) -> None:
-        """Update the desk, and let it serve clients."""
+        """Update the desk, which then serves clients."""
         self.desk.tick = self._punctual.look(self.statistics, clock.monotonic())
         self.desk.specimen(run)
         self.desk.poll(now_s)
 
     def _record(self, job: Job, work: Work, begin: Begin) -> int:
-        """Estimate the plan before anything moves, then record as usual."""
+        """Estimate the plan before anything moves, then record the run as usual."""
         expected = self._expected = self._expected or recipe_part(work.rig).estimate(work.plan, work.rig)
         self.desk.needed = round(expected_bytes(work.plan, expected))
         return super()._record(job, work, begin)
 
     def tracked(self, work: Work) -> PlanTrack:
-        """Return the counter of a run's steps, with the words that clients see."""
+        """Return the object that counts a run's steps and describes them for clients."""
         parts = parts_time(work, self._expected)
         return PlanTrack(work.plan.name, parts, served_kind(work.rig), earlier_of(work.point))
 
@@ -150,12 +156,12 @@ class ServiceSession(Session):
     def _on_signal(self, number: int, _frame: FrameType | None) -> None:
         self._tell_signal()
         if self.run_ is not None:
-            self.run_.stays_latched = False  # no client will be there to acknowledge
+            self.run_.stays_latched = False  # no client will be present to acknowledge
         super()._on_signal(number, _frame)
 
 
 def open_record(runs: Path, rig: Rig, operator: str, accept_risk: str = "") -> RunWriter:
-    """Return the journal of one stay in manual mode: a record of its own, without samples, in ``runs/.manual``.
+    """Open the record of one stay in manual mode: a record of its own, without samples, in ``runs/.manual``.
 
     It is not a run: it holds commands, modes, trips and tares, and no list of runs shows it. Raises OSError,
     sqlite3.Error, StoreError.
@@ -178,10 +184,10 @@ class Punctuality:
     _now_s: float = 0.0
     _before_s: float = 0.0
     _turn_s: float = 0.0
-    """When the present second began (tester.base.clock.monotonic)."""
+    """Time at which the present period began (tester.base.clock.monotonic)."""
 
     def look(self, statistics: TickStatistics, wall_s: float) -> TickView:
-        """Return the present view from the ticker's statistics, and reset their worst lateness."""
+        """Return the present view of the ticker's statistics, and reset the worst lateness in them."""
         if wall_s - self._turn_s >= RECENT_S:
             self._before_s = self._now_s if wall_s - self._turn_s < 2.0 * RECENT_S else 0.0
             self._now_s, self._turn_s = 0.0, wall_s
@@ -211,7 +217,7 @@ class RunScreen(ReportScreen):
         self.name = name
 
     def end(self) -> None:
-        """Publish the last state before the tables are written; nothing ticks from now on."""
+        """Publish the last state before the tables are written; no ticks follow."""
         self.desk.show()
         self.desk.gateway.lane.end_ticking()
 
@@ -221,7 +227,7 @@ class RunScreen(ReportScreen):
         self.desk.tell("message", text)
 
     def emit(self, record: dict[str, object]) -> None:
-        """Keep the missing conditions from the record of the end."""
+        """Keep the missing conditions from the record that a session emits at its end."""
         missing = record.get("missing")
         if record.get("event") == "end" and isinstance(missing, list):
             self.missing = [str(name) for name in cast("list[object]", missing)]

@@ -51,17 +51,17 @@ from tester.store.writer import RunWriter
 Got = TypeVar("Got")
 
 RECIPES = ".recipes"
-"""Folder beside the runs for recipes sent as text; a file's name is the hash of its content."""
+"""Folder, in that of the runs, for recipes sent as text; a file's name is the hash of its content."""
 NEWEST_RUNS = 200
-"""Number of newest runs searched for interrupted ones."""
+"""Number of newest runs in which to search for interrupted ones."""
 LOOK_EVERY_S = 10.0
-"""While idle, the service checks the interrupted runs this often, s."""
+"""Period at which the idle service checks the interrupted runs, s."""
 SILENT_S = 1.0
-"""Manual mode ends when its screen gives no sign of life for this long, s."""
+"""Time without a sign of life from its screen after which manual mode ends, s."""
 MANUAL_LAPSE = 1.0
 """Speed of a simulated rig in manual mode: real time."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
-"""Errors that prevent a run from beginning."""
+"""Errors because of which a run does not begin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class Service:
     """Carries out one thing at a time: a run, manual mode, or nothing."""
 
     def __init__(self, options: ServiceOptions, gateway: GatewayLink) -> None:
-        """Read the rig file; raises InvalidSource. Nothing is connected."""
+        """Read the rig file; raises InvalidSource. Connect nothing."""
         self.options = options
         self.rig = load_rig(options.rig, options.overrides, options.accept_risk)
         self.desk = Desk(gateway, self.rig, options.runs)
@@ -91,7 +91,7 @@ class Service:
     # -- the loop ---------------------------------------------------------------------------------------------
 
     def serve(self) -> None:
-        """Serve until the process gets TERM or INT, then bring the rig to a standstill."""
+        """Serve until the process receives TERM or INT, then bring the rig to a standstill."""
         desk = self.desk
         asking = (signal.SIGINT, signal.SIGTERM, QUIT)
         with caught(lambda _number, _frame: self.end(), asking, (HANG_UP, *SUSPENDING)):
@@ -115,20 +115,20 @@ class Service:
         desk.show()
 
     def _look_back(self) -> None:
-        """Read what stored runs left on the rig and show about it."""
+        """Read from stored runs what they left on the rig and what they show about it."""
         runs, rig, kind = self.options.runs, self.rig, self.desk.kind
         self.desk.past = self._aside(lambda: past_of(runs, kind))
         self.desk.history = self._aside(lambda: run_parts(rig).history(runs, rig))
 
     def _look_again(self) -> None:
-        """Drop runs that are no longer interrupted: resumed here, or by a command."""
+        """Remove from the list runs that have since been resumed, by this service or by a command."""
         self._look_due_s = clock.monotonic() + LOOK_EVERY_S
         runs = self.options.runs
         names = self.desk.interrupted
         self.desk.interrupted = self._aside(lambda: tuple(name for name in names if is_interrupted(runs / name)))
 
     def _aside(self, work: Callable[[], Got]) -> Got:
-        """Read the store in a thread while nothing is under way, and keep serving clients."""
+        """Read the store in a thread while no work is under way, and keep serving clients."""
         return aside(work, lambda: self.desk.poll(0.0))
 
     def end(self) -> None:
@@ -138,7 +138,7 @@ class Service:
     # -- what begins ------------------------------------------------------------------------------------------
 
     def _carry_out(self, order: Order) -> None:
-        """Carry out an order from its beginning to its end."""
+        """Carry out an order that begins work, until that work ends."""
         action = order.action
         self.desk.run = None
         if isinstance(action, Arm):
@@ -175,7 +175,7 @@ class Service:
         self._session(order, options, action.yes, "", lambda session: session.resume(folder, action.reason))
 
     def _spooled(self, action: RunRecipe) -> str:
-        """Write a recipe sent as text to a file, where the session can read it and a resumed run finds it unchanged."""
+        """Write a recipe sent as text to a file, where the session reads it and a resumed run finds it unchanged."""
         if not action.text:
             return ""
         digest = sha256(action.text.encode()).hexdigest()[:16]
@@ -187,7 +187,7 @@ class Service:
     def _session(
         self, order: Order, options: SessionOptions, yes: bool, notes: str, work: Callable[[ServiceSession], int]
     ) -> None:
-        """Run a session from its beginning to its tables."""
+        """Run a session to its end, including its tables."""
         desk = self.desk
         view = RunView("", "", "", "", "", options.operator, options.seed, self.rig.simulated, options.lapse, "",
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
@@ -212,7 +212,7 @@ class Service:
         except REFUSED as error:
             problem = in_words(error)
         if not session.view.name:
-            if self.orders.job is order:  # otherwise STOP has refused it already
+            if self.orders.job is order:  # otherwise STOP has already refused it
                 desk.gateway.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
             desk.detach(None)
             return
@@ -223,7 +223,7 @@ class Service:
         desk.ended(replace(known, outcome=status.value, reason=reason, exit=code, missing=missing), outcome)
 
     def _manual(self, order: Order) -> None:
-        """Connect the rig and let the client that armed it move it."""
+        """Connect the rig, and let the client that armed manual mode move it."""
         desk, rig, kind = self.desk, self.rig, self.desk.kind
         view = RunView(NAME, "", "", "", "", order.name, None, rig.simulated, 1.0, clock.utc_now(),
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
@@ -258,7 +258,7 @@ class Service:
                     desk.command(f"arm by {order.by}")
                     with closing(ports), left_safe(run):
                         seconds = self._by_hand(run, hand, world, ports.pace, record)
-                        desk.gateway.lane.end_ticking()  # STOP does not wait for the record
+                        desk.gateway.lane.end_ticking()  # STOP need not wait for the record
                 record.finish(run.outcome.value, run.reason, seconds)
         desk.ended(replace(view, outcome=run.outcome.value, reason=run.reason), run.outcome)
 
@@ -276,7 +276,7 @@ class Service:
             if record.failed:
                 run.request_stop(f"manual mode can no longer be recorded: {record.failed}")
             self.desk.poll(now_s)
-            # After the poll: it reads signs of life that arrived while this process was busy.
+            # Check after the poll, which reads signs of life that arrived while this process was busy.
             if gateway.silent_s > SILENT_S and not hand.finished:
                 self.desk.tell("mode", f"manual mode ends: no sign of its screen for {SILENT_S:g} s", "warning")
                 hand.disarm()
@@ -287,7 +287,7 @@ class Service:
 
 
 def interrupted_runs(runs: Path) -> Iterator[str]:
-    """Yield the names of interrupted runs in a folder: open, without a process at work on them."""
+    """Yield the names of interrupted runs in a folder: runs without an end, at which no process works."""
     folders = sorted(runs.iterdir(), reverse=True)[:NEWEST_RUNS] if runs.is_dir() else []
     for folder in reversed(folders):
         if is_interrupted(folder):

@@ -31,12 +31,14 @@ from tester.service.address import with_peer
 from tester.service.commands import MAX_MESSAGE, RigAction, Stop
 
 MOST_QUEUED = 8_000_000
-"""Most bytes waiting for a gateway that does not read; beyond that it is given up and restarted."""
+"""Greatest number of bytes waiting for a gateway that does not read; above it the gateway is abandoned and
+restarted.
+"""
 READ_AT_ONCE = 65_536
 LINES_AT_ONCE = 8
-"""Most lines that the owner reads between two ticks, so that busy clients cannot delay a scan."""
+"""Greatest number of lines that the owner reads between two ticks, so that busy clients cannot delay a scan."""
 ORDERS_WAIT = 8
-"""Most orders of one client that wait in the gateway."""
+"""Greatest number of orders of one client that wait in the gateway."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,11 +79,11 @@ FROM_GATEWAY: TypeAdapter[FromGateway] = TypeAdapter(FromGateway)
 
 
 class LinkLost(Exception):  # noqa: N818 - an event, as BusLost
-    """The other end is gone, or has stopped reading."""
+    """The other end has gone, or has stopped reading."""
 
 
 class OwnerEnd:
-    """The owner's end: it queues unsent lines, and of unsent states only the newest."""
+    """The owner's end. It queues unsent lines; of the unsent states it keeps only the newest."""
 
     def __init__(self, end: socket.socket) -> None:
         """Take one end of a socket pair."""
@@ -91,12 +93,12 @@ class OwnerEnd:
         self._waiting_bytes = 0
         self._state = b""
         self._sent = 0
-        """Bytes of the first waiting line that are already sent."""
+        """Number of bytes of the first waiting line that are already sent."""
         self._received = b""
         self._lines: deque[bytes] = deque()
 
     def send(self, line: bytes) -> None:
-        """Queue a line that must arrive. Raises LinkLost for a gateway that has stopped reading."""
+        """Queue a line that must arrive. Raises LinkLost if the gateway has stopped reading."""
         self._waiting.append(line + b"\n")
         self._waiting_bytes += len(line) + 1
         if self._waiting_bytes > MOST_QUEUED:
@@ -104,7 +106,7 @@ class OwnerEnd:
         self.flush()
 
     def send_state(self, line: bytes) -> None:
-        """Send a state; it replaces a state still waiting."""
+        """Send a state; it replaces an earlier state that is still waiting."""
         self._state = line + b"\n"
         self.flush()
 
@@ -131,7 +133,7 @@ class OwnerEnd:
             self._sent = 0
 
     def receive(self) -> list[Order | Presence]:
-        """Return a bounded number of the gateway's messages, without waiting. Raises LinkLost."""
+        """Return the gateway's messages, a limited number at a time, without waiting. Raises LinkLost."""
         if len(self._lines) < LINES_AT_ONCE:
             self._read()
         count = min(len(self._lines), LINES_AT_ONCE)
@@ -183,20 +185,21 @@ class OwnerEnd:
 
 
 class GatewayEnd:
-    """The gateway's end: at most ``LINES_AT_ONCE`` lines are unread by the owner, and only a few can wait behind them.
-    """
+    """The gateway's end. At most ``LINES_AT_ONCE`` lines are unread by the owner, and few more can wait here."""
 
     def __init__(self, write: Callable[[bytes], None]) -> None:
         """``write`` sends a line to the owner."""
         self._write = write
         self._may = LINES_AT_ONCE
         self._stops: dict[int, Order] = {}
-        """By client: the newest STOP, or the newest fast one."""
+        """By client number: the newest STOP, or the newest fast STOP."""
         self._presence: Presence | None = None
         self._orders: deque[Order] = deque()
 
     def stop(self, order: Order) -> Order | None:
-        """Forward a STOP before everything else; return the waiting STOP of this client that it replaces, if any."""
+        """Forward a STOP before everything else; return this client's waiting STOP that it replaces, if there is
+        one.
+        """
         before = self._stops.get(order.client)
         if before is not None and _is_fast(before) and not _is_fast(order):
             return order
@@ -205,7 +208,7 @@ class GatewayEnd:
         return before
 
     def order(self, order: Order) -> bool:
-        """Forward an order; return False when too many of this client's orders wait."""
+        """Forward an order; return False if too many of this client's orders wait."""
         if sum(queued.client == order.client for queued in self._orders) >= ORDERS_WAIT:
             return False
         self._orders.append(order)
@@ -213,12 +216,12 @@ class GatewayEnd:
         return True
 
     def presence(self, presence: Presence) -> None:
-        """Send who is connected; it replaces a presence still waiting."""
+        """Send which clients are connected; this replaces an earlier presence that is still waiting."""
         self._presence = presence
         self._flush()
 
     def looked_at(self, count: int) -> None:
-        """Note that the owner has read ``count`` more lines."""
+        """Record that the owner has read ``count`` more lines."""
         self._may += count
         self._flush()
 

@@ -1,4 +1,4 @@
-"""Puts a service together and runs it: lock, address, gateway, loop."""
+"""Assembles a service and runs it: lock, address, gateway, loop."""
 
 from __future__ import annotations
 

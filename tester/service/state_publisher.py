@@ -29,23 +29,23 @@ from tester.service.watch import RunWatch, risk_of
 from tester.store.record_schema import StoreError
 
 UNWATCHED_S = 1.0
-"""Period of states without any client, s: the gateway's trend continues at a rate that costs nothing."""
+"""Period of states while no client is connected, s: the trend continues at a rate that costs almost nothing."""
 SOONEST_S = 0.05
-"""Shortest time between two states, s: clients that send many commands cannot raise the rate."""
+"""Shortest time between two states, s, so that clients cannot raise the rate by sending many commands."""
 NOTIFIED = frozenset({"trip"})
-"""Kinds of events that run the notify hook; hold, prompt, finished and disk come from elsewhere."""
+"""Kinds of events that run the notify hook. Other code reports hold, prompt, finished and disk."""
 
 
 def do_nothing(*_: object) -> None:
-    """Default handler: ignore it."""
+    """Do nothing: the default handler."""
 
 
 @dataclass(slots=True)
 class Desk:
-    """The present state of rig and run. ``obey`` takes every order; ``lost_control`` is called when the controller
+    """The present state of rig and run. ``obey`` receives every order; ``lost_control`` is called when the controller
     changes.
 
-    ``watch`` looks at the run under way.
+    ``watch`` reads the run under way.
     """
 
     gateway: GatewayLink
@@ -56,18 +56,18 @@ class Desk:
     """Called on STOP with the client's name and whether the stop is fast."""
     lost_control: Callable[[], None] = field(default=do_nothing)
     stop_rest: Callable[[bool], None] = field(default=do_nothing)
-    """Called on STOP (fast or not) to stop the parts of the run that have not begun."""
+    """Called on STOP (with whether it is fast) to stop the parts of the run that have not begun."""
     watch: RunWatch | None = None
     hand: ManualExecutor | None = None
     run: RunView | None = None
     tick: TickView = field(default_factory=lambda: TickView(0.0, 0.0, 0))
     latched: str = ""
-    """Why nothing may start before an acknowledgement."""
+    """Why nothing may start before an acknowledgement; "" if starts are not blocked."""
     tripped: str = ""
-    """Name of that trip's alarm."""
+    """Name of the alarm of the trip that blocks starts."""
     interrupted: tuple[str, ...] = ()
     past: Past | None = None
-    """The specimen and outcome that the newest stored run left; read while no run ticks."""
+    """The outcome of the newest stored run and the specimen that it left; read while no run ticks."""
     history: History | None = None
     """What stored runs show about the rig; read at the same time as ``past``."""
     needed: int = 0
@@ -80,7 +80,7 @@ class Desk:
     _mode_since_s: float = 0.0
     _asked: int = 0
     _revision: int = 0
-    """Revision of the list of steps that clients have."""
+    """Revision of the list of steps that was last sent to clients."""
     _controller: int = 0
     _disk: DiskWatch = field(init=False)
     _unknown: tuple[Value, ...] = ()
@@ -118,7 +118,7 @@ class Desk:
             self._show_steps(self.watch)
 
     def specimen(self, run: Run) -> None:
-        """Record which compound is on the rig."""
+        """Store which compound is on the rig."""
         watch, view = self.watch, self.run
         number, compound = watch.panel.mounted() if watch is not None else (0, "")
         if view is not None and number and view.compound != compound:
@@ -126,7 +126,7 @@ class Desk:
             self.run = replace(view, compound=compound, note=note)
 
     def detach(self, view: RunView | None) -> None:
-        """Stop watching the run; ``view`` is its last view."""
+        """Stop watching the run; ``view`` is the last view of it."""
         self.gateway.lane.end_ticking()
         if self.watch is not None:
             self.watch.run.engine.ctx.journal.on_event = None
@@ -152,13 +152,13 @@ class Desk:
     def _latch(self, reason: str, watch: RunWatch) -> None:
         """Block every start until an acknowledgement."""
         watch.watch_trip(self.alarms, self.now_s)
-        if not watch.tripped and not watch.latched:  # the wire is gone, so control never tripped
+        if not watch.tripped and not watch.latched:  # the wire was lost before control could trip
             watch.tripped = "rig lost"
             self.alarms.raise_(Cause(watch.tripped, 1, reason, "the drives stop by their own watchdogs"), self.now_s)
         self.latched, self.tripped = reason, watch.tripped
 
     def latch_again(self) -> None:
-        """Latch a hardware rig after a restart if the store holds an unacknowledged trip."""
+        """After a restart, latch a real rig if the store holds an unacknowledged trip."""
         trips = open_trips(self.runs, self.rig)
         if trips:
             first = trips[0].trip
@@ -167,7 +167,7 @@ class Desk:
             self.alarms.raise_(Cause(first.interlock, 1, f"{first.text}; not acknowledged", consequence), self.now_s)
 
     def unlatch(self, by: str) -> None:
-        """Take an acknowledgement: the next run may begin. It is recorded with the trips it covers."""
+        """Accept an acknowledgement, so that the next run may begin. It is recorded with the trips it covers."""
         if self.latched:
             self.tell("mode", f"acknowledged by {by}")
             self.alarms.clear(self.tripped)
@@ -178,7 +178,7 @@ class Desk:
         self.latched, self.tripped, self.interrupted = "", "", ()
 
     def forward(self, t_s: float, kind: str, text: str, severity: str) -> None:
-        """Forward what the run records to the clients."""
+        """Forward an event that the run records to the clients."""
         if kind == "emergency" and self.watch is not None:
             self.watch.buses.count_emergency(text)
         self.tell(kind, text, severity, t_s)
@@ -190,7 +190,7 @@ class Desk:
         self.gateway.event(kind, text, severity, self.now_s if t_s is None else t_s, self.run.name if self.run else "")
 
     def command(self, text: str, severity: str = "info", kind: str = "command") -> None:
-        """Report a client's command with its sender; while a run is under way, record it as well."""
+        """Report a client's command and its sender; while a run is under way, also record it."""
         if self.watch is None:
             self.tell(kind, text, severity)
         else:
@@ -211,7 +211,7 @@ class Desk:
         for message in self.gateway.receive():
             if isinstance(message, Order):
                 self.obey(message)
-            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # show the change soon
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # show the change without waiting for the period
         self._notice_control()
         wall_s = clock.monotonic()
         if wall_s >= self._due_s:
@@ -222,7 +222,7 @@ class Desk:
             self.show()
 
     def stop_first(self) -> None:
-        """Carry out STOPs from their own lane before everything else."""
+        """Carry out STOPs from their own connection before everything else."""
         for wish in self.gateway.lane.taken():
             self.stop(wish.name, wish.fast)
             self.gateway.lane.answer(wish)
@@ -276,7 +276,7 @@ class Desk:
     # -- the view ---------------------------------------------------------------------------------------------
 
     def view(self) -> StateView:
-        """Return the whole state."""
+        """Return the complete state."""
         watch, gateway, now = self.watch, self.gateway, self.now_s
         mode, text, since_s = self._situation()
         disk, alarms = self._disk.view(now, self.needed), self.alarms.listed()
@@ -314,7 +314,7 @@ class Desk:
         return watch.shown_in(state, lapse)
 
     def _situation(self) -> tuple[str, str, float]:
-        """Return mode, reason, and seconds in this mode; run the hook when a hold begins."""
+        """Return mode, reason, and seconds in this mode. Run the hook when a hold begins."""
         if self.watch is not None:
             mode, text, since_s = self.watch.mode
             if self.hand is not None and mode == "RUN":

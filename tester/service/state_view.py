@@ -1,6 +1,6 @@
 """The state view: everything a screen shows, as plain values. The service sends one object four times a second.
 
-Names contain the unit, or ``unit`` beside a value does. An unknown value is None, never NaN and never an old value:
+A name contains the unit, or the value has a field ``unit``. An unknown value is None, never NaN and never an old value.
 ``age_s`` and ``quality`` show how far to trust a value. Texts come from recipes, people and devices: show them as they
 are, never as markup.
 """
@@ -27,20 +27,21 @@ MODES = (
     "E-STOP",
     "MANUAL",
 )
-"""Values of ``StateView.mode``; a client shows an unknown mode as it is. OFFLINE: no rig is connected, a run connects
-it. INTERRUPTED: the same, and the store holds an interrupted run; shown until its acknowledgement.
+"""Values of ``StateView.mode``; a client shows an unknown mode as it is. OFFLINE: no rig is connected; a run connects
+it. INTERRUPTED: as OFFLINE, and the store holds an interrupted run; shown until this is acknowledged.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class ProgressView:
-    """Where the run is. ``share``: of the whole rig time, 0..1, corrected by the durations measured so far.
+    """Where the run is. ``share``: completed share of the whole rig time, 0..1, corrected by the durations measured so
+    far.
 
-    ``step`` counts through ``PlanView.steps``. ``over`` of the run's ``conditions`` are over, with a value or without,
-    in earlier stretches of a resumed run as well. ``left_s``: whole rig seconds of work to the end, None once a trip or
-    a stop has given the run up; the sum of ``step_left_s``, for the present step, and of the later steps in the plan's
-    list. Neither it nor the share moves in a hold. ``finish_utc``: the wall clock then at the run's speed, "" at full
-    speed.
+    ``step`` counts through ``PlanView.steps``. ``over`` of the run's ``conditions`` are finished, with a value or
+    without, including those of earlier stretches of a resumed run. ``left_s``: whole rig seconds of work to the end;
+    None once a trip or a stop has ended the run early. It is the sum of ``step_left_s``, for the present step, and of
+    the later steps in the plan's list. In a hold neither it nor the share changes. ``finish_utc``: the wall-clock time
+    of the end at the run's speed, "" at full speed.
     """
 
     step: int = 0
@@ -67,10 +68,10 @@ AlarmState = Literal["active", "acknowledged", "returned"]
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """One alarm. ``priority`` 1 (trip) to 3. ``first_up``: the first of those that stopped the run.
+    """One alarm. ``priority`` 1 (trip) to 3. ``first_up``: whether it is the first of those that stopped the run.
 
-    ``value``, ``limit``: the measured and the allowed value, None when not a number. ``consequence``: the next effect;
-    ``command``: the command that answers the alarm ("ack", "release", "").
+    ``value``, ``limit``: the measured and the permitted value, None if not a number. ``consequence``: what happens
+    next; ``command``: the command that answers the alarm ("ack", "release", "").
     """
 
     number: int
@@ -102,7 +103,8 @@ class PromptView:
 class DeviceView:
     """One device on a bus. ``kind``: drive, or the type of a device on a line. ``state``: the drive's CiA 402 state.
 
-    ``age_s``: of its newest data. Errors are counted since the run began: time-outs, CRC, exceptions, emergencies.
+    ``age_s``: of the device's newest data. Errors are counted since the run began: time-outs, CRC, exceptions,
+    emergencies.
     """
 
     name: str
@@ -120,7 +122,7 @@ class DeviceView:
 
 @dataclass(frozen=True, slots=True)
 class BusView:
-    """One bus: ``load_percent`` is None when it cannot be known (a serial line of a real rig)."""
+    """One bus. ``load_percent`` is None where it cannot be measured (a serial line of a real rig)."""
 
     name: str
     kind: Literal["can", "modbus"]
@@ -131,7 +133,7 @@ class BusView:
 
 @dataclass(frozen=True, slots=True)
 class DiskView:
-    """Space where runs are stored, in bytes. ``needed``: the estimate of the run under way, 0 without one.
+    """Space where runs are stored, in bytes. ``needed``: the estimate for the run under way, 0 if there is none.
 
     ``free`` is None when the disk does not report it.
     """
@@ -144,9 +146,9 @@ class DiskView:
 @dataclass(frozen=True, slots=True)
 class RunView:
     """The run under way, or the last one. ``outcome``: running, done, incomplete, stopped, tripped, failed, rig
-    unreachable. ``exit``: the exit code of the same `tester run`, None while it runs.
+    unreachable. ``exit``: the exit code that `tester run` would give, None while the run is under way.
 
-    ``speed``: rig seconds per second, None = as fast as it goes. ``missing``: conditions without a value, in words.
+    ``speed``: rig seconds per second, None = as fast as possible. ``missing``: conditions without a value, in words.
     """
 
     name: str
@@ -175,7 +177,7 @@ class ManualView:
 
 @dataclass(frozen=True, slots=True)
 class TickView:
-    """How punctual the scan is, in real time only: worst lateness and overruns since the run began.
+    """How punctual the scan is, in real time only: worst lateness and number of overruns since the run began.
 
     ``late_s``: the worst of the last one to two seconds.
     """
@@ -188,7 +190,9 @@ class TickView:
 
 @dataclass(frozen=True, slots=True)
 class ClientsView:
-    """The connected clients. ``controller``: name of the client in control, "" if none; ``controller_id``: its id."""
+    """The connected clients. ``controller``: name of the client in control, "" if none; ``controller_id``: its
+    number.
+    """
 
     controller: str
     controller_id: int
@@ -197,11 +201,11 @@ class ClientsView:
 
 @dataclass(frozen=True, slots=True)
 class StateView:
-    """The whole state. ``t_s``: rig seconds of the run; ``wall_s``: seconds since the service started.
+    """The complete state. ``t_s``: rig seconds of the run; ``wall_s``: seconds since the service started.
 
     ``mode_text`` is the reason for the mode. ``interrupted``: names of the stored runs that can be resumed.
     ``preflight``: the list to check before starting. ``risk``: the rig's safety keys that are looser than they should
-    be, in words; "" without any.
+    be, in words; "" if there are none.
     """
 
     mode: str
@@ -232,7 +236,7 @@ class StateView:
     risk: str = ""
 
     def value(self, key: str) -> Value | None:
-        """Return the value with this key, None if the rig has none."""
+        """Return the value with this key; None if the rig has none."""
         return next((value for value in self.values if value.key == key), None)
 
 
@@ -241,10 +245,10 @@ StepState = Literal["done", "now", "later"]
 
 @dataclass(frozen=True, slots=True)
 class PlanStep:
-    """One step: its number from 1, seconds as estimated before the run, and the measured ones once it is done.
+    """One step: its number from 1, its estimated seconds from before the run, and the measured seconds once it is done.
 
-    ``expected_s``: its expected duration from the run so far, whole seconds. The kind ``standstill`` is no step of the
-    plan: it is the way to standstill after each part.
+    ``expected_s``: its duration as now expected from the run so far, whole seconds. The kind ``standstill`` is not a
+    step of the plan: it is the way to standstill after each part.
     """
 
     number: int
@@ -258,9 +262,9 @@ class PlanStep:
 
 @dataclass(frozen=True, slots=True)
 class PlanView:
-    """The steps around the present one. ``first``: number of the first listed; ``total``: how many there are.
+    """The steps near the present one. ``first``: number of the first listed step; ``total``: number of all steps.
 
-    ``beyond_s``: expected duration of the steps after the last listed, whole seconds.
+    ``beyond_s``: expected duration of the steps after the last listed one, whole seconds.
     """
 
     name: str

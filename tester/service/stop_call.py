@@ -1,9 +1,9 @@
-"""A client's end of STOP's own lane: a connection that stays open, a request line, an answer line.
+"""A client's end of the separate connection for STOP, which stays open: a request line, an answer line.
 
     with StopCall(None, "script") as call:
         call.stop()
 
-It needs no event loop, and blocks until the answer: use a thread beside a screen that draws.
+It needs no event loop, and blocks until the answer: a screen that draws should use it in a thread.
 """
 
 from __future__ import annotations
@@ -17,11 +17,13 @@ from tester.service.address import Address, AddressError, UnixAddress, default_a
 from tester.service.stop_door import TAKEN
 
 WITHIN_S = 3.0
-"""Without an answer after this time STOP has failed, s."""
+"""Time without an answer after which STOP has failed, s."""
 
 
 AGAIN_S = 0.005
-"""Time between two attempts to join a full queue, s: the door accepts some hundred connections a second."""
+"""Time between two attempts to connect while the queue is full, s: the door accepts some hundred connections a
+second.
+"""
 
 
 class NotTakenError(Exception):
@@ -34,7 +36,7 @@ class StopCall:
     def __init__(self, address: Address | None, name: str) -> None:
         """Connect nothing yet.
 
-        ``address``: of the service, None = the user's own; ``name``: who stops, for the record.
+        ``address``: of the service, None = the user's own; ``name``: the sender of STOP, for the record.
         """
         self._address = address
         self.name = name
@@ -65,7 +67,7 @@ class StopCall:
         return not gone
 
     def connect(self) -> None:
-        """Connect ahead of the moment when it counts. Raises NotTakenError."""
+        """Connect in advance, so that STOP takes no time to connect later. Raises NotTakenError."""
         if self._connection is not None:
             return
         try:
@@ -74,7 +76,9 @@ class StopCall:
             raise NotTakenError(in_words(error)) from error
 
     def stop(self, *, fast: bool = False) -> None:
-        """Send STOP and wait until control has it; a broken connection is renewed first. Raises NotTakenError."""
+        """Send STOP and wait until control has received it; reconnect first if the connection is broken. Raises
+        NotTakenError.
+        """
         if self._connection is not None:
             with suppress(OSError):
                 self._say(self._connection, fast)
@@ -108,7 +112,7 @@ class StopCall:
 
 
 def takes_stop(address: Address | None) -> bool:
-    """Return whether a service would take STOP; sends none."""
+    """Return whether a service would accept STOP; send none."""
     with StopCall(address, "") as call:
         try:
             call.connect()
@@ -133,7 +137,7 @@ def _connected(address: Address) -> socket.socket:
 
 
 def _queue_up(connection: socket.socket, path: str) -> None:
-    """Connect, and retry while the door's queue is full, which a Unix socket reports at once. Raises OSError."""
+    """Connect, and retry while the door's queue is full: a Unix socket then fails at once. Raises OSError."""
     end_s = clock.monotonic() + WITHIN_S
     while True:
         try:

@@ -1,4 +1,4 @@
-"""The door for STOP, ``python -m tester.service.stop_door LINK``: a process that only takes STOP.
+"""The door for STOP, ``python -m tester.service.stop_door LINK``: a process that accepts only STOP.
 
 The gateway handles clients' messages, their limits and queues; STOP bypasses all of them. Request and answer are lines:
 
@@ -6,8 +6,8 @@ The gateway handles clients' messages, their limits and queues; STOP bypasses al
     fast NAME      a fast stop                 -> taken
 
 On TCP the first line is the token. The door sends the owner a single line for all waiting callers (``s NUMBER fast|stop
-NAME``), and the next line after the answer (``NUMBER``). So the owner never has more than one request to read, however
-many clients call.
+NAME``), and the next line only after the answer (``NUMBER``). The owner therefore never has more than one request to
+read, however many clients call.
 """
 
 from __future__ import annotations
@@ -27,18 +27,24 @@ from tester.service.address import peer_of, peer_text, unlink_socket, with_peer
 from tester.service.child_process import link_to_owner
 
 MOST_CALLERS = 256
-"""Most connections at a time. Beyond that, the process with the most connections loses its oldest."""
+"""Greatest number of connections at a time. Above it, the oldest connection of the process with the most connections is
+closed.
+"""
 ACCEPTED_AT_ONCE = 64
-"""Most new connections between two looks at the existing ones."""
+"""Greatest number of new connections accepted before the existing ones are handled."""
 PAUSE_S = 0.03
-"""Pause after accepting new connections, s: it bounds the CPU share of a caller that reconnects without end."""
+"""Pause after accepting new connections, s: it limits the CPU time that a caller can use by reconnecting without
+end.
+"""
 LONGEST = 512
 """Upper limit of a line's length, bytes."""
 NAME_LENGTH, NAMES_LENGTH = 100, 400
-"""Longest name of a caller, and longest list of names in a line, characters."""
+"""Greatest length of a caller's name, and of the list of names in a line, characters."""
 TAKEN = b"taken\n"
 BACKLOG = ACCEPTED_AT_ONCE
-"""Length of the listening queue: the door accepts a full queue at once, so no caller waits longer than the pause."""
+"""Length of the listening queue. The door accepts a full queue at once, so that no caller waits longer than the
+pause.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +61,7 @@ SETTINGS: TypeAdapter[DoorSettings] = TypeAdapter(DoorSettings)
 
 @dataclass(slots=True, eq=False)
 class Caller:
-    """One connection. ``admitted``: it has shown the token, or needs none."""
+    """One connection. ``admitted``: whether it has sent the token, or needs none."""
 
     connection: socket.socket
     process: int
@@ -66,7 +72,8 @@ class Caller:
 
 @dataclass(slots=True)
 class Wish:
-    """The combined request of all waiting callers: their names as far as they fit; fast if any of them asks for fast.
+    """The combined request of all waiting callers: their names as far as they fit; fast if any of them requests a fast
+    stop.
     """
 
     name: str
@@ -81,10 +88,10 @@ class Wish:
 
 
 class StopDoor:
-    """Takes STOP from callers and forwards it to the owner, one line at a time."""
+    """Accepts STOP from callers and forwards it to the owner, one line at a time."""
 
     def __init__(self, listener: socket.socket, owner: socket.socket, *, uid: int | None, token: str = "") -> None:
-        """``uid``: the only user allowed on a Unix socket; ``token``: the token required on TCP."""
+        """``uid``: the only permitted user on a Unix socket; ``token``: the token required on TCP."""
         self.uid, self.token = uid, token
         self.owner = owner
         self.callers: list[Caller] = []
@@ -96,7 +103,7 @@ class StopDoor:
             self._selector.register(end, selectors.EVENT_READ)
         self._number = os.getpid() << 16  # each process of the door has its own range of numbers
         self._admits_s: float | None = None
-        """When the door accepts connections again (tester.base.clock.monotonic); None: now."""
+        """Time at which the door accepts connections again (tester.base.clock.monotonic); None: now."""
         self._asked: Wish | None = None
         self._next: Wish | None = None
         self._answers = b""
@@ -130,7 +137,7 @@ class StopDoor:
         for _ in range(ACCEPTED_AT_ONCE):
             try:
                 connection, _ = self._listener.accept()
-            except OSError:  # the queue is empty, or the caller has hung up
+            except OSError:  # the queue is empty, or the caller has disconnected
                 return
             connection.setblocking(False)
             process, uid = peer_of(connection)
@@ -146,7 +153,7 @@ class StopDoor:
         self._admits_s = clock.monotonic() + PAUSE_S
 
     def _make_room(self) -> None:
-        """Close the oldest connection of the process that has the most."""
+        """Close the oldest connection of the process that has the most connections."""
         count: dict[int, int] = {}
         for caller in self.callers:
             count[caller.process] = count.get(caller.process, 0) + 1
@@ -174,7 +181,7 @@ class StopDoor:
             self._let_go(caller)
 
     def _understand(self, caller: Caller, line: bytes) -> bool:
-        """Take one line; return False for a caller to disconnect."""
+        """Handle one line; return False if the caller should be disconnected."""
         if not caller.admitted:
             caller.admitted = hmac.compare_digest(line, self.token.encode())
             return caller.admitted
@@ -227,7 +234,7 @@ class StopDoor:
 
     def _answer(self, caller: Caller) -> None:
         if caller not in self.callers:
-            return  # it has hung up, but its STOP was taken
+            return  # it has disconnected, but its STOP was accepted
         try:
             caller.connection.sendall(TAKEN)
         except OSError:  # the caller does not read

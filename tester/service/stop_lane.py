@@ -1,8 +1,8 @@
-"""The owner's end of STOP's own lane: a thread that only listens to the door's process.
+"""The owner's end of the separate connection for STOP: a thread that only reads from the door's process.
 
-While a rig ticks, the next poll, 20 ms away at most, carries STOP out before every other message of a client, and
-answers; it reads the lane itself instead of waiting for the thread's turn. While nothing ticks - during planning, or
-while tables are written - the thread answers: the preparing code checks ``wanted`` and does not begin.
+While a rig ticks, the next poll, at most 20 ms later, carries STOP out before every other message of a client, and
+answers it. The poll reads the connection itself instead of waiting for the thread's turn. While nothing ticks - during
+planning, or while tables are written - the thread answers: the preparing code checks ``wanted`` and begins nothing.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from tester.service.stop_door import SETTINGS, DoorSettings
 AGAIN_S = 1.0
 """Shortest time between two starts of a door, s."""
 UP_S = 20.0
-"""Time for a door to report where it listens, s [A]."""
+"""Time within which a door must report where it listens, s [A]."""
 END_S = 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class StopWish:
-    """A request to stop the rig. ``number``: the door's, 0 once it is answered."""
+    """A request to stop the rig. ``number``: the number that the door gave it, 0 once it is answered."""
 
     name: str
     fast: bool
@@ -41,11 +41,11 @@ class StopLane:
     def __init__(self) -> None:
         """Open nothing yet."""
         self.ticking = False
-        """A rig is under control: only control's own thread may confirm STOP."""
+        """Whether a rig is under control: then only control's own thread may confirm STOP."""
         self.port = 0
         ours, theirs = socket.socketpair()
         self.bell, self._rope = ours, theirs
-        """Readable once a STOP is there: ends a wait."""
+        """Two ends of a socket pair. ``bell`` becomes readable when a STOP arrives, which ends a wait."""
         for end in (ours, theirs):
             end.setblocking(False)
         self._lock = Lock()
@@ -59,7 +59,7 @@ class StopLane:
     # -- the door ---------------------------------------------------------------------------------------------
 
     def open(self, address: Address) -> None:
-        """Open the door beside a service's address; return once it is open. Raises OSError."""
+        """Open the door next to a service's address; return once it accepts connections. Raises OSError."""
         if isinstance(address, TcpAddress):
             self._settings = DoorSettings("", address.stop_port, address.token)
         else:
@@ -78,7 +78,7 @@ class StopLane:
         self._listen(link)
 
     def look(self) -> None:
-        """Reopen the door if its process is gone; never waits."""
+        """Start the door again if its process has ended; never wait."""
         if self._settings is None or self._link is not None or clock.monotonic() < self._again_s:
             return
         self._again_s = clock.monotonic() + AGAIN_S
@@ -118,7 +118,7 @@ class StopLane:
     # -- requests ---------------------------------------------------------------------------------------------
 
     def _listen_to_door(self, link: socket.socket) -> None:
-        """Read the door until it is gone; the ticking thread may read first."""
+        """Read from the door until it ends; the ticking thread may read a line first."""
         while self._link is link:
             select.select([link], [], [])
             with self._lock:
@@ -126,7 +126,7 @@ class StopLane:
         link.close()
 
     def _read(self) -> None:
-        """Read the door's lines (locked)."""
+        """Read the door's lines; call with the lock held."""
         link = self._link
         if link is None:
             return
@@ -144,18 +144,18 @@ class StopLane:
             self._take(line.decode("utf-8", "replace"))
 
     def _take(self, line: str) -> None:
-        """Keep a request; answer it if nothing ticks (locked)."""
+        """Store a request; answer it if nothing ticks. Call with the lock held."""
         mark, _, rest = line.partition(" ")
         if mark != "s":
-            return  # the port of a reopened door
+            return  # the port of a door that was started again
         number, kind, name = rest.split(" ", 2)
         request = StopWish(name, kind == "fast", int(number))
         wish = request if self.ticking else StopWish(name, request.fast, 0)
         if not self._wishes or wish.fast > self._wishes[-1].fast or wish.number:
             self._wishes.append(wish)
         if not self.ticking:
-            self._answer(request)  # after the request is stored: the caller may rely on the answer
-        with suppress(OSError):  # full: the bell has rung already
+            self._answer(request)  # only after the request is stored: the caller may rely on the answer
+        with suppress(OSError):  # full: the bell has already rung
             self._rope.send(b"!")
 
     @property
@@ -164,7 +164,7 @@ class StopLane:
         return bool(self._wishes)
 
     def taken(self) -> list[StopWish]:
-        """Return the requests to carry out now, oldest first; ``answer`` each afterwards."""
+        """Return the requests to carry out now, oldest first; afterwards call ``answer`` for each."""
         with self._lock:
             self._read()
             wishes, self._wishes = self._wishes, []
@@ -174,7 +174,7 @@ class StopLane:
         return wishes
 
     def answer(self, wish: StopWish) -> None:
-        """Confirm that a request is carried out."""
+        """Confirm that a request has been carried out."""
         if wish.number:
             self._answer(wish)
 
@@ -185,12 +185,12 @@ class StopLane:
                 link.sendall(b"%d\n" % wish.number)
 
     def begin_ticking(self) -> None:
-        """Note that a rig is under control from now on."""
+        """Record that a rig is under control from now on."""
         with self._lock:
             self.ticking = True
 
     def end_ticking(self) -> None:
-        """Note that no rig is under control any more, and answer the waiting callers."""
+        """Record that no rig is under control any more, and answer the waiting callers."""
         with self._lock:
             self.ticking = False
             for wish in self._wishes:

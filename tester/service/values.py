@@ -1,4 +1,6 @@
-"""Values and progress for people: measured, wanted and allowed by the table of channels; steps by the clock."""
+"""Values and progress for people: measured, demanded and permitted values by the table of channels; steps with their
+times.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,7 @@ from tester.machine.time_left import STANDSTILL, Earlier, PartTime, TimeLeft
 from tester.service.state_view import PlanStep, PlanView, StepState
 
 CONTACT_N = 20.0
-"""Below this normal force a friction coefficient is noise [A]."""
+"""Normal force below which a friction coefficient is only noise [A]."""
 NOTHING_WANTED = Wanted(None)
 
 
@@ -31,7 +33,7 @@ def measured(
     age_s: float | None = None,
     quality: Quality = "none",
 ) -> Value:
-    """Return a value, unknown so far, with its present number, setpoint, age and quality."""
+    """Return ``unknown`` completed with its present number, setpoint, age and quality."""
     setpoint, band = known(wanted.setpoint), wanted.band
     band_low = band_high = None
     if setpoint is not None and band is not None:
@@ -41,13 +43,13 @@ def measured(
 
 
 def screen_of(channel: Channel) -> Screen:
-    """Return how a channel is shown; the channel must be in ``Quantities.shown``."""
+    """Return how a channel is shown; it must be one of ``Quantities.shown``."""
     assert channel.screen is not None
     return channel.screen
 
 
 def unknown_value(channel: Channel, rig: object) -> Value:
-    """Return a channel's name, limits and bar range on a rig, without a number."""
+    """Return a channel's value on a rig without its number: name, limits and bar range."""
     screen = screen_of(channel)
     high = screen.limit.of(rig) if screen.limit is not None else None
     low = -high if high is not None and screen.both else None
@@ -85,7 +87,7 @@ class ValueView:
         self._nodes = dict(zip(rig.can.nodes, devices.nodes, strict=True))
 
     def values(self) -> tuple[Value, ...]:
-        """Return every value as of the last scan."""
+        """Return all values as of the last scan."""
         wanted, now = self.panel.wanted(), self.engine.ctx.readings.now_s
         all_news = {**self.panel.news(), **self._further_news()}
         quality = {device: self._quality(news, now) for device, news in all_news.items()}
@@ -107,7 +109,7 @@ class ValueView:
         return float(self._read_off[name](self.engine.ctx)[0])
 
     def _further_news(self) -> dict[str, News]:
-        """Return the news of the further sensors, by their places in the rig file."""
+        """Return the state of the further sensors' data, by their places in the rig file."""
         lines = {f"devices.{key}": News(s.stamp_s, s.valid, s.stale_s) for key, s in self._sensors.items()}
         return lines | {f"can.nodes.{key}": News(n.stamp_s, n.online, n.stale_s) for key, n in self._nodes.items()}
 
@@ -124,11 +126,11 @@ class ValueView:
 def friction(quantities: Quantities, of: Callable[[str], float]) -> float:
     """Return the momentary coefficient, resultant over normal force; NaN out of contact.
 
-    ``of`` gives the force (N) of a channel's name.
+    ``of`` returns the force (N) of a channel, by its name.
     """
     roles = quantities.roles
     normal_n = of(roles.normal)
-    # A measured load is never quite 0; the load of weights on an arm is known exactly.
+    # A measured load is never exactly 0, but the load of weights on an arm is known exactly.
     if not normal_n > (CONTACT_N if len(roles.friction) > 1 else 0.0):
         return float("nan")
     return hypot(*(of(name) for name in roles.friction)) / normal_n
@@ -146,18 +148,18 @@ def trend_row(quantities: Quantities, values: Mapping[str, Value]) -> list[float
 
 
 LISTED = 400
-"""Most steps in a plan message, around the present one: a plan may have 100,000."""
+"""Greatest number of steps in a plan message, around the present step: a plan may have 100,000."""
 BEFORE = 100
-"""Most of them before the present one."""
+"""Greatest number of these steps before the present one."""
 
 
 class PlanTrack(TimeLeft):
-    """A run's steps beside the clock, for display. Times are rig seconds."""
+    """A run's steps with their times, for display. Times are rig seconds."""
 
     def __init__(self, name: str, parts: Sequence[PartTime], kind: ServedKind, earlier: Earlier | None = None) -> None:
         """Begin before the first step.
 
-        ``name``: the plan's; ``kind``: the rig's, which has the words for a step.
+        ``name``: the plan's; ``kind``: the rig's kind, which describes the steps.
         """
         super().__init__(parts, earlier)
         self.name = name

@@ -1,4 +1,6 @@
-"""A run for people: those parts of the state view that come from its engine, and the alarms that follow from them."""
+"""A run as people see it: the parts of the state view that come from its engine, and the alarms that follow from
+them.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ from tester.service.state_view import ProgressView, PromptView, StateView
 from tester.service.values import PlanTrack, ValueView, screen_of
 
 MOST = 200
-"""Frames in a message; five axes at 100 Hz make about 1,500 a second, more than anyone can read."""
+"""Greatest number of frames in a message; five axes at 100 Hz make about 1,500 a second, more than a person can
+read.
+"""
 
 
 class FrameLog:
@@ -56,7 +60,7 @@ class FrameLog:
             self._watched = []
 
     def take(self) -> Frames | None:
-        """Return the frames since the last call, None without any."""
+        """Return the frames since the last call; None if there are none."""
         if not self._seen:
             return None
         frames = tuple(Frame(t, bus, sent, ident, data.hex(" ")) for t, bus, sent, ident, data in self._frames)
@@ -77,13 +81,13 @@ class FrameLog:
 
 NO_MODE = "CONNECTING"
 MODES = {Mode.EMERGENCY: "E-STOP"}
-"""Modes shown under another name than control's."""
+"""Modes shown under a name other than control's."""
 RESTING = (Mode.IDLE, Mode.LATCHED)
 """Modes in which drives are switched off at the end of a run."""
 
 
 def risk_of(rig: Rig) -> str:
-    """Return the safety keys of a rig that are looser than they should be, in words; "" without any."""
+    """Return the safety keys of a rig that are looser than they should be, in words; "" if there are none."""
     return "; ".join(map(str, risks_of(rig)))
 
 
@@ -112,11 +116,11 @@ class RunWatch:
         self.tripped = ""
         """Name of the alarm of the trip that latches the rig."""
         self.acknowledged = False
-        """A trip has occurred and is acknowledged."""
+        """Whether a trip has occurred and is acknowledged."""
         self._asked_utc: dict[int, str] = {}
         shown = map(screen_of, quantities_on(self.rig).shown)
         self._fresh = frozenset(screen.key for screen in shown if screen.watched)
-        """Keys of the values that must be updated."""
+        """Keys of the values whose age is watched."""
 
     # -- views ------------------------------------------------------------------------------------------------
 
@@ -137,7 +141,9 @@ class RunWatch:
         return self.run.engine.control.state.mode is Mode.LATCHED
 
     def shown_in(self, state: StateView, lapse: float | None) -> StateView:
-        """Return the state with this run in it; ``lapse`` as in ``progress``. The rig's own checks replace others."""
+        """Return the state completed with this run; ``lapse`` as in ``progress``. The rig's own checks replace the
+        others.
+        """
         now, checks = state.t_s, self.preflight()
         names = {check.name for check in checks}
         return replace(
@@ -200,7 +206,7 @@ class RunWatch:
             )
 
     def watch_trip(self, alarms: AlarmList, now: float) -> None:
-        """Raise the alarm of the trip that stopped the rig, for as long as it is latched."""
+        """Raise the alarm of the trip that stopped the rig, while the trip is latched."""
         trip = self.run.engine.control.state.trip
         if trip is not None:
             consequence = "the rig comes to a standstill; nothing moves before it is acknowledged"

@@ -1,4 +1,4 @@
-"""Adds to the record of a finished run: later decisions of people, each on disk at once."""
+"""Adds people's later decisions to the record of a finished run, each on disk at once."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tester.store.sql import columns_in, insert, update
 
 @contextmanager
 def amended(folder: Path) -> Generator[sqlite3.Connection]:
-    """Yield the record in ``folder`` inside a transaction that is chained and committed at the block's end.
+    """Yield the record in ``folder`` inside a transaction, which is chained and committed at the block's end.
 
     An older record is migrated to the present schema. Raises StoreError.
     """
@@ -26,11 +26,12 @@ def amended(folder: Path) -> Generator[sqlite3.Connection]:
     try:
         uri = f"{path.absolute().as_uri()}?mode=rw"
         with closing(sqlite3.connect(uri, uri=True, isolation_level=None)) as database:
-            # EXTRA: a rollback journal whose deletion is not yet on disk would undo the row.
+            # EXTRA: if the deletion of a rollback journal were not yet on disk, the journal would undo the row after a
+            # power cut.
             database.execute("PRAGMA synchronous = EXTRA")
             migrate(database)
-            # Leave WAL mode, as at the end of a run: the manifest covers a single file. A reader of a record that is
-            # still in WAL mode prevents that; then the commit waits in the log until the reader leaves.
+            # Leave WAL mode, as at the end of a run, because the manifest covers a single file. A reader of a record
+            # still in WAL mode prevents that; the commit then waits in the log until the reader leaves.
             with suppress(sqlite3.OperationalError):
                 database.execute("PRAGMA journal_mode = DELETE")
             chain = Chain(database)
@@ -43,14 +44,14 @@ def amended(folder: Path) -> Generator[sqlite3.Connection]:
 
 
 def acknowledge_trips(folder: Path, trips: Iterable[int], by: str, utc: str) -> None:
-    """Store who has acknowledged trips (by number) of a finished run. Raises StoreError."""
+    """Store who acknowledged trips (given by number) of a finished run. Raises StoreError."""
     with amended(folder) as database:
         for trip in trips:
             database.execute(*update("trip", {"acknowledged_utc": utc, "acknowledged_by": by}, {"id": trip}))
 
 
 def standing(exclusions: Iterable[StoredExclusion]) -> dict[tuple[int, int, int], StoredExclusion]:
-    """Return the present exclusions, by condition, repeat and attempt: the last decision on each counts."""
+    """Return the exclusions now in force, by condition, repeat and attempt: the last decision on each counts."""
     present: dict[tuple[int, int, int], StoredExclusion] = {}
     for exclusion in exclusions:
         if exclusion.excluded:
@@ -61,8 +62,7 @@ def standing(exclusions: Iterable[StoredExclusion]) -> dict[tuple[int, int, int]
 
 
 def add_exclusion(folder: Path, exclusion: StoredExclusion) -> None:
-    """Add a person's decision on a repeat to the record in ``folder``, on disk when this returns; its id is assigned
-    here.
+    """Add a person's decision on a repeat to the record in ``folder``; assign its id. It is on disk when this returns.
 
     A record of an older schema is migrated to the present one. Raises StoreError.
     """

@@ -23,19 +23,19 @@ Cell = str | int | float | bytes | None
 TABLE = "chain"
 START = bytes(32)
 NAMED_AT_MOST = 5
-"""Most rows of a table named in the list of problems; the rest are counted."""
+"""Greatest number of rows of a table named in the list of problems; further rows are counted."""
 
 _INSERT = "INSERT INTO chain (seq, name, key, row_sha256, head) VALUES (?, ?, ?, ?, ?)"
 
 
 def tables_in(connection: sqlite3.Connection) -> list[str]:
-    """Return the tables under the chain: all of the database but itself and SQLite's own."""
+    """Return the tables that the chain covers: all in the database but the chain itself and SQLite's own."""
     tables = connection.execute("SELECT name FROM main.sqlite_master WHERE type = 'table' ORDER BY name")
     return [name for (name,) in tables if name != TABLE and not name.startswith("sqlite_")]
 
 
 def row_sha256(table: str, key: int, columns: Sequence[str], values: Sequence[Cell] | None) -> bytes:
-    """Return the hash of a row; ``values`` None: it was deleted."""
+    """Return the hash of a row; ``values`` None: the row was deleted."""
     row = None
     if values is not None:
         row = {name: _plain(v) for name, v in zip(columns, values, strict=True) if v is not None}
@@ -47,14 +47,14 @@ def _plain(value: Cell) -> object:
 
 
 def next_head(head: bytes, row: bytes) -> bytes:
-    """Return the head after a row's hash."""
+    """Return the new head of the chain after a row's hash is added."""
     return sha256(head + row).digest()
 
 
 class Chain:
     """Chains the writes of one connection. Call ``seal`` before every COMMIT of a transaction that changes rows.
 
-    Temporary triggers note which rows a transaction touches, so no statement can be forgotten.
+    Temporary triggers record which rows a transaction touches, so that no statement can be forgotten.
     """
 
     def __init__(self, connection: sqlite3.Connection) -> None:
@@ -74,7 +74,7 @@ class Chain:
                 )
 
     def seal(self) -> None:
-        """Add an entry for each row that this transaction has touched, in its present state."""
+        """Add an entry for the present state of each row that this transaction has touched."""
         connection = self._connection
         touched = connection.execute("SELECT name, key FROM touched ORDER BY n").fetchall()
         if touched:
@@ -82,7 +82,7 @@ class Chain:
             connection.execute("DELETE FROM touched")
 
     def _hash(self, table: str, key: int) -> bytes:
-        if table not in self._columns:  # read lazily: a new record gets its columns when the run begins
+        if table not in self._columns:  # read on first use: a new record receives its columns when the run begins
             self._columns[table] = columns_of(self._connection, table)
         columns = self._columns[table]
         row = self._connection.execute(f"SELECT {', '.join(columns)} FROM main.{table} WHERE rowid = ?", (key,))
@@ -112,7 +112,7 @@ def hashes_of(connection: sqlite3.Connection, table: str) -> Iterator[tuple[int,
 
 @dataclass(frozen=True, slots=True)
 class ChainFound:
-    """Result of inspecting a chain. ``heads``: all of it, in order, as far as it is unbroken."""
+    """Result of inspecting a chain. ``heads``: its heads in order, as far as it is unbroken."""
 
     problems: tuple[str, ...]
     heads: tuple[bytes, ...]
@@ -126,8 +126,9 @@ class ChainFound:
 
 
 def inspect(connection: sqlite3.Connection) -> ChainFound:
-    """Compare a record of this schema with its chain, in one snapshot, as a run may be in progress. Raises
-    sqlite3.Error."""
+    """Compare a record of this schema with its chain, in one snapshot, because a run may be in progress. Raises
+    sqlite3.Error.
+    """
     connection.execute("BEGIN")
     try:
         problems: list[str] = []
@@ -155,7 +156,7 @@ def inspect(connection: sqlite3.Connection) -> ChainFound:
 
 
 def _differences(table: str, latest: dict[int, bytes], connection: sqlite3.Connection) -> Iterator[str]:
-    """Yield the differences between a table's rows and the last entries of the chain on them."""
+    """Yield the differences between a table's rows and the chain's last entries about them."""
     changed: list[int] = []
     strange: list[int] = []
     for key, row in hashes_of(connection, table):

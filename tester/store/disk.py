@@ -1,4 +1,4 @@
-"""Files that are whole or absent, even after a power cut; free disk space for a run."""
+"""Writes files that are complete or absent, even after a power cut; measures free disk space for a run."""
 
 from __future__ import annotations
 
@@ -13,27 +13,29 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.recipe.time_estimate import Estimate
 
 ROW_BYTES = 60.0
-"""Size of a recorded sample in its block, with its share of the log and of the tables (measured: 38 to 55)."""
+"""Size of a recorded sample in its block, with its share of the log and of the tables, bytes (measured: 38 to 55)."""
 CONTACT_ROWS_S = 60.0
 """Samples per rig second of a step in contact: 100 in slip, 20 while rolling (interface: exports). Simulated runs of
 the shipped recipes record 25 to 40."""
 IDLE_ROWS_S = 2.0
 FIXED_BYTES = 2_000_000.0
-"""Recipe, rig file, journal, device parameters, tables, and the log before its checkpoint."""
+"""Size of recipe, rig file, journal, device parameters, tables, and the log before its checkpoint, bytes."""
 MARGIN = 2.0
 """Required free space, as a multiple of the estimate [A]."""
 
 
 def free_bytes(folder: Path) -> int:
-    """Return the free space under a folder, bytes; on a network share this may block for ever. Raises OSError."""
+    """Return the free space under a folder, bytes; this may block for ever on a network share. Raises OSError."""
     return shutil.disk_usage(folder).free
 
 
 class FreeRoom:
-    """The latest known free space under a folder. A thread measures it: callers never wait for a disk that hangs."""
+    """The latest known free space under a folder. A thread measures it, so that callers never wait for a disk that
+    hangs.
+    """
 
     def __init__(self, folder: Path, ask: Callable[[Path], int] = free_bytes) -> None:
-        """``folder``: while it is missing, the working folder is measured; ``ask`` as ``free_bytes``."""
+        """``folder``: if it is missing, the working folder is measured; ``ask``: as ``free_bytes``."""
         self.folder = folder
         self.hangs = False
         """Whether the previous measurement was still running when the next was due."""
@@ -43,7 +45,7 @@ class FreeRoom:
 
     @property
     def free(self) -> int | None:
-        """Return bytes; None before the first result, after an error, or while the disk hangs."""
+        """Return the free space in bytes; None before the first result, after an error, or while the disk hangs."""
         return None if self.hangs else self._free
 
     def look(self) -> None:
@@ -75,8 +77,9 @@ def expected_bytes(plan: Plan, expected: Estimate) -> float:
 
 
 def too_little_room(folder: Path, needed: float) -> str:
-    """Return why the space under a folder is too small for ``needed`` bytes, with the numbers; empty where it is
-    enough."""
+    """Return why the space under a folder is too small for ``needed`` bytes, with the numbers; empty if it is
+    enough.
+    """
     free = free_bytes(folder)
     if free >= MARGIN * needed:
         return ""
@@ -91,7 +94,7 @@ def _mb(size: float) -> str:
 
 
 def write_whole(path: Path, fill: Callable[[Path], None]) -> None:
-    """Let ``fill`` write a temporary file, sync it, and rename it to ``path``; raises OSError."""
+    """Call ``fill`` to write a temporary file, sync it, and rename it to ``path``; raises OSError."""
     part = path.with_name(f"{path.name}.part")
     try:
         fill(part)
@@ -104,7 +107,7 @@ def write_whole(path: Path, fill: Callable[[Path], None]) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text as UTF-8, line ends unchanged, whole and synced; raises OSError."""
+    """Write a text as UTF-8 with unchanged line ends, completely or not at all, and sync it; raises OSError."""
 
     def fill(part: Path) -> None:
         part.write_bytes(text.encode())
@@ -113,14 +116,14 @@ def write_text(path: Path, text: str) -> None:
 
 
 RESERVE = ".reserve.part"
-"""Suffix of a reserving file; no manifest lists such files."""
+"""Suffix of a file that reserves space; no manifest lists these files."""
 
 
 class Reserve:
     """Reserves disk space until it is needed."""
 
     def __init__(self, path: Path, size: int) -> None:
-        """Reserve ``size`` bytes beside the file ``path``; where there is less space, reserve none."""
+        """Reserve ``size`` bytes in a file next to ``path``; if there is less space, reserve none."""
         self._path = path.with_name(path.name + RESERVE)
         try:
             with self._path.open("wb") as file:
@@ -144,9 +147,10 @@ def file_identity(path: Path) -> tuple[int, int]:
 
 
 def sync_folder(folder: Path) -> None:
-    """Sync the names in a folder: files made, replaced or deleted there. Does nothing where folders cannot be
-    synced."""
-    with suppress(OSError):  # Windows opens no folders
+    """Sync the names in a folder: files created, replaced or deleted there. Do nothing on systems that cannot sync
+    folders.
+    """
+    with suppress(OSError):  # Windows cannot open folders
         descriptor = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(descriptor)

@@ -9,7 +9,7 @@ from math import isnan
 
 @dataclass(frozen=True, slots=True)
 class StoredTare:
-    """A zero of the load cell. ``kind``: reference, repeat or check; ``zeros``: of each channel, by its name."""
+    """A zero of the load cell. ``kind``: reference, repeat or check; ``zeros``: zero of each channel, by its name."""
 
     t_s: float
     kind: str
@@ -19,7 +19,7 @@ class StoredTare:
 
 @dataclass(frozen=True, slots=True)
 class StoredPrompt:
-    """A question to a person, and its answer (empty: none)."""
+    """A question to a person, and its answer (empty: no answer)."""
 
     asked_s: float
     asked_utc: str
@@ -32,9 +32,9 @@ class StoredPrompt:
 
 @dataclass(frozen=True, slots=True)
 class StoredTrip:
-    """A trip: the interlock, the value that caused it and its limit, who acknowledged it and when.
+    """A trip: the interlock, the value that caused it and its limit, the person who acknowledged it, and when.
 
-    Value and limit are NaN where the interlock watches no number, ``acknowledged_s`` where the run had ended by then.
+    Value and limit are NaN if the interlock watches no number; ``acknowledged_s`` is NaN if the run had already ended.
     """
 
     id: int
@@ -51,7 +51,7 @@ class StoredTrip:
 
     @property
     def compared(self) -> str:
-        """Return value and limit in words, "" without them."""
+        """Return value and limit in words; "" if there are none."""
         if isnan(self.value) and isnan(self.limit_value):
             return ""
         unit = "" if self.unit in ("", "1") else f" {self.unit}"
@@ -60,7 +60,7 @@ class StoredTrip:
 
     @property
     def acknowledged(self) -> str:
-        """Return who acknowledged it and when, in words."""
+        """Return who acknowledged the trip and when, in words."""
         if not self.acknowledged_utc:
             return "not acknowledged"
         by = f" by {self.acknowledged_by}" if self.acknowledged_by else ""
@@ -80,9 +80,10 @@ class StoredParameter:
 
 @dataclass(frozen=True, slots=True)
 class StoredExclusion:
-    """A person's decision on a repeat: out of the mean (``excluded`` 1), or in again (0); ``id`` counts from 1.
+    """A person's decision on a repeat: excluded from the mean (``excluded`` 1), or included again (0); ``id`` counts
+    from 1.
 
-    ``manifest_before`` is the text of the folder's manifest before it, "" where there was none.
+    ``manifest_before`` is the text of the folder's manifest before the decision, "" if there was none.
     """
 
     id: int

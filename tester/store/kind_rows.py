@@ -1,6 +1,7 @@
-"""What a kind defines, as rows of the record: channels, axes, budget. A stored run is read without its kind's code.
+"""What a kind defines, as rows of the record: channels, axes, budget. Reading a stored run needs no code of its kind.
 
-A condition's setpoint becomes columns of ``condition``, the mean of an averaged channel a column of ``repeat``.
+Each axis of a condition's setpoint becomes a column of ``condition``; the mean of each averaged channel becomes a
+column of ``repeat``.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from tester.store.sql import Statement, columns_in, insert
 
 COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "whole", "shown_name", "shown_unit",
            "scale", "role", "block", "screen")  # fmt: skip
-"""Columns of the table ``channel``. ``role``: words of _ROLES, joined; ``block`` beside the role ``turn``; ``screen``:
-JSON."""
+"""Columns of the table ``channel``. ``role``: words of _ROLES, joined; ``block``: belongs to the role ``turn``;
+``screen``: JSON.
+"""
 
 _FIGURES = ("low", "high", "limit")
 _ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING = _ROLES = (
@@ -91,7 +93,7 @@ def _screen(text: str) -> Screen | None:
 
 
 def recorded_channels(connection: sqlite3.Connection) -> Quantities | None:
-    """Return the channels of an open record, None for a new one; raises sqlite3.Error.
+    """Return the channels of an open record; None if the record is new. Raises sqlite3.Error.
 
     Raises ValueError for an unreadable table of channels.
     """
@@ -108,8 +110,8 @@ def add_channels(connection: sqlite3.Connection, quantities: Quantities) -> None
     """Add the channels to a new record, inside a transaction: their rows, and columns of repeats and tares for their
     values.
 
-    A repeat gets a column for the mean of each averaged channel, a tare one for its zero. Raises ValueError for a
-    channel with the name of another column.
+    The table of repeats receives a column for the mean of each averaged channel, that of tares a column for its zero.
+    Raises ValueError for a channel with the name of another column.
     """
     for row in channel_rows(quantities):
         connection.execute(*insert("channel", row))
@@ -128,7 +130,9 @@ _RENAMED = {"column": "column_name", "default": "default_value"}
 
 
 def axis_rows(axes: Axes) -> Iterator[Statement]:
-    """Yield the statements that add the axes to a new record: a row of ``axis`` and a column of ``condition`` each."""
+    """Yield the statements that add the axes to a new record: for each axis a row of ``axis`` and a column of
+    ``condition``.
+    """
     for position, (axis, data) in enumerate(zip(axes, axes.as_data(), strict=True)):
         row = {_RENAMED.get(name, name): cast("Cell", value) for name, value in data.items()}
         yield insert("axis", {"position": position} | row | {"choices": "\n".join(axis.choices)})
@@ -158,7 +162,7 @@ def setpoint_of(row: Mapping[str, object], axes: Axes) -> Setpoint:
 
 
 def budget_rows(terms: Iterable[Term], known: Iterable[KnownSlope]) -> Iterator[Statement]:
-    """Yield the statements that store them."""
+    """Yield the statements that store the terms of the budget and the known slopes."""
     for position, term in enumerate(terms):
         acts: dict[str, Cell] = {"acts": term.acts.value, "df": term.df if isfinite(term.df) else None}
         yield insert("budget_term", {"position": position} | columns_in(term) | acts)
@@ -170,5 +174,5 @@ def term_of(row: Mapping[str, object]) -> Term:
     """Return a term from its row; raises ValueError for an invalid row."""
     columns = {name: value for name, value in row.items() if name not in ("position", "acts", "df")}
     df = row["df"]
-    values = cast("dict[str, Any]", columns)  # numbers and texts, of the types of the table's columns
+    values = cast("dict[str, Any]", columns)  # numbers and texts, of the same types as the table's columns
     return Term(**values, acts=Acts(str(row["acts"])), df=df if isinstance(df, float) else inf)

@@ -1,8 +1,8 @@
-"""Puts the records of a run's parts into the run's own: one run whose times follow one another.
+"""Merges the records of a run's parts into the run's own: one run whose times follow one another.
 
-A part is recorded by itself, from time 0 and with keys from 1. This module copies it into the run's database behind the
-parts before it: times (``record_schema.TIMES``) increase by their rig seconds, keys (``TABLES``) by those assigned so
-far. Other columns only hold values.
+A part is recorded separately, from time 0 and with keys from 1. This module copies it into the run's database after the
+earlier parts: times (``record_schema.TIMES``) increase by the rig seconds of those parts, keys (``TABLES``) by the
+number of keys assigned so far. Other columns only hold values.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ from tester.store.sql import column_names, update
 
 @dataclass(frozen=True, slots=True)
 class Merged:
-    """Columns with keys. ``key`` counts through the run (None: the part's own keys hold in the run), ``repeat`` refers
-    to a repeat's key."""
+    """Columns with keys. ``key`` is numbered through the run (None: the part's own keys are valid in the run);
+    ``repeat`` refers to a repeat's key.
+    """
 
     key: str | None = None
     repeat: str | None = None
@@ -51,29 +52,30 @@ TABLES: dict[str, Merged] = {
     "truth": Merged(key="id"),
     "travel": Merged(key="id", repeat="repeat_id"),
 }
-"""Tables that a run in progress fills, in the order in which they refer to each other. ``condition`` is updated; the
-others are the whole run's, and parts do not fill them."""
+"""Tables that a run in progress fills, in the order in which they refer to each other. ``condition`` is updated. The
+other tables belong to the whole run, and parts do not fill them.
+"""
 
 LEFT = (*TIMES["condition"], "status", "reason", "warming_k_s", "holdable_band_k", *column_names(Judgement))
-"""Final state of a condition."""
+"""Columns of a condition's final state."""
 
 _DIGITS = 6
-"""Rig times lie on a grid of microseconds (tester.machine.tickers); a sum of two is rounded to it."""
+"""Rig times are multiples of a microsecond (tester.machine.tickers); the sum of two is rounded to that."""
 
 
 class Merge:
-    """Puts parts into a run's database, each in a transaction of its own; use in a ``with`` block.
+    """Adds parts to a run's database, each in a transaction of its own; use in a ``with`` block.
 
-    It begins by deleting the result of an earlier merge, so it may be repeated, after a crash or a resumed part. Raises
-    sqlite3.Error and StoreError; the parts are never written.
+    It first deletes the result of an earlier merge, so that a merge may be repeated after a crash or a resumed part.
+    Raises sqlite3.Error and StoreError. It never writes to the parts.
     """
 
     def __init__(self, folder: Path) -> None:
-        """Open the merge; ``folder``: the run's, whose ``run.db`` has the run and its conditions."""
+        """Open the merge; ``folder``: the run's, whose ``run.db`` already contains the run and its conditions."""
         self.rig_seconds = 0.0
         self._connection = sqlite3.connect(folder / DATABASE, isolation_level=None)
         try:
-            # The deletion of a rollback journal is synced as well: a journal that came back would undo the merge.
+            # Sync the deletion of a rollback journal as well: a journal that came back would undo the merge.
             self._connection.execute("PRAGMA synchronous = EXTRA")
             migrate(self._connection)
             with RunReader(folder) as reader:
@@ -96,7 +98,7 @@ class Merge:
         self._connection.close()
 
     def add(self, part: Path) -> None:
-        """Append the part whose record lies in the folder ``part``."""
+        """Append the part whose record is in the folder ``part``."""
         with RunReader(part) as reader:
             run, channels = reader.run(), reader.quantities()
         if channels.names != self._channels.names:
@@ -186,5 +188,5 @@ class Merge:
 
 
 def _raised(key: Cell, base: int) -> Cell:
-    """Return a key of the run; 0 means no repeat and stays."""
+    """Return a key of the run; 0 means no repeat and is not changed."""
     return key + base if isinstance(key, int) and key > 0 else key

@@ -1,6 +1,6 @@
-"""A run's database, open for reading: never written.
+"""A run's database, opened for reading only.
 
-A run that is still being written, or was cut off, reads as far as it is committed.
+If a run is still being written, or was interrupted, everything committed so far can be read.
 """
 
 from __future__ import annotations
@@ -29,8 +29,7 @@ def _read_only(path: Path) -> sqlite3.Connection:
     try:
         connection.execute("SELECT count(*) FROM sqlite_master")
     except sqlite3.OperationalError:
-        # A power cut at the very beginning or end of a run leaves a rollback journal, which a reader must not play
-        # back.
+        # A power cut at the very beginning or end of a run leaves a rollback journal, which a reader must not apply.
         connection.close()
         with closing(sqlite3.connect(path)) as repairing:
             repairing.execute("SELECT count(*) FROM sqlite_master")
@@ -40,7 +39,7 @@ def _read_only(path: Path) -> sqlite3.Connection:
 
 
 class RecordFile:
-    """A run's database, from its folder or its ``run.db``; use in a ``with`` block or close it.
+    """A run's database, from its folder or its ``run.db``; use it in a ``with`` block or close it.
 
     Raises StoreError for a missing database, or one that this version cannot read.
     """
@@ -66,11 +65,11 @@ class RecordFile:
             raise StoreError(f"{self.path}: {error}") from error
         if version == record_schema.VERSION:
             return connection
-        # Created, but cut off before the schema was committed.
+        # The database was created, but the program ended before the schema was committed.
         if version == 0:
             connection.close()
             raise NotBegunError(f"{self.path}: the run was not begun")
-        # An older record stays unchanged (its manifest holds); a copy is migrated to the present schema.
+        # An older record stays unchanged, so that its manifest remains valid; a copy is migrated to the present schema.
         self._copy = TemporaryDirectory(prefix="tester-", ignore_cleanup_errors=True)
         with closing(connection), closing(sqlite3.connect(Path(self._copy.name) / DATABASE)) as present:
             connection.backup(present)
@@ -110,7 +109,7 @@ class RecordFile:
             raise StoreError(f"{self.path} cannot be read: {error}") from error
 
     def records(self, kind: type[Record], rest: str, values: tuple[Cell, ...] = ()) -> Iterator[Record]:
-        """Yield the records of a table; ``rest`` of the query: table, condition, order."""
+        """Yield the records of a table; ``rest``: the rest of the query, with table, condition and order."""
         return (record(kind, row) for row in self.rows(f"SELECT * FROM {rest}", values))
 
     def record_head(self) -> str:
@@ -129,7 +128,7 @@ class RecordFile:
             self._connection.row_factory = factory
 
     def integrity_problems(self) -> list[str]:
-        """Return the faults that SQLite's own check reports; empty for a sound file."""
+        """Return the faults that SQLite's own check reports; empty for an intact file."""
         report = [text(row, "integrity_check") for row in self.rows("PRAGMA integrity_check")]
         return [] if report == ["ok"] else report
 

@@ -1,15 +1,16 @@
-"""The database of a run: its tables, from the record classes; its version, the way from one version to the next.
+"""The database of a run: its tables, made from the record classes; its version; the migrations between versions.
 
-One file ``run.db``, WAL while it is written. The schema reads like the domain: a run has specimens and pieces of them
-that are mounted, its conditions have repeats, a repeat has bursts, samples lie in compressed blocks. Units are in the
-column names; rig time (``..._s``) is the run's own clock, ``..._utc`` is ISO 8601 text of the wall clock. A value that
-does not exist is NULL (SQLite stores NaN as such, hence no NOT NULL on what is measured). Text holds what a person
-wrote, unescaped.
+There is one file ``run.db``, in WAL mode while it is written. The schema follows the domain: a run has specimens and
+mounted pieces of them, its conditions have repeats, a repeat has bursts, and samples are in compressed blocks. Units
+are in the column names. Rig time (``..._s``) is the run's own clock; ``..._utc`` is ISO 8601 text of the wall clock. A
+value that does not exist is NULL (SQLite stores NaN as NULL, hence measured columns are not NOT NULL). Text holds what
+a person wrote, unescaped.
 
-Some tables get further columns as a run begins (tester.store.kind_rows): ``condition`` one for each axis, ``repeat``
-and ``tare`` one for each averaged channel.
+Some tables receive further columns when a run begins (tester.store.kind_rows): ``condition`` one for each axis,
+``repeat`` and ``tare`` one for each averaged channel.
 
-The schema's number is SQLite's ``user_version``. Kept to what SQLite 3.34 knows: no STRICT tables, no RETURNING.
+The schema's number is SQLite's ``user_version``. It uses only what SQLite 3.34 supports: no STRICT tables, no
+RETURNING.
 """
 
 from __future__ import annotations
@@ -63,10 +64,11 @@ _RUN = (
     + create("material", _ID, "file TEXT NOT NULL UNIQUE", StoredMaterial)
 )  # fmt: skip
 """The run (``worn``: the kind's word for the part of the machine that wears), its sessions (one for each process that
-worked on it), the changes between them with reasons, and the calibration as a history. ``material``: files of the
-compounds and surfaces that the recipe names. Its ``role`` is compound, surface, or data for a file that one of them
-refers to; ``file`` is the path of the copy in the run's folder; ``text`` is NULL for anything but a short text, which
-only its hash represents; ``doubts`` has a line for each."""
+worked on it), the changes between sessions with their reasons, and the history of the calibration. ``material``: files
+of the compounds and surfaces that the recipe names. ``role`` is compound, surface, or data for a file to which one of
+these refers; ``file`` is the path of the copy in the run's folder; ``text`` holds a short text, and is NULL for any
+other file, of which only the hash is recorded; ``doubts`` has a line for each doubt.
+"""
 
 _CHANNELS = (
     create(
@@ -89,10 +91,11 @@ _CHANNELS = (
         "u_per_kelvin_percent REAL NOT NULL", KnownSlope,
     )
 )  # fmt: skip
-"""Tables that make a record readable without its kind of rig (tester.store.kind_rows): the axes of its conditions
+"""Tables with which a record can be read without its kind of rig (tester.store.kind_rows): the axes of its conditions
 (``field`` is the column of ``condition`` with the value), its channels (those with a source are the columns of its
-samples, in order), the terms of its budgets (tester.analysis.terms; ``df`` NULL: taken as known), and the compounds'
-known sensitivity to temperature."""
+samples, in order), the terms of its budgets (tester.analysis.terms; ``df`` NULL: regarded as known), and the compounds'
+known sensitivity to temperature.
+"""
 
 _PIECES = (
     create("specimen", "specimen INTEGER PRIMARY KEY", SpecimenInfo)
@@ -100,11 +103,12 @@ _PIECES = (
     + create("wear_check", _ID, "used INTEGER NOT NULL CHECK (used IN (0, 1))", WearCheck)
     + create("travel", _ID, "piece INTEGER NOT NULL", _REPEAT_ID, Travel, constraint="UNIQUE (piece, repeat_id)")
 )
-"""The mounted pieces: of a specimen, several in turn. ``wear_check``: checks of a piece's diameter between its
-conditions (``before`` and ``after``: their numbers, 0 for none), compared with the first of their series at
+"""The mounted pieces: a specimen may have several, one after another. ``wear_check``: checks of a piece's diameter
+between its conditions (``before`` and ``after``: their numbers, 0 for none), compared with the first of their series at
 ``reference_s``; ``expected_mm`` is the diameter assumed until the check. ``travel``: the counterface's travel under
 load since the run began, and the piece's sliding, at the beginning of each repeat; with ``repeat_id`` 0, at the last
-stored state of the piece."""
+stored state of the piece.
+"""
 
 _CONDITIONS = (
     create(
@@ -126,10 +130,11 @@ _CONDITIONS = (
     + create("truth", _ID, "condition INTEGER NOT NULL", "repeat INTEGER NOT NULL", "attempt INTEGER NOT NULL",
              "name TEXT NOT NULL", "value REAL")
 )  # fmt: skip
-"""Conditions with the judgement of their repeats, and the measurements. ``soak``: the surface's thermometer against the
-heater's sensor at the end of each soak (tester.analysis.results); a condition that soaked again after a hold has a row
-for each. ``truth``: a simulated rig's true values of each repeat, on request (tester.run.simulated); for tests that
-judge results, no reader returns it."""
+"""Conditions with the judgement of their repeats, and the measurements. ``soak``: the surface's thermometer compared
+with the heater's sensor at the end of each soak (tester.analysis.results); a condition that soaked again after a hold
+has a row for each soak. ``truth``: a simulated rig's true values of each repeat, on request (tester.run.simulated). It
+is for tests that judge results; no reader returns it.
+"""
 
 _JOURNAL = (
     create("event", "sequence INTEGER PRIMARY KEY", StoredEvent)
@@ -148,14 +153,16 @@ CREATE TRIGGER exclusion_is_not_deleted BEFORE DELETE ON exclusion
     + create("chain", "seq INTEGER PRIMARY KEY", "name TEXT NOT NULL", "key INTEGER NOT NULL",
              "row_sha256 BLOB NOT NULL", "head BLOB NOT NULL")
 )  # fmt: skip
-"""The journal. A trip that is acknowledged after the run has ``acknowledged_utc`` alone. ``exclusion``: repeats that a
-person has left out of a mean, or included again (``excluded`` 0): who, when, why. Rows are only ever added;
+"""The journal. A trip that is acknowledged after the run has only ``acknowledged_utc``. ``exclusion``: repeats that a
+person has excluded from a mean, or included again (``excluded`` 0): who, when, why. Rows are only ever added;
 ``manifest_before`` is the folder's earlier manifest, with the hashes of the record without this row. ``chain``: the
-hashes over all rows (tester.store.chain)."""
+hashes over all rows (tester.store.chain).
+"""
 
 SCHEMA: Final = _RUN + _CHANNELS + _PIECES + _CONDITIONS + _JOURNAL
-"""The tables of the newest version. A test compares them with ``tests/tester/store/schema.sql``: a record class that
-gets a field needs a migration."""
+"""The tables of the newest version. A test compares them with ``tests/tester/store/schema.sql``: a new field of a
+record class needs a migration.
+"""
 
 TIMES: Final = {
     "run": ("rig_seconds",),
@@ -173,11 +180,14 @@ TIMES: Final = {
     "bus_statistic": ("t_s",),
     "device_parameter": ("t_s",),
 }
-"""Columns of rig times, by table: they continue over an interruption, and over the parts of a run."""
+"""Columns of rig times, by table: these times continue after an interruption, and from one part of a run to the
+next.
+"""
 
 MIGRATIONS: tuple[str, ...] = ()
-"""SQL that migrates a record from version n to n + 1, from 1 on, never edited once released. A new column without
-values changes no hash of the chain; a migration that changes values must chain those rows again."""
+"""SQL that migrates a record from version n to n + 1, beginning with version 1; never edited once released. A new
+column without values changes no hash of the chain; a migration that changes values must chain those rows again.
+"""
 
 VERSION = 1 + len(MIGRATIONS)
 
@@ -187,11 +197,11 @@ class StoreError(TroubleError):
 
 
 class NotBegunError(StoreError):
-    """A database without a run: its program was cut off before the first entry."""
+    """A database without a run: the program ended before the first entry."""
 
 
 def version_of(connection: sqlite3.Connection) -> int:
-    """Return the schema's number, 0 for an empty database; raises StoreError for another version's file."""
+    """Return the schema's number, 0 for an empty database; raises StoreError for a file of an unknown version."""
     version: int = connection.execute("PRAGMA user_version").fetchone()[0]
     application: int = connection.execute("PRAGMA application_id").fetchone()[0]
     if application != APPLICATION_ID and not (application == 0 and version == 0 and _empty(connection)):
@@ -210,8 +220,9 @@ def _empty(connection: sqlite3.Connection) -> bool:
 
 
 def migrate(connection: sqlite3.Connection) -> None:
-    """Create the tables in an empty database, or migrate an earlier version's, each step in a transaction; raises
-    StoreError."""
+    """Create the tables in an empty database, or migrate that of an earlier version, each step in a transaction; raises
+    StoreError.
+    """
     version = version_of(connection)
     steps = {n + 1: MIGRATIONS[n - 1] for n in range(version, VERSION)} if version else {VERSION: SCHEMA}
     for number, sql in steps.items():

@@ -1,7 +1,8 @@
-"""The record's interface for a run: one verb for each kind of event. Two recorders: the writer, and the null recorder.
+"""The record's interface for a run: one verb for each kind of event. There are two recorders: the writer, and the null
+recorder.
 
-A verb makes rows and queues them; it touches no file. Statements of one verb are committed together. Verbs belong to
-one thread, the scan's.
+A verb makes rows and queues them; it accesses no file. The statements of one verb are committed together. Only the
+scan's thread calls the verbs.
 """
 
 from __future__ import annotations
@@ -54,10 +55,10 @@ def no_utc() -> str:
 
 
 class Recorder:
-    """The verbs of a record. Subclasses decide where the rows go."""
+    """The verbs of a record. Subclasses decide what happens to the rows."""
 
     def __init__(self, utc: Callable[[], str] = no_utc) -> None:
-        """Count repeats, events, prompts and trips from 1; ``utc`` gives the wall clock as ISO 8601 text."""
+        """Number repeats, events, prompts and trips from 1; ``utc`` returns the wall clock as ISO 8601 text."""
         self._utc = utc
         self._repeats = 0
         self._events = 0
@@ -65,17 +66,20 @@ class Recorder:
         self._trips = 0
 
     origin_s: float = 0.0
-    """Offset of every recorded rig time: a resumed run counts from its interruption. Changed only while the queue is
-    empty."""
+    """Offset of every recorded rig time: a resumed run counts from its interruption. It may change only while the queue
+    is empty.
+    """
     failed: str | None = None
-    """Why nothing more can be written; the run must end in a controlled stop."""
+    """Why nothing more can be written, None while writing works; then the run must end in a controlled stop."""
     overruns: int = 0
     """Samples dropped because the queue was full."""
     on_event: Callable[[float, str, str, str], None] | None = None
     """Called with every recorded event: rig time in s, kind, text, severity."""
 
     def sample(self, row: tuple[float, ...]) -> None:
-        """Record one sample: a value for each recorded channel, as an exact tuple. For every scan: < 1 us."""
+        """Record one sample: a value for each recorded channel, as an exact tuple. Called in every scan, so it takes <
+        1 us.
+        """
         raise TypeError("a recorder defines what happens to samples")
 
     def _put(self, batch: Batch) -> None:
@@ -87,12 +91,12 @@ class Recorder:
         return ticket
 
     def _row(self, table: str, record: DataclassInstance | None = None, /, **values: Cell) -> Statement:
-        """Return the INSERT of a row: values by column, and a record's fields; rig times from the origin on."""
+        """Return the INSERT of a row from values by column and a record's fields; rig times count from the origin."""
         columns = columns_in(record) if record is not None else {}
         return insert(table, self._from_origin(table, {**values, **columns, **values}))
 
     def _change(self, table: str, values: Mapping[str, Cell], **where: Cell) -> Statement:
-        """Return the UPDATE of the rows with the values ``where``; rig times from the origin on."""
+        """Return the UPDATE of the rows that match ``where``; rig times count from the origin."""
         return update(table, self._from_origin(table, values), where)
 
     def _from_origin(self, table: str, values: Mapping[str, Cell]) -> dict[str, Cell]:
@@ -136,12 +140,12 @@ class Recorder:
         self._write(*(self._row("material", material) for material in materials), urgent=True)
 
     def begin_session(self, session: SessionInfo) -> None:
-        """Store the process that works on the run from now on; rig times count from its ``origin_s``."""
+        """Store the process that now works on the run; rig times count from its ``origin_s``."""
         self.origin_s = session.origin_s
         self._write(self._row("session", session), urgent=True)
 
     def resume_run(self, changes: Iterable[Change] = ()) -> Ticket:
-        """Store that an interrupted run is resumed: attempts that were cut off become void."""
+        """Store that an interrupted run resumes: attempts that were interrupted become void."""
         void: dict[str, Cell] = {"status": RepeatStatus.VOID.value, "reason": "cut off"}
         running: dict[str, Cell] = {"status": "running", "reason": "", "ended_utc": None, "rig_seconds": None}
         return self._write(
@@ -158,14 +162,14 @@ class Recorder:
         self._write(self._change("run", recipe), left_out, *map(self._to_come, to_come), urgent=True)
 
     def replace_rig(self, text: str, calibration: Iterable[Calibration], session: int, source: str) -> None:
-        """Store the rig file and the calibration of a resumed run."""
+        """Store the changed rig file and calibration of a resumed run."""
         figures = tuple(calibration)
         rig = {"rig_text": text, "rig_sha256": text_sha256(text), "rig_source": source}
         replaced = self._change("run", rig | {"calibration_sha256": calibration_sha256(figures)})
         self._write(replaced, *calibration_rows(figures, session), urgent=True)
 
     def add_metadata(self, values: Mapping[str, str]) -> None:
-        """Store metadata of the run from now on; an existing key gets its new value."""
+        """Store metadata of the run from now on; an existing key receives the new value."""
         rows = (insert("metadata", {"key": k, "value": v}, "INSERT OR REPLACE") for k, v in values.items())
         self._write(*rows, urgent=True)
 
@@ -176,7 +180,8 @@ class Recorder:
 
     def truth(self, condition: int, repeat: int, attempt: int, figures: Mapping[str, float]) -> None:
         """Store the true values of an attempt at a repeat on a simulated rig, by name; no code of the program reads
-        them."""
+        them.
+        """
         of: dict[str, Cell] = {"condition": condition, "repeat": repeat, "attempt": attempt}
         self._write(*(self._row("truth", **of, name=name, value=value) for name, value in figures.items()))
 
@@ -185,7 +190,7 @@ class Recorder:
         self._write(self._row("device_parameter", StoredParameter(t_s, device, parameter, name, value)))
 
     def bus_statistic(self, t_s: float, bus: str, device: str, counter: str, value: float) -> None:
-        """Store a counter of a bus, or of one device on it (else an empty text)."""
+        """Store a counter of a bus, or of one device on it (``device`` "" for the bus itself)."""
         self._write(self._row("bus_statistic", t_s=t_s, bus=bus, device=device, counter=counter, value=value))
 
     # What is mounted to be measured
@@ -201,12 +206,14 @@ class Recorder:
         self._write(self._change("piece", state, piece=piece))
 
     def piece_ground(self, piece: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
-        """Store that a piece has been ground in: a resumed run does not repeat it."""
+        """Store that a piece has been ground in, so that a resumed run does not grind it in again."""
         state = {"diameter_mm": diameter_mm, "sliding_m": sliding_m, "updated_s": t_s, "ground_s": t_s}
         self._write(self._change("piece", state, piece=piece), urgent=True)
 
     def travelled(self, piece: int, travel: Travel, repeat_key: int = 0) -> None:
-        """Store the travel of counterface and piece: at the beginning of a repeat, or (0) for a resumed run."""
+        """Store the travel of counterface and piece: at the beginning of a repeat, or (key 0) as the state for a
+        resumed run.
+        """
         of: dict[str, Cell] = {"piece": piece, "repeat_id": repeat_key}
         self._write(insert("travel", of, "INSERT OR IGNORE"), update("travel", columns_in(travel), of))
 
@@ -217,7 +224,7 @@ class Recorder:
     # Conditions and repeats
 
     def soaked(self, check: SoakCheck) -> None:
-        """Store the readings of thermometer and heater's sensor at the end of a condition's soak."""
+        """Store the readings of the thermometer and the heater's sensor at the end of a condition's soak."""
         self._write(self._row("soak", check))
 
     def begin_condition(self, condition: int, t_s: float) -> None:
@@ -226,7 +233,9 @@ class Recorder:
         self._write((sql, (t_s + self.origin_s, condition)))
 
     def condition_rate(self, condition: int, warming_k_s: float, holdable_band_k: float) -> None:
-        """Store how fast a temperature ran away and which band would have held it, with the repeat that shows it."""
+        """Store, with the repeat that shows them, how fast the temperature left its band and which band could be
+        held.
+        """
         rate = {"warming_k_s": warming_k_s, "holdable_band_k": holdable_band_k}
         self._write(self._change("condition", rate, condition=condition))
 
@@ -241,14 +250,15 @@ class Recorder:
         holdable_band_k: float = NAN,
         judged: Judged | None = None,
     ) -> None:
-        """Store the end and the judgement of a condition. CANNOT_HOLD includes the rate in K/s and a sufficient band in
-        K."""
+        """Store the end and the judgement of a condition. For CANNOT_HOLD that includes the rate in K/s and a
+        sufficient band in K.
+        """
         end: dict[str, Cell] = {"status": status.value, "reason": reason, "ended_s": t_s}
         rate = {"warming_k_s": warming_k_s, "holdable_band_k": holdable_band_k}
         self._write(self._change("condition", end | rate, condition=condition), *judged_rows(judged), urgent=True)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, t_s: float = NAN, piece: int = 0) -> int:
-        """Store the start of an attempt at a repeat and return its key, the ``repeat_key`` of its samples."""
+        """Store the start of an attempt at a repeat; return its key, which its samples have as ``repeat_key``."""
         self._repeats += 1
         of: dict[str, Cell] = {"condition": condition, "repeat": repeat, "attempt": attempt, "piece": piece}
         self._write(self._row("repeat", id=self._repeats, begun_s=t_s, status=RepeatStatus.OPEN.value, **of))
@@ -257,7 +267,7 @@ class Recorder:
     def commit_repeat(
         self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
     ) -> Ticket:
-        """Commit a repeat whole: its result, its bursts, every sample recorded so far, and the judgement of its
+        """Commit a complete repeat: its result, its bursts, every sample recorded so far, and the judgement of its
         condition.
 
         The repeat counts only once the ticket is done.
@@ -277,7 +287,9 @@ class Recorder:
     # The journal
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
-        """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two at once."""
+        """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two are committed at
+        once.
+        """
         if self.on_event is not None:
             self.on_event(t_s, kind, text, severity)
         self._events += 1
@@ -291,12 +303,12 @@ class Recorder:
         return self._prompts
 
     def prompt_answered(self, prompt: int, t_s: float, answer: str, by: str = "") -> None:
-        """Store the answer to a prompt and its author."""
+        """Store the answer to a prompt, and the person who gave it."""
         answered = {"answered_s": t_s, "answered_utc": self._utc(), "answer": answer, "answered_by": by}
         self._write(self._change("prompt", answered, id=prompt))
 
     def tare(self, t_s: float, kind: str, zeros: Mapping[str, float], repeat_key: int = 0) -> None:
-        """Store a tare: the offset of each channel, by its name; kind: reference, repeat or check."""
+        """Store a tare: the offset of each channel, by its name. ``kind``: reference, repeat or check."""
         self._write(self._row("tare", t_s=t_s, kind=kind, repeat_id=repeat_key, **zeros))
 
     def trip(
@@ -310,14 +322,14 @@ class Recorder:
         return self._trips
 
     def trip_acknowledged(self, trip: int, t_s: float, by: str = "") -> None:
-        """Store that a trip was acknowledged during the run, and by whom."""
+        """Store that a trip was acknowledged during the run, and by which person."""
         acknowledged = {"acknowledged_s": t_s, "acknowledged_utc": self._utc(), "acknowledged_by": by}
         self._write(self._change("trip", acknowledged, id=trip), urgent=True)
 
     # The file
 
     def flush(self) -> Ticket:
-        """Commit everything recorded so far without waiting for the second to end."""
+        """Commit everything recorded so far at once, without waiting for the next regular commit."""
         return self._write(urgent=True)
 
     def close(self) -> None:
@@ -325,7 +337,7 @@ class Recorder:
 
 
 class NullRecorder(Recorder):
-    """Records nothing. It can be copied with its engine, unlike a writer."""
+    """A recorder that records nothing. Unlike a writer, it can be copied with its engine."""
 
     def continue_from(self, other: Recorder) -> None:
         """Continue the numbering of another recorder."""

@@ -26,7 +26,7 @@ class Calibration:
 
 @dataclass(frozen=True, slots=True)
 class SessionInfo:
-    """One process's session of a run, counted from 1. ``origin_s``: rig seconds of the run at its beginning."""
+    """A process's session of work on a run, counted from 1. ``origin_s``: rig seconds of the run at its beginning."""
 
     session: int
     origin_s: float
@@ -42,9 +42,9 @@ class SessionInfo:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A difference at the resumption of a run (``subject``: recipe, rig or calibration), and the reason to continue.
+    """A difference found when a run resumes (``subject``: recipe, rig or calibration), and the reason to continue.
 
-    ``before`` is the earlier text; the run itself has the present one.
+    ``before`` is the earlier text; the run itself has the present text.
     """
 
     session: int
@@ -58,20 +58,22 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class StoredMaterial:
-    """A file of a compound or a surface that the recipe names, or (``role``: data) one that such a file refers to."""
+    """A file of a compound or surface that the recipe names, or a data file (``role``: data) to which one of these
+    refers.
+    """
 
     role: str
     name: str
-    """Name in the recipe; for data the file's own."""
+    """Name in the recipe; for data the file's own name."""
     file: str
-    """Path of its copy in the run's folder."""
+    """Path of the file's copy in the run's folder."""
     source: str
     sha256: str
-    """Hash of its bytes, hexadecimal."""
+    """Hash of the file's bytes, hexadecimal."""
     text: str | None
-    """None for anything but a short text: only the copy has it."""
+    """Content of a short text; None for any other file, whose content is only in the copy."""
     doubts: str = ""
-    """Doubtful points in it, a line each."""
+    """Doubtful points in the file, a line each."""
 
 
 ACCEPTED_RISK, LOOSE_KEYS = "accepted_risk", "loose_safety_keys"
@@ -79,11 +81,11 @@ ACCEPTED_RISK, LOOSE_KEYS = "accepted_risk", "loose_safety_keys"
 
 
 EXTENSION = "extension "
-"""Prefix of the components, in a run's versions, that are loaded extensions: ``extension laws/NAME``."""
+"""Prefix, in a run's versions, of the components that are loaded extensions: ``extension laws/NAME``."""
 
 
 def risk_text(metadata: Mapping[str, str]) -> str:
-    """Return the risks in a run's metadata as one line; "" where none was accepted."""
+    """Return the risks in a run's metadata as one line; "" if none was accepted."""
     keys = metadata.get(LOOSE_KEYS, "")
     return f"{keys} (accepted: {metadata.get(ACCEPTED_RISK, '')})" if keys else ""
 
@@ -107,7 +109,7 @@ class RunInfo:
     axes: Axes
     """Axes of the conditions."""
     worn: str = ""
-    """The kind's word for the part of the machine that wears and is measured on."""
+    """The kind's word for the part of the machine that wears and that is measured."""
     seed: int | None = None
     software_version: str = ""
     git_revision: str = ""
@@ -136,13 +138,13 @@ class RunInfo:
 
     @property
     def risk(self) -> str:
-        """Return the safety keys that are looser than allowed, and why that was accepted; "" where none is."""
+        """Return the safety keys that are looser than allowed, and why that was accepted; "" if there are none."""
         return risk_text(self.metadata)
 
 
 @dataclass(frozen=True, slots=True)
 class StoredRun:
-    """A run in its stored state: ``status`` is ``running`` until the run stores another, even after a crash."""
+    """A run as stored. ``status`` is ``running`` until the run stores another status, even after a crash."""
 
     info: RunInfo
     recipe_sha256: str
@@ -168,8 +170,9 @@ class SpecimenInfo:
 
 @dataclass(frozen=True, slots=True)
 class PieceInfo:
-    """A mounted piece (of a specimen, several in turn: a wheel), and its wear at ``updated_s`` (rig seconds) for a
-    resumed run. ``diameter_mm``: of its wearing part."""
+    """A mounted piece (a specimen may have several, for example wheels, one after another), and its wear at
+    ``updated_s`` (rig seconds) for a resumed run. ``diameter_mm``: diameter of the part that wears.
+    """
 
     piece: int
     specimen: int
@@ -181,12 +184,14 @@ class PieceInfo:
     sliding_m: float = 0.0
     updated_s: float = 0.0
     ground_s: float = NAN
-    """Time at which pre-grinding was complete; NaN before."""
+    """Time at which grinding in was complete; NaN before that."""
 
 
 @dataclass(frozen=True, slots=True)
 class ConditionInfo:
-    """One condition of the plan. ``row`` is its row of the table, shared by its replicates, in recipe order."""
+    """One condition of the plan. ``row``: number, in recipe order, of its row of the table, which its replicates
+    share.
+    """
 
     condition: int
     row: int
@@ -203,11 +208,11 @@ class ConditionInfo:
     at_most: int = 0
     until_percent: float | None = None
     both_directions: bool = False
-    """Repeats alternate between the requested direction and the reverse; counts above are of pairs."""
+    """Whether repeats alternate between the requested direction and its reverse; the counts above are then of pairs."""
 
     @property
     def scheme(self) -> Scheme:
-        """Return how its repeats make values."""
+        """Return how the condition's repeats give values."""
         return scheme_of(both_directions=self.both_directions)
 
     @property
@@ -223,7 +228,7 @@ class ConditionInfo:
 
 @dataclass(frozen=True, slots=True)
 class StoredCondition:
-    """A condition and its final state; ``status`` None before its end."""
+    """A condition and its final state; ``status`` is None before its end."""
 
     info: ConditionInfo
     status: ConditionStatus | None
@@ -231,15 +236,15 @@ class StoredCondition:
     started_s: float
     ended_s: float
     warming_k_s: float
-    """Where the temperature could not be held: the measured rate, K/s, and a sufficient band, K."""
+    """If the temperature could not be held: the measured rate, K/s, and a sufficient band, K."""
     holdable_band_k: float
     judged: Judgement = NOT_JUDGED
-    """Judgement of its repeats' drift."""
+    """Judgement of the drift of the condition's repeats."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoredRepeat:
-    """One attempt at a repeat. ``key`` is its id, as in the samples' ``repeat_key``."""
+    """One attempt at a repeat. ``key`` is its id, which its samples have as ``repeat_key``."""
 
     key: int
     condition: int
@@ -252,7 +257,9 @@ class StoredRepeat:
 
     @property
     def target(self) -> tuple[int, int, int]:
-        """Return condition, repeat and attempt, its permanent identity: keys change when parts are merged."""
+        """Return condition, repeat and attempt. They identify it permanently, while keys change when parts are
+        merged.
+        """
         return self.condition, self.repeat, self.attempt
 
 

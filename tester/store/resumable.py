@@ -1,4 +1,4 @@
-"""Start of a resumed run: which conditions are over, the committed repeats of the others, the mounted wheel."""
+"""The start of a resumed run: which conditions are finished, the committed repeats of the others, the mounted wheel."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from tester.store.run_folders import WENT_THROUGH
 from tester.store.run_reader import RunReader
 
 ENDS_A_CONDITION = (RepeatStatus.CANNOT_HOLD, RepeatStatus.NOT_REACHED)
-"""A repeat with one of these is its condition's last."""
+"""A repeat with one of these statuses is its condition's last."""
 
 
 @dataclass(frozen=True, slots=True)
 class ConditionSoFar:
-    """The committed part of a condition that is not over."""
+    """The committed part of an unfinished condition."""
 
     results: tuple[RepeatResult, ...] = ()
     """Results of its committed repeats, in order."""
     attempts: Mapping[int, int] = field(default_factory=dict[int, int])
-    """Attempts at each repeat, committed or not."""
+    """Number of attempts at each repeat, committed or not."""
     warming_k_s: float = NAN
     holdable_band_k: float = NAN
     keys: tuple[int, ...] = ()
     """Keys of the results' repeats."""
     blocks: tuple[tuple[Block, ...], ...] = ()
-    """Blocks of the results' repeats, from their samples: the basis of a condition's judgement."""
+    """Blocks of the results' repeats, from their samples: the data from which the condition is judged."""
     judged: Judgement = NOT_JUDGED
-    """Judgement at the commit of the last of them."""
+    """Judgement at the last commit of a repeat."""
 
     @property
     def over(self) -> RepeatStatus | None:
-        """Return the status with which its last repeat ended it, None where it continues."""
+        """Return the status of the last repeat if it ended the condition; None if the condition continues."""
         status = self.results[-1].status if self.results else None
         return status if status in ENDS_A_CONDITION else None
 
@@ -52,17 +52,17 @@ class ResumePoint:
     """Rig time at which the run continues: that of the last entry."""
     stand: Stand
     conditions: Mapping[int, ConditionSoFar]
-    """Conditions that are not over, by number; a missing one has nothing committed."""
+    """Unfinished conditions by number; a condition that is missing here has nothing committed."""
     reference_tare: Mapping[str, float] | None
-    """Zero of each channel of the load cell, by its name, at the mounting of the present wheel."""
+    """Zero of each channel of the load cell, by its name, measured when the present wheel was mounted."""
     session: int
     """Number of the next session."""
     pool: Pool = NOTHING_POOLED
-    """Repeatability of the conditions that are over."""
+    """Repeatability of the finished conditions."""
 
     @property
     def next_repeat(self) -> tuple[int, int] | None:
-        """Return condition and repeat of the first one begun and not committed, None where none has begun."""
+        """Return condition and repeat of the first repeat begun and not committed; None if there is none."""
         for number, condition in sorted(self.conditions.items()):
             if condition.over is None:
                 return number, len(condition.results) + 1
@@ -70,7 +70,7 @@ class ResumePoint:
 
 
 def resume_point(reader: RunReader) -> ResumePoint:
-    """Return the start of a resumed run; raises StoreError where the record cannot be read."""
+    """Return the start of a resumed run; raises StoreError if the record cannot be read."""
     run = reader.run()
     repeats: dict[int, list[StoredRepeat]] = {}
     for repeat in reader.repeats(attempts=True):
@@ -102,7 +102,7 @@ def resume_point(reader: RunReader) -> ResumePoint:
 def _so_far(reader: RunReader, attempts: list[StoredRepeat], stored: StoredCondition) -> ConditionSoFar:
     committed = {r.repeat: r for r in attempts if r.result.status not in (RepeatStatus.OPEN, RepeatStatus.VOID)}
     in_order: list[StoredRepeat] = []
-    # A gap ends the committed part: later repeats are done again.
+    # A gap ends the committed part: repeats after it are measured again.
     while len(in_order) + 1 in committed:
         in_order.append(committed[len(in_order) + 1])
     counted: dict[int, int] = {}
@@ -124,7 +124,7 @@ def _blocks(reader: RunReader, r: StoredRepeat) -> list[Block]:
 
 
 def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int], schemes: Mapping[int, Scheme]) -> Pool:
-    """Return the repeatability of the conditions that are over, in their order."""
+    """Return the repeatability of the finished conditions, in their order."""
     pool = Pool()
     for number in sorted(ended & repeats.keys()):
         last = {r.repeat: r.result for r in repeats[number] if r.result.status is not RepeatStatus.VOID}
@@ -134,7 +134,7 @@ def _pooled(repeats: Mapping[int, list[StoredRepeat]], ended: set[int], schemes:
 
 
 def _pieces(pieces: list[PieceInfo], repeats: Mapping[int, list[StoredRepeat]]) -> list[Mounted]:
-    """Return the mounted pieces, in that order, each with the last condition of its use."""
+    """Return the mounted pieces in order, each with the last condition for which it was used."""
     used: dict[int, int] = {}
     for condition, attempts in repeats.items():
         for repeat in attempts:

@@ -1,4 +1,4 @@
-"""The runs in a folder: one by its name, all of them, each with its status."""
+"""Finds the runs in a folder, one by its name or all of them, each with its status."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ RUNS = Path("runs")
 """Default folder of runs, under the working directory."""
 
 MANIFEST = "manifest.json"
-"""Written at every end of a run: a run without one was cut off, or is in progress."""
+"""Written whenever a run ends: a run without a manifest was interrupted, or is in progress."""
 
 
 NAMED = 4
-"""Most runs named in a message."""
+"""Greatest number of runs named in a message."""
 LATEST = "latest"
-"""Replaces a run's name: the newest run."""
+"""Word that stands for the newest run in place of a name."""
 _STAMPED = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}(?=-)")
-"""Beginning of the name of a run's folder."""
+"""Pattern of the beginning of a run folder's name."""
 
 
 def find_run(name: str, under: Path = RUNS) -> Path:
-    """Return the folder of a run, by folder, by its ``run.db`` or by a name under ``under``.
+    """Return the folder of a run, given by the folder, by its ``run.db`` or by a name under ``under``.
 
-    A prefix is enough if it fits only one run. ``latest`` is the newest run under ``under``, ``FOLDER/latest`` the
-    newest under another folder; a folder of that very name has precedence. Raises StoreError with the searched places,
-    and the runs with this prefix, or the nearest name.
+    A prefix is enough if only one run has it. ``latest`` is the newest run under ``under``, ``FOLDER/latest`` the
+    newest under another folder; a folder of exactly that name has precedence. Raises StoreError with the searched
+    places, and the runs with this prefix, or the nearest name.
     """
     for folder in (Path(name), under / name):
         if (folder / DATABASE).is_file():
@@ -60,7 +60,7 @@ def find_run(name: str, under: Path = RUNS) -> Path:
 
 
 def _beginning_with(name: str, under: Path) -> list[Path]:
-    """Return the runs whose names begin like the last part of ``name``, in the folder that it names or ``under``."""
+    """Return the runs whose names begin with the last part of ``name``, in the folder that it names or in ``under``."""
     path = Path(name)
     if not path.name or path.name.startswith("."):
         return []
@@ -69,10 +69,10 @@ def _beginning_with(name: str, under: Path) -> list[Path]:
 
 
 def newest_run(under: Path = RUNS) -> Path | None:
-    """Return the folder of the run that began last, None where there is none.
+    """Return the folder of the run that began last; None if there is none.
 
-    The date in the names decides; between runs of the same second, and between folders without a date (considered only
-    where no other exists), their records do.
+    The date in the names decides. Between runs of the same second the records decide, and also between folders without
+    a date, which are considered only if no others exist.
     """
     folders = list(run_folders(under))
     stamps = {folder: stamp[0] for folder in folders if (stamp := _STAMPED.match(folder.name))}
@@ -82,7 +82,7 @@ def newest_run(under: Path = RUNS) -> Path | None:
 
 
 def _began(folder: Path) -> tuple[str, int, str]:
-    """Return when a run began, by its record; without an entry, or between equal ones, its name decides."""
+    """Return when a run began, by its record; if it has no entry, or entries are equal, the name decides."""
     began = ""
     with suppress(StoreError), RunReader(folder) as reader:
         began = reader.run().info.started_utc
@@ -97,12 +97,12 @@ def run_folders(under: Path = RUNS) -> Iterator[Path]:
 
 
 def under_way(folder: Path) -> Holder | None:
-    """Return the process that works on a run at present, None without one."""
+    """Return the process that now works on a run; None if there is none."""
     return user_of(folder / RUN_LOCK)
 
 
 def cut_off(under: Path) -> list[Path]:
-    """Return the runs under a folder that have no end on record: the process died, or the power failed."""
+    """Return the runs under a folder that have no recorded end, because the process died or the power failed."""
     return [f for f in run_folders(under) if not (f / MANIFEST).is_file() and under_way(f) is None]
 
 
@@ -110,29 +110,30 @@ class RunStatus(StrEnum):
     """Status of a run. All commands, screens, catalogues and JSON use these words."""
 
     RUNNING = "running"
-    """A process works on it: it holds the lock of the run's folder."""
+    """A process works on the run: it holds the lock of the run's folder."""
     INTERRUPTED = "interrupted"
-    """It has no end on record and no process works on it: the process died, the power failed, or the program was
-    aborted."""
+    """The run has no recorded end and no process works on it: the process died, the power failed, or the program was
+    aborted.
+    """
     DONE = "done"
-    """It completed its plan, and every condition has a trustworthy value."""
+    """The run completed its plan, and every condition has a trustworthy value."""
     INCOMPLETE = "incomplete"
-    """It completed its plan, and at least one condition has no trustworthy value."""
+    """The run completed its plan, and at least one condition has no trustworthy value."""
     STOPPED = "stopped"
     TRIPPED = "tripped"
     FAILED = "failed"
     UNREACHABLE = "rig unreachable"
     UNREADABLE = "unreadable"
-    """Its record cannot be read."""
+    """The run's record cannot be read."""
 
     @property
     def over(self) -> bool:
-        """Return whether the plan was completed: nothing is left to resume."""
+        """Return whether the run completed its plan, so that nothing is left to resume."""
         return self in (RunStatus.DONE, RunStatus.INCOMPLETE)
 
     @property
     def can_resume(self) -> bool:
-        """Return whether `tester resume` may continue it."""
+        """Return whether `tester resume` may continue the run."""
         return not self.over and self not in (RunStatus.RUNNING, RunStatus.UNREADABLE)
 
 
@@ -155,6 +156,6 @@ def run_status(recorded: str, *, held: bool, missing: bool) -> RunStatus:
     has no trustworthy value. An unknown word counts as failed: nothing shows that the run completed its plan.
     """
     if recorded == WENT_THROUGH:
-        # Even while held: tables are being made, or a repeat is being left out by hand.
+        # Even while the lock is held: tables are being written, or a person is excluding a repeat.
         return RunStatus.INCOMPLETE if missing else RunStatus.DONE
     return RunStatus.RUNNING if held else _RECORDED.get(recorded, RunStatus.FAILED)

@@ -1,6 +1,6 @@
 """Reads a run's database: the run, its conditions and repeats, samples, events. Never writes.
 
-A run that is still being written, or was cut off, reads as far as it is committed.
+If a run is still being written, or was interrupted, everything committed so far can be read.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ _OF_A_TARE = ("id", "t_s", "kind", "repeat_id")
 
 @dataclass(frozen=True, slots=True)
 class SampleBlock:
-    """A series of samples of one repeat (key 0: of none): columns by name, in order of time."""
+    """A series of samples of one repeat (key 0: of no repeat): columns by name, in order of time."""
 
     repeat_key: int
     rows: int
@@ -103,7 +103,7 @@ class RunReader(RecordFile):
             raise StoreError(f"{self.path}: the terms of its budget cannot be read: {error}") from error
 
     def warming(self) -> dict[int, float]:
-        """Return how fast the surface warmed in the contacts of each repeat, K/s, by the repeat's key."""
+        """Return how fast the surface warmed during the contacts of each repeat, K/s, by the repeat's key."""
         sql = (
             "SELECT repeat_id, sum(surface_last_c - surface_first_c) / sum(ended_s - started_s) AS rate FROM burst"
             " WHERE revolutions > 1 GROUP BY repeat_id"
@@ -111,25 +111,24 @@ class RunReader(RecordFile):
         return {whole(row, "repeat_id"): number(row, "rate") for row in self.rows(sql)}
 
     def travels(self) -> dict[int, Travel]:
-        """Return how far counterface and piece had come at the beginning of each repeat, by the repeat's key."""
+        """Return the travel of counterface and piece at the beginning of each repeat, by the repeat's key."""
         rows = self.rows("SELECT * FROM travel WHERE repeat_id > 0")
         return {whole(row, "repeat_id"): record(Travel, row) for row in rows}
 
     def slid(self) -> dict[int, list[float]]:
-        """Return the sliding of each piece at the beginning of its repeats and at its last stored state, m, in
-        order."""
+        """Return each piece's sliding at the beginning of its repeats and at its last stored state, m, in order."""
         slid: dict[int, list[float]] = {}
         for row in self.rows("SELECT piece, piece_m FROM travel WHERE piece_m IS NOT NULL ORDER BY piece_m"):
             slid.setdefault(whole(row, "piece"), []).append(number(row, "piece_m"))
         return slid
 
     def counterface_m(self) -> float:
-        """Return the counterface's travel under load since the run began, m; 0 without a record."""
+        """Return the counterface's travel under load since the run began, m; 0 if none is recorded."""
         rows = self.rows("SELECT coalesce(max(counterface_m), 0.0) AS travel_m FROM travel")
         return next(number(row, "travel_m") for row in rows)
 
     def materials(self) -> list[StoredMaterial]:
-        """Return the files of compounds and surfaces, each before the files that it refers to."""
+        """Return the files of compounds and surfaces, each before the files to which it refers."""
         return list(self.records(StoredMaterial, "material ORDER BY id"))
 
     def specimens(self) -> list[SpecimenInfo]:
@@ -145,11 +144,13 @@ class RunReader(RecordFile):
         return list(self.records(WearCheck, "wear_check ORDER BY id"))
 
     def soaks(self) -> dict[int, SoakCheck]:
-        """Return the readings of thermometer and heater's sensor at the end of the last soak of each condition."""
+        """Return the readings of the thermometer and the heater's sensor at the end of the last soak of each
+        condition.
+        """
         return {check.condition: check for check in self.records(SoakCheck, "soak ORDER BY id")}
 
     def conditions(self) -> list[StoredCondition]:
-        """Return the plan's conditions in the recipe's order, replicates one after the other."""
+        """Return the plan's conditions in the recipe's order; replicates follow one another."""
         conditions: list[StoredCondition] = []
         axes = self.axes()
         for row in self.rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
@@ -161,9 +162,9 @@ class RunReader(RecordFile):
         return conditions
 
     def repeats(self, condition: int | None = None, *, attempts: bool = False) -> list[StoredRepeat]:
-        """Return the committed repeats, in order of condition and repeat: the last attempt of each.
+        """Return the committed repeats, in order of condition and repeat: the last attempt at each.
 
-        ``attempts``: every attempt instead, including void ones and the one in progress.
+        ``attempts``: return every attempt instead, including void attempts and the one in progress.
         """
         where, values = ("WHERE condition = ?", (condition,)) if condition is not None else ("", ())
         repeats: dict[tuple[int, ...], StoredRepeat] = {}
@@ -188,7 +189,7 @@ class RunReader(RecordFile):
         return self.records(StoredEvent, "event ORDER BY sequence")
 
     def event_data(self, kind: str) -> list[str]:
-        """Return the data of a kind's events, in order, where they have any."""
+        """Return the data of a kind's events, in order, without events that have none."""
         sql = "SELECT data FROM event WHERE kind = ? AND data <> '' ORDER BY sequence"
         return [text(row, "data") for row in self.rows(sql, (kind,))]
 
@@ -197,7 +198,7 @@ class RunReader(RecordFile):
         return self.records(StoredEvent, "event WHERE kind = 'command' AND severity <> 'debug' ORDER BY sequence")
 
     def holds(self) -> Iterator[StoredEvent]:
-        """Yield the ends of holds, in order; each text is the duration."""
+        """Yield the events at the ends of holds, in order; each event's text is the duration."""
         return self.records(StoredEvent, "event WHERE kind = 'held' ORDER BY sequence")
 
     def sessions(self) -> list[SessionInfo]:
@@ -209,13 +210,15 @@ class RunReader(RecordFile):
         return list(self.records(Change, "change ORDER BY id"))
 
     def calibration(self, session: int | None = None) -> list[Calibration]:
-        """Return the calibration at the end, or from a session on in which it was changed."""
+        """Return the calibration at the end of the run, or that of a session; only a session that changes it records
+        one.
+        """
         which = "(SELECT max(session) FROM calibration)" if session is None else "?"
         values = () if session is None else (session,)
         return list(self.records(Calibration, f"calibration WHERE session = {which} ORDER BY id", values))
 
     def exclusions(self) -> list[StoredExclusion]:
-        """Return people's decisions on single repeats, in order: left out, or included again."""
+        """Return people's decisions on single repeats, in order: excluded, or included again."""
         return list(self.records(StoredExclusion, "exclusion ORDER BY id"))
 
     def tares(self) -> Iterator[StoredTare]:
@@ -257,8 +260,8 @@ class RunReader(RecordFile):
     ) -> dict[str, NDArray[np.float64]]:
         """Return samples as NumPy arrays by column name, in order of time.
 
-        They are those of a condition, of one repeat of it, of one attempt (default: the last) at it; without a
-        condition all. Raises StoreError.
+        They are those of a condition, of one repeat of it, or of one attempt at that repeat (default: the last).
+        Without a condition they are all samples. Raises StoreError.
         """
         import numpy as np
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BLOCK_ROWS = 512
-"""Most rows in a block: about 5 s in slip."""
+"""Greatest number of rows in a block: about 5 s in slip."""
 
 LEVEL = 1
 """Compression level of zlib."""
@@ -37,7 +37,7 @@ def pack(rows: Sequence[Sequence[float]], columns: int) -> bytes:
 
 
 def unpack(data: bytes, rows: int, columns: int) -> list[array[float]]:
-    """Return the columns of a blob; raises ValueError where it does not hold rows * columns values."""
+    """Return the columns of a blob; raises ValueError if the blob does not hold rows * columns values."""
     raw = _inflated(data, rows, columns)
     size = 8 * rows
     unpacked: list[array[float]] = []

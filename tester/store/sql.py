@@ -1,4 +1,4 @@
-"""Records as rows, and rows as records: columns, statements, values; statements that are committed together."""
+"""Records as rows, and rows as records: columns, statements, values, and statements that are committed together."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ no column of its own."""
 
 
 class Ticket:
-    """A promise of a commit: ``done`` once COMMIT has returned, ``error`` if it failed."""
+    """A promise of a commit: ``done`` is set once COMMIT has returned, ``error`` if it failed."""
 
     __slots__ = ("done", "error")
 
     def __init__(self, *, done: bool = False) -> None:
-        """Start open, or done where there is nothing to wait for."""
+        """Begin open, or ``done`` if there is nothing to wait for."""
         self.done = done
         self.error: str | None = None
 
 
 @dataclass(slots=True)
 class Batch:
-    """Statements that belong together. An urgent batch is committed without waiting for the second to end."""
+    """Statements that belong together. An urgent batch is committed at once, not at the next regular commit."""
 
     statements: Sequence[Statement]
     ticket: Ticket
@@ -50,8 +50,8 @@ class Batch:
 def create(table: str, *columns: str | type[DataclassInstance], constraint: str = "") -> str:
     """Return a CREATE TABLE.
 
-    A text is a column as written; a record class gives a column for each of its fields that no text defines. The
-    default of a text or a whole number is the column's default.
+    A text in ``columns`` is a column, used as written; a record class gives a column for each of its fields that no
+    text defines. The default of a text field or a whole-number field is the column's default.
     """
     lines = {column.split()[0]: column for column in columns if isinstance(column, str)}
     for record in columns:
@@ -88,8 +88,9 @@ def insert(table: str, values: Mapping[str, Cell], verb: str = "INSERT") -> Stat
 
 
 def update(table: str, values: Mapping[str, Cell], where: Mapping[str, Cell]) -> Statement:
-    """Return an UPDATE to ``values`` of the rows that have the values ``where``, both by column name; without these, of
-    every row."""
+    """Return an UPDATE to ``values`` of the rows that match ``where``, both by column name; of every row if ``where``
+    is empty.
+    """
     assignments = ", ".join(f"{name} = ?" for name in values)
     condition = " AND ".join(f"{name} = ?" for name in where)
     sql = f"UPDATE {table} SET {assignments}" + (f" WHERE {condition}" if condition else "")
@@ -115,12 +116,12 @@ def whole(row: Row, name: str) -> int:
 
 
 def flag(row: Row, name: str) -> bool:
-    """Return a yes or no; no for NULL."""
+    """Return a truth value; False for NULL."""
     return bool(row[name])
 
 
 def blob(row: Row, name: str) -> bytes:
-    """Return bytes, none for NULL."""
+    """Return bytes; empty for NULL."""
     value = row[name]
     return value if isinstance(value, bytes) else b""
 
@@ -130,9 +131,9 @@ _READERS: Mapping[str, Callable[[Row, str], object]] = {"str": text, "float": nu
 
 
 def record(kind: type[Record], row: Row, **known: object) -> Record:
-    """Return a record whose fields are the row's columns of the same names, except those of ``known``.
+    """Return a record whose fields are the row's columns of the same names, except those in ``known``.
 
-    NULL is None in a field that may be None.
+    NULL becomes None in a field that may be None.
     """
     values = dict(known)
     for name, type_name, optional in _types(kind):
@@ -144,7 +145,7 @@ def record(kind: type[Record], row: Row, **known: object) -> Record:
 
 @cache
 def _types(kind: type[DataclassInstance]) -> list[tuple[str, str, bool]]:
-    """Return the name of each field, its type's, and whether it may be None."""
+    """Return the name of each field, the name of its type, and whether it may be None."""
     types = [(field.name, str(field.type)) for field in fields(kind)]
     return [(name, kind.removesuffix(" | None"), kind.endswith(" | None")) for name, kind in types]
 
@@ -155,7 +156,7 @@ def text_sha256(text: str) -> str:
 
 
 def calibration_sha256(calibration: Iterable[Calibration]) -> str:
-    """Return the SHA-256 for comparing two calibrations."""
+    """Return the SHA-256 by which two calibrations are compared."""
     return text_sha256("".join(f"{c.device}\t{c.quantity}\t{c.value}\t{c.unit}\n" for c in calibration))
 
 
@@ -166,7 +167,7 @@ def calibration_rows(figures: Iterable[Calibration], session: int) -> list[State
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A condition's judgement, and its repeats after it: result by key."""
+    """A condition's judgement, and the repeats as judged: result by key."""
 
     condition: int
     judgement: Judgement
@@ -174,7 +175,7 @@ class Judged:
 
 
 def judged_rows(judged: Judged | None) -> Iterator[Statement]:
-    """Yield the UPDATEs of a judged condition and its repeats; nothing without a judgement."""
+    """Yield the UPDATEs of a judged condition and its repeats; nothing if there is no judgement."""
     if judged is None:
         return
     yield update("condition", columns_in(judged.judgement), {"condition": judged.condition})

@@ -1,17 +1,17 @@
-"""Writes a run's database from a thread of its own, fed through a bounded queue.
+"""Writes a run's database in a thread of its own, which a bounded queue supplies.
 
-A file beside the database reserves RESERVE_BYTES of disk space. On a full disk it is deleted, and the last entries of
-the run, including its status, are written into that space.
+A file next to the database reserves RESERVE_BYTES of disk space. On a full disk the file is deleted, and the last
+entries of the run, including its status, are written into that space.
 
-The scan's thread only appends: to one deque that carries samples (tuples) and batches of statements in order of
+The scan's thread only appends to one deque, which carries samples (tuples) and batches of statements in order of
 arrival. Appending to and popping from a deque is atomic, so the scan holds no lock. The logger's thread takes the
 queued items and commits them in one transaction: every second of wall time, and at once for an urgent batch (a repeat,
-an alarm). Items stay in memory until COMMIT has returned. After an error ``failed`` keeps the reason for good: the run
-must stop. Items in memory stay there, no more than the queue's limit, and are tried again every second while the rig
-comes to rest, and by ``close``.
+an alarm). Items stay in memory until COMMIT has returned. After an error ``failed`` keeps the reason permanently, and
+the run must stop. Items in memory stay there, up to the queue's limit. The thread tries to write them again every
+second while the rig comes to rest, and ``close`` tries once more.
 
-A full queue drops the sample and counts it, as a real rig cannot wait. ``lossless`` (simulated time) waits instead, and
-waits for the COMMIT of a repeat, so that results do not depend on the disk's speed.
+If the queue is full, the sample is dropped and counted, because a real rig cannot wait. With ``lossless`` (simulated
+time) the scan waits instead, also for the COMMIT of a repeat, so that results do not depend on the disk's speed.
 """
 
 from __future__ import annotations
@@ -36,27 +36,28 @@ from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.sql import Batch, Judged, Ticket, insert
 
 COMMIT_EVERY_S = 0.7
-"""Longest wait of a sample for the start of its commit, by the wall clock: a second less the time of a slow disk and a
-busy machine."""
+"""Longest time that a sample waits for the start of its commit, s of wall time: a second less the time of a slow disk
+and a busy machine.
+"""
 
 QUEUE_LIMIT = 65536
-"""Items the queue holds before samples are dropped: ten minutes at 100 Hz, a minute at 1 kHz."""
+"""Number of items in the queue above which samples are dropped: ten minutes at 100 Hz, a minute at 1 kHz."""
 
 RETRY_S = 1.0
-"""After a write error the next attempt is made this much later."""
+"""Time from a write error to the next attempt, s."""
 
 RESERVE_BYTES = 4_000_000
 """Space reserved for the end of a run: a cool-down of 45 min at two samples a second takes 0.3 MB, a full queue (65536
 samples of 40 to 60 bytes) up to 4 MB."""
 LOSSLESS_LIMIT = 8192
-"""Most items in the queue before the simulation waits; also the most samples in one transaction."""
+"""Greatest number of items in the queue before the simulation waits, and of samples in one transaction."""
 
 _WRITE_ERRORS = (sqlite3.Error, OSError, ValueError, OverflowError, TypeError, IndexError)
-"""Errors of a disk (first two) or of a value that no column takes (the others)."""
+"""Errors of a disk (the first two) or of a value that no column accepts (the others)."""
 
 
 class RecordGoneError(OSError):
-    """The open file no longer lies under its name: further writes would be lost with it."""
+    """The name of the file no longer leads to the open file: further writes would be lost."""
 
 
 def _averaged(quantities: Quantities) -> tuple[str, ...]:
@@ -66,7 +67,7 @@ def _averaged(quantities: Quantities) -> tuple[str, ...]:
 def _open(path: Path, quantities: Quantities) -> tuple[sqlite3.Connection, Chain]:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
     try:
-        version_of(connection)  # before any change to a file that another program may own
+        version_of(connection)  # before any change, because the file may belong to another program
         # EXTRA until the log is in use: the deletion of a rollback journal is synced as well. A journal that came back
         # after a power cut would undo everything since.
         connection.execute("PRAGMA synchronous = EXTRA")
@@ -96,9 +97,9 @@ def _open(path: Path, quantities: Quantities) -> tuple[sqlite3.Connection, Chain
 class RunWriter(Recorder):
     """The record of one run in ``path`` (run.db): a new file, or the file of a resumed run.
 
-    ``quantities``: the channels of its samples; a resumed run must have been begun with the same. ``clock`` returns
-    seconds of a monotonic wall clock, ``utc`` the time of day as text. ``synchronous`` works without a thread: for
-    tests, and for simulations in which a thread only costs. Raises StoreError for a foreign or newer database,
+    ``quantities``: the channels of its samples; a resumed run must have begun with the same channels. ``clock`` returns
+    seconds of a monotonic wall clock, ``utc`` the time of day as text. ``synchronous``: work without a thread, for
+    tests, and for simulations in which a thread only costs time. Raises StoreError for a foreign or newer database,
     sqlite3.Error if the file cannot be opened.
     """
 
@@ -192,7 +193,7 @@ class RunWriter(Recorder):
     def commit_repeat(
         self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
     ) -> Ticket:
-        """Commit a repeat whole; when lossless, return only after the COMMIT."""
+        """Commit a complete repeat; if lossless, return only after the COMMIT."""
         ticket = super().commit_repeat(key, result, bursts, judged)
         if self._lossless:
             self._wait_for(ticket)
@@ -204,7 +205,7 @@ class RunWriter(Recorder):
             self._committed.clear()
 
     def close(self) -> None:
-        """Commit the rest, fold the log into the database and close the file."""
+        """Commit the rest, merge the log into the database and close the file."""
         if self._stopping:
             return
         self._stopping = True
@@ -215,8 +216,8 @@ class RunWriter(Recorder):
         self._commit()
         self._give_room()
         if not self._rows and not self._batches:
-            # Leave WAL mode: a finished run is a single file that reading does not touch. A reader at this moment
-            # prevents that; then the log is folded in when the last reader leaves, and the file stays in WAL mode.
+            # Leave WAL mode: a finished run is a single file, which reading does not change. A reader at this moment
+            # prevents that; the log is then merged when the last reader leaves, and the file stays in WAL mode.
             self._connection.execute("PRAGMA busy_timeout = 0")
             self._connection.execute("PRAGMA synchronous = EXTRA")
             with suppress(sqlite3.OperationalError):
@@ -225,7 +226,7 @@ class RunWriter(Recorder):
 
     @property
     def lost(self) -> str | None:
-        """Return why the record is incomplete; None where everything was written in the end."""
+        """Return why the record is incomplete; None if everything was written in the end."""
         return self.failed if self._rows or self._batches or self.overruns else None
 
     def _give_room(self) -> None:
@@ -243,7 +244,7 @@ class RunWriter(Recorder):
                 self._wake.clear()
                 self.service()
         finally:
-            # A caller that waits for this thread must not wait for ever, whatever ended it.
+            # A caller that waits for this thread must not wait for ever, whatever the cause of the thread's end.
             if not self._stopping and self.failed is None:
                 self.failed = "the recorder has ended unexpectedly"
 
@@ -260,7 +261,7 @@ class RunWriter(Recorder):
     def _try_again(self, waited_s: float) -> None:
         """Write the items that an error has kept in memory, a second after the last attempt."""
         if waited_s >= RETRY_S:
-            if len(self._rows) < QUEUE_LIMIT:  # else the queue fills, and further samples are dropped and counted
+            if len(self._rows) < QUEUE_LIMIT:  # otherwise the queue fills, and further samples are dropped and counted
                 self._drain()
             self._commit()
 
@@ -272,7 +273,7 @@ class RunWriter(Recorder):
                 self._batches.append(item)
                 self._urgent |= item.urgent
             elif origin := self.origin_s:
-                # A resumed run counts on from its interruption.
+                # The times of a resumed run continue from its interruption.
                 self._rows.append((item[0] + origin, *item[1:]))
             else:
                 self._rows.append(item)
@@ -314,8 +315,9 @@ class RunWriter(Recorder):
         self._stored_overruns = overruns
 
     def _look_for_file(self) -> None:
-        """Raise RecordGoneError where the file was removed, moved or exchanged: writes to it would be lost
-        unnoticed."""
+        """Raise RecordGoneError if the file was removed, moved or exchanged: writes to it would be lost without an
+        error.
+        """
         try:
             there = file_identity(self._path) == self._file
         except FileNotFoundError:

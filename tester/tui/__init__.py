@@ -1,1 +1,1 @@
-"""The operator's screen: a client of the service that owns nothing. Closing it, or losing it, touches no run."""
+"""The operator's screen: a client of the service that owns nothing. Closing or losing it does not affect a run."""

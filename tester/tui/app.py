@@ -34,7 +34,7 @@ from tester.tui.theme import THEMES
 from tester.tui.widgets.head import RING, TABS, KeyLine, StateLine, TabLine, Tabs
 
 FREE: Final = ("OFFLINE", "IDLE", "INTERRUPTED")
-"""Modes of a service that does not use the rig: it takes the buses only for a run or manual mode."""
+"""Modes of a service that is not using the rig: it locks the buses only for a run or manual mode."""
 
 
 def begins_here(options: TuiOptions, state: StateView) -> bool:
@@ -46,7 +46,7 @@ def begins_here(options: TuiOptions, state: StateView) -> bool:
 
 
 def commission_rig(options: TuiOptions) -> None:
-    """Run the commissioning, which takes over the terminal, and return when it ends."""
+    """Run commissioning, which takes over the terminal, and return when it ends."""
     command = tester_command("commission", options.rig, "--tui", "--out", str(options.runs))
     command += ["--ascii"] if options.plain else []
     command += ["--theme", options.theme] if options.theme else []
@@ -87,7 +87,7 @@ class TesterApp(HostApp):
         super().__init__(options, now)
         self._entered: View | None = None
         self._settled = False
-        """The first screen is chosen, because of a run under way or by a person."""
+        """Whether the first screen has been chosen, by a run under way or by a person."""
 
     # -- layout -----------------------------------------------------------------------------------------------
 
@@ -122,7 +122,7 @@ class TesterApp(HostApp):
         self.connect()
 
     def on_resize(self, event: Resize) -> None:
-        """Lay out for the new size; Textual itself adopts it only later."""
+        """Lay out for the new size, because Textual itself adopts it only later."""
         self.size_classes(event, "-tiny")
 
     @property
@@ -140,14 +140,14 @@ class TesterApp(HostApp):
         if not self._settled and self.scene.state is not None:
             self._settled = True
             if self.scene.state.run is not None and self.scene.state.run.outcome == UNDER_WAY:
-                self.go_to("run")  # show a run under way first
+                self.go_to("run")  # a run under way is shown first
                 return
         self._draw(base)
         if self.screen is base:
             self._attend(base)
 
     def _attend(self, base: Screen[object]) -> None:
-        """Enter the screen on display once, even if a dialog has hidden it until now, and keep the focus in it."""
+        """Enter the visible screen once, even if a dialog has hidden it until now, and keep the focus in it."""
         view = self.view
         if self._entered is not view:
             self._entered = view
@@ -162,7 +162,7 @@ class TesterApp(HostApp):
         self.view.show(self.scene)
 
     def service_died(self) -> None:
-        """Report it in a dialog, with what the devices do by themselves and what to do."""
+        """Report in a dialog that the service has died, what the devices do by themselves, and what to do."""
         self.push_screen(TextDialog(TITLE, death_text(self.scene)))
 
     # -- keys -------------------------------------------------------------------------------------------------
@@ -206,16 +206,16 @@ class TesterApp(HostApp):
             self.push_screen(TextDialog("Help", f"{self.view.HELP}{self.EVERYWHERE}"))
 
     def action_hold(self) -> None:
-        """HOLD, without asking."""
+        """HOLD, without a confirmation."""
         self.order(Hold(), "HOLD")
 
     def action_acknowledge(self) -> None:
-        """Acknowledge the alarm of line 2; without an alarm, an interrupted run."""
+        """Acknowledge the alarm of line 2, or an interrupted run if there is no alarm."""
         alarm = self.scene.top_alarm()
         self.order(Acknowledge(alarm.number if alarm is not None else 0))
 
     def action_abort(self) -> None:
-        """Ask for confirmation, if there is a run to abort."""
+        """Ask for confirmation to abort the run, if there is a run."""
         run = self.scene.state.run if self.scene.state is not None else None
         if run is not None and run.outcome == UNDER_WAY:
             self.push_screen(AbortDialog())
@@ -223,7 +223,7 @@ class TesterApp(HostApp):
             self.say("nothing runs that could be aborted")
 
     def action_resume(self) -> None:
-        """End HOLD, or offer the runs to resume, each after the pre-flight list."""
+        """End HOLD, or offer the runs that can resume; each is preceded by the pre-flight list."""
         state = self.scene.state
         if state is None:
             return
@@ -237,7 +237,7 @@ class TesterApp(HostApp):
             self.run_worker(self._offer_runs(state), group="orders", exit_on_error=False)
 
     async def _offer_runs(self, state: StateView) -> None:
-        """Show the runs that `tester resume` accepts, the newest first."""
+        """Show the runs that `tester resume` accepts, newest first."""
         answer = await self.ask(ListRuns())
         runs = resumable(answer)
         if runs:
@@ -250,7 +250,7 @@ class TesterApp(HostApp):
         self.order(TakeControl(force=True), "this screen controls")
 
     def action_commission(self) -> None:
-        """Open the commissioning screen, as `tester commission RIG --tui`, while no run is on."""
+        """Open the commissioning screen, as `tester commission RIG --tui` does, while no run is under way."""
         state, options = self.scene.state, self.options
         if options.view_only or state is None or not self.scene.linked:
             self.say("not from here: `tester commission RIG --tui` in a shell")

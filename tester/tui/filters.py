@@ -33,12 +33,12 @@ _PAIRS = (
     ("▃▂", "_"),
 )
 TABLE = {ord(sign): plain for signs, plain in _PAIRS for sign in signs}
-"""ASCII replacement of other characters."""
+"""ASCII replacements of other characters."""
 
 
 @lru_cache(maxsize=4096)
 def ascii_text(text: str) -> str:
-    """Return a text of the same width in ASCII; characters without a likeness become ``?``."""
+    """Return a text of the same width in ASCII; characters without a similar one become ``?``."""
     if text.isascii():
         return text
     return "".join(c if c.isascii() else TABLE.get(ord(c), "?" * cell_len(c)) for c in text)
@@ -61,7 +61,7 @@ def _colourless(style: Style) -> Style:
 
 
 class Colourless(LineFilter):
-    """NO_COLOR: removes all colour; bold, dim, underlined and reversed stay."""
+    """NO_COLOR: removes all colour, and keeps bold, dim, underlined and reversed."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the segments without colours."""

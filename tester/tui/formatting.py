@@ -9,21 +9,22 @@ from textwrap import wrap
 
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 _KEY = re.compile(r"\S.*?  +(?=\S)")
-"""In a help text, two spaces or more follow a key."""
+"""Pattern of a key in a help text: two spaces or more follow it."""
 HIDDEN = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Mn", "Me"})
-"""Unicode categories that move the cursor, reverse the writing or are invisible."""
+"""Unicode categories of characters that move the cursor, reverse the writing direction or are invisible."""
 
 
 def clean(text: str, limit: int = 2000) -> str:
-    """Return a foreign text in one line for display, with every invisible character replaced.
+    """Return a foreign text as one line for display, with every invisible character replaced.
 
-    Each character is replaced by exactly one, so that columns keep their places. ``limit``: characters kept.
+    Each character is replaced by exactly one, so that columns stay aligned. ``limit``: greatest number of characters
+    kept.
     """
     return "".join(" " if c == "\t" else REPLACEMENT if unicodedata.category(c) in HIDDEN else c for c in text[:limit])
 
 
 def clean_lines(text: str) -> str:
-    """Return a text of several lines the same way, with its line ends."""
+    """Return a text of several lines with the same replacements, keeping its line ends."""
     return "\n".join(clean(line) for line in text.split("\n"))
 
 
@@ -42,8 +43,8 @@ def local(moment: datetime) -> datetime:
 
 
 def reflow(text: str, width: int) -> str:
-    """Return a help text in lines of ``width`` characters: paragraphs are filled, a key's description is indented
-    beside it.
+    """Return a help text in lines of ``width`` characters: paragraphs are filled, and a key's description is indented
+    after the key.
     """
     lines: list[str] = []
     paragraph: list[str] = []

@@ -1,4 +1,4 @@
-"""Texts about a lost service: what became of it, what the devices do by themselves, what to do."""
+"""Texts about a lost service: what happened to it, what the devices do by themselves, what to do."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ SHORT = "the service has died: nothing controls the rig. Use the machine's own s
 
 
 def gone_line(scene: ScreenScene) -> str:
-    """Return what became of the service in a line, "" if unknown."""
+    """Return as a line what happened to the service; "" if unknown."""
     if scene.gone == "died":
         return SHORT
     return "the service has ended: `tester tui` starts another" if scene.gone == "ended" else ""
 
 
 def death_text(scene: ScreenScene) -> str:
-    """Return what to know and do after the service has died, in paragraphs."""
+    """Return, in paragraphs, what a person must know and do after the service has died."""
     state = scene.state
     rig = clean(state.alone) if state is not None else ""
     lines = [
@@ -53,7 +53,7 @@ def stop_failed(scene: ScreenScene, error: str) -> str:
 
 
 def farewell(scene: ScreenScene) -> str:
-    """Return the message on leaving the screen."""
+    """Return the message to print on leaving the screen."""
     if scene.gone == "died":
         return ("the service has died: nothing controls the rig. Check that it is at rest; `tester tui` starts another "
                 "service")  # fmt: skip
@@ -65,7 +65,7 @@ def farewell(scene: ScreenScene) -> str:
 
 
 class SmallPanel(Panel):
-    """Whether the run continues, the waiting question, the reason for the rig's mode."""
+    """Shows whether the run continues, the waiting question, and the reason for the rig's mode."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return some lines."""

@@ -1,4 +1,4 @@
-"""The application below its screens: the link to the service, the scene, and the sending of orders."""
+"""The application beneath its screens: the link to the service, the scene, and the sending of orders."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ from tester.tui.theme import LookApp
 from tester.tui.widgets.panel_base import Panel
 
 TICK_S = 0.5
-"""Period for updating the age of the data shown, s."""
+"""Period for updating the displayed age of the data, s."""
 LOG = "serve.log"
-"""Log of the service's output, in its folder."""
+"""File with the service's output, in the service's folder."""
 
 
 def start_service(rig: str, runs: Path) -> None:
-    """Start ``tester serve``; raises OSError. Connect to it to find out whether it runs.
+    """Start ``tester serve``; raises OSError. Only a connection to it shows whether it runs.
 
-    A session of its own: neither the end of the terminal nor a Ctrl+C in it reaches the service. Windows has process
-    groups for that, as documented; not tried.
+    It has a session of its own, so that neither the end of the terminal nor a Ctrl+C there reaches the service. On
+    Windows a process group does this, according to its documentation; not tried.
     """
     arguments = tester_command("serve", "--rig", rig, "--out", str(runs))
     detached = 0
@@ -76,20 +76,20 @@ class TuiOptions:
     runs: Path = Path("runs")
     address: Address | None = None
     start: bool = True
-    """Start a service if none runs."""
+    """Whether to start a service if none runs."""
     plain: bool = False
-    """ASCII only."""
+    """Whether to use only ASCII."""
     view_only: bool = False
     theme: str = ""
     recipe_folder: Path = Path()
 
 
 class HostApp(LookApp):
-    """Holds the link and the scene, independent of any screen."""
+    """Holds the link and the scene, independently of any screen."""
 
     ENABLE_COMMAND_PALETTE = True
     HAS_RIG: ClassVar[bool] = True
-    """Whether there is a rig behind this screen."""
+    """Whether this screen belongs to a rig."""
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+c,ctrl+q", "detach", "Detach", priority=True, show=False),
     ]
@@ -112,7 +112,7 @@ class HostApp(LookApp):
         """Called after each change of the scene."""
 
     def service_died(self) -> None:
-        """Called when the service is gone without a request to end."""
+        """Called when the service has died: it is gone without a request to end."""
 
     def go_to(self, name: str) -> None:
         """Show another screen, by its id."""
@@ -143,8 +143,8 @@ class HostApp(LookApp):
             self.scene_changed()
 
     def _begin_service(self) -> None:
-        """Start a service if none runs, once: a service that has ended is not restarted without the operator's
-        knowledge.
+        """Start a service if none runs, but only once: a service that has ended is not started again without the
+        operator's knowledge.
         """
         if self._started or not self.options.start or self.options.address is not None or self.options.view_only:
             return
@@ -157,11 +157,11 @@ class HostApp(LookApp):
     # -- orders -----------------------------------------------------------------------------------------------
 
     def order(self, action: Action, done: str = "") -> None:
-        """Send an order; show a refusal, or ``done`` once it is accepted."""
+        """Send an order; show why it was refused, or ``done`` once it is accepted."""
         self.run_worker(self.ask(action, done), group="orders", exit_on_error=False)
 
     async def ask(self, action: Action, done: str = "") -> JsonValue:
-        """Send an order and return the result; None if it was refused, which is shown."""
+        """Send an order and return its result; None if it was refused, which is shown."""
         if self.options.view_only or self.link is None:
             self.say("view only: nothing is commanded from here")
             return None
@@ -179,7 +179,7 @@ class HostApp(LookApp):
         return None
 
     def action_stop(self) -> None:
-        """STOP, without asking, from every screen and every client."""
+        """STOP, without a confirmation, from every screen and every client."""
         self._order_stop(fast=False)
 
     def action_fast_stop(self) -> None:
@@ -195,7 +195,7 @@ class HostApp(LookApp):
         task.add_done_callback(self._stops.discard)
 
     async def _stop(self, link: Link, sent: Future[None] | None, fast: bool) -> None:
-        """Wait for the STOP that the key has already sent; without it, or if it failed, send STOP over the link."""
+        """Wait for the STOP that the key has already sent. If there is none, or it failed, send STOP over the link."""
         taken = "FAST STOP taken" if fast else "STOP taken"
         if sent is not None:
             try:
@@ -208,7 +208,7 @@ class HostApp(LookApp):
         try:
             try:
                 await link.command(Stop(fast))
-            except LostError:  # the link is reconnecting: a new connection may be quicker
+            except LostError:  # the link is reconnecting: a new connection may be faster
                 async with await Client.connect(link.address, name=link.name) as client:
                     await client.stop(fast=fast)
         except (LostError, NoServiceError, RefusedError, TimeoutError) as error:
@@ -222,7 +222,7 @@ class HostApp(LookApp):
 
 
 def client_name() -> str:
-    """Return this screen's name at the service."""
+    """Return the name under which this screen joins the service."""
     return f"tui of process {os.getpid()}"
 
 
@@ -271,7 +271,9 @@ def runs_in(answer: JsonValue) -> list[Listed] | None:
 
 
 async def read_in_thread(host: HostApp, what: str, work: Callable[[], Read]) -> Read | None:
-    """Return what ``work`` reads of stored runs, in a thread; None, after a message, if ``what`` is unreadable."""
+    """Return what ``work`` reads from stored runs, in a thread. If ``what`` is unreadable, show a message and return
+    None.
+    """
     try:
         return await asyncio.to_thread(work)
     except (StoreError, OSError, sqlite3.Error) as error:

@@ -1,4 +1,4 @@
-"""A stored run as scenes: the recorded part of what the screens showed at any moment."""
+"""A stored run as scenes: what the screens showed at any moment, as far as it was recorded."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ from tester.tui.screen_scene import ScreenScene
 from tester.tui.widgets.trends_panel import WINDOW_S
 
 SPACING_S = 0.25
-"""Spacing of the samples kept, rig seconds; wider if there would be more than MOST."""
+"""Time between the samples kept, rig seconds; longer if there would be more than MOST."""
 MOST = 40_000
 PLOTS = 4
 """Number of trends on a screen."""
 OLD_S = 2.0
-"""A sample older than this at the moment shown is stale; between contacts two a second are recorded."""
+"""A sample that is older than this at the moment shown is stale, s; between contacts two a second are recorded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +47,17 @@ class Playback:
 
     run: StoredRun
     status: str
-    """A word of RunStatus."""
+    """The run's status, a word of RunStatus."""
     rig_name: str
     machine: MachineView
     quantities: Quantities
     specs: tuple[Value, ...]
-    """Its values, without their numbers."""
+    """The run's values, without their numbers."""
     samples: dict[str, array[float]]
     conditions: tuple[StoredCondition, ...]
     repeats: tuple[StoredRepeat, ...]
     bursts: dict[int, tuple[Burst, ...]]
-    """Bursts of the committed repeats, by their keys."""
+    """Bursts of the committed repeats, by the repeats' keys."""
     events: tuple[Event, ...]
     event_times: tuple[float, ...]
     steps: tuple[RecordedStep, ...]
@@ -68,7 +68,7 @@ class Playback:
         return max(self.run.rig_seconds, self.samples["time_s"][-1] if self.samples["time_s"] else 0.0)
 
     def show(self, scene: ScreenScene, at_s: float) -> None:
-        """Set the scene to a moment, rig seconds."""
+        """Set the scene to a moment of the run, rig seconds."""
         condition = next((c for c in self.conditions if c.started_s <= at_s < _end(c, self.length_s)), None)
         index = bisect_right(self.samples["time_s"], at_s) - 1
         scene.replayed = True
@@ -137,7 +137,7 @@ class Playback:
         return friction(self.quantities, row.__getitem__)
 
     def _wanted(self, channel: Channel, row: dict[str, float], info: ConditionInfo | None) -> Wanted:
-        """Return the setpoint: as recorded, else from the condition under way."""
+        """Return a channel's setpoint: the recorded one, else that of the condition under way."""
         screen = screen_of(channel)
         if screen.setpoint:
             return Wanted(channel.scaled(row.get(screen.setpoint)))
@@ -158,7 +158,7 @@ class Playback:
 
 
 def _done(burst: Burst, at_s: float) -> float:
-    """Return a burst's revolutions up to a moment, assuming a constant rate."""
+    """Return the revolutions of a burst up to a moment, assuming a constant rate."""
     return burst.revolutions * min((at_s - burst.started_s) / max(burst.ended_s - burst.started_s, 1e-9), 1.0)
 
 
@@ -189,11 +189,11 @@ def load(folder: Path) -> Playback:
 
 
 def drawn_as(quantities: Quantities, shown: Sequence[Value], kind: MachineView) -> MachineView:
-    """Return how to draw a record's channels: as the kind does if its trend is the same, else by the record's own
-    table.
+    """Return how to draw a record's channels: as the kind does if its trend has the same columns, else by the record's
+    own table.
 
     If the kind has changed since, or is not installed, the first trends are drawn; each range is at least a fiftieth of
-    its bar.
+    the channel's bar.
     """
     columns = trend_columns(quantities)
     if kind.trend == columns:
@@ -206,7 +206,7 @@ def drawn_as(quantities: Quantities, shown: Sequence[Value], kind: MachineView) 
 
 
 def _thinned(reader: RunReader, spacing_s: float) -> dict[str, array[float]]:
-    """Return samples at this spacing."""
+    """Return a run's samples at this spacing."""
     kept: dict[str, array[float]] = {name: array("d") for name in reader.quantities().names}
     due_s = float("-inf")
     for block in reader.sample_blocks():

@@ -1,4 +1,6 @@
-"""Plots in characters: a trend in braille dots (two by four a cell) or, in ASCII, one sign a cell; a scatter."""
+"""Plots in characters: a trend in braille dots (two by four in a cell) or, in ASCII, one sign in a cell; a scatter
+plot.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,14 @@ DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 WISH, LIMIT = "╌", "─"
 SERIES = "●"
 OTHER = "·"
-"""Sign of a point that every other point may cover."""
+"""Sign of a point that any other point may cover."""
 SHRINK = 4.0
 """A range narrows only when it is this many times wider than its content, so that it does not jump."""
 
 
 @dataclass(slots=True)
 class PlotRange:
-    """The y range of a trend: grows at once to round numbers, shrinks late."""
+    """The y range of a trend. It grows at once to round numbers, and shrinks only when it is much too wide."""
 
     low: float = 0.0
     high: float = 0.0
@@ -48,12 +50,12 @@ def round_step(step: float) -> float:
 
 @dataclass(slots=True)
 class Canvas:
-    """A grid of cells with data drawn in dots, and horizontal lines where there is no data."""
+    """A grid of cells: data drawn in dots, and horizontal lines where there are no data."""
 
     width: int
     height: int
     plain: bool = False
-    """ASCII: one dot a cell."""
+    """Whether to use ASCII, with one dot in a cell."""
     _dots: list[list[int]] = field(default_factory=list[list[int]])
     _lines: dict[int, str] = field(default_factory=dict[int, str])
 
@@ -63,7 +65,7 @@ class Canvas:
 
     @property
     def columns(self) -> int:
-        """Return how many columns of dots there are."""
+        """Return the number of columns of dots."""
         return self.width if self.plain else 2 * self.width
 
     def _row(self, y: float, scale: PlotRange) -> int:
@@ -72,13 +74,13 @@ class Canvas:
         return min(max(round((1.0 - share) * (rows - 1)), 0), rows - 1)
 
     def level(self, y: float | None, sign: str, scale: PlotRange) -> None:
-        """Draw a horizontal line, if it lies within the range."""
+        """Draw a horizontal line, if its value lies within the range."""
         if y is not None and scale.low <= y <= scale.high:
             row = self._row(y, scale)
             self._lines[row if self.plain else row // 4] = sign
 
     def bins(self, bins: Sequence[Bin | None], scale: PlotRange) -> None:
-        """Draw the newest bins, the last at the right edge."""
+        """Draw the newest bins, with the last at the right edge."""
         shown = bins[-self.columns :]
         first = self.columns - len(shown)
         for at, ends in enumerate(shown, first):
@@ -101,7 +103,7 @@ class Canvas:
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One point of a scatter, with its sign."""
+    """One point of a scatter plot, with its sign."""
 
     x: float
     y: float
@@ -137,7 +139,9 @@ def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2)
 
 
 def _labels(at: dict[int, str], width: int) -> str:
-    """Return texts below their columns as far as there is room, the first and the last before those between."""
+    """Return the texts below their columns as far as there is room. The first and the last have priority over those
+    between.
+    """
     line = [" "] * width
     columns = sorted(at)
     for column in dict.fromkeys((columns[0], columns[-1], *columns)):

@@ -1,4 +1,4 @@
-"""The recipes to choose from: those shipped, and the files in the working folder."""
+"""The recipes to choose from: the shipped recipes, and the files in the working folder."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import recipes
 from tester.base.trouble import in_words
 
 MOST_BYTES = 262_144
-"""Longest recipe read, bytes (safety.md): the service accepts none longer."""
+"""Greatest length of a recipe that is read, bytes (safety.md): the service accepts no longer one."""
 OWN = "recipes"
-"""Folder of a user's recipes, below the working folder."""
+"""Folder of a user's recipes, in the working folder."""
 
 
 @dataclass(frozen=True, slots=True)
 class RecipeProblem:
-    """One problem of a recipe: line and column from 1, message with where the limit comes from."""
+    """One problem of a recipe: line and column from 1, and a message that states the source of the limit."""
 
     line: int
     column: int
@@ -26,7 +26,7 @@ class RecipeProblem:
 
 
 Checked: TypeAlias = "tuple[RecipeProblem, ...] | None"
-"""The problems of a recipe; None before it is checked."""
+"""The problems of a recipe; None until it has been checked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +41,14 @@ class ListedRecipe:
 
     @property
     def reference(self) -> str:
-        """Return its name at the service."""
+        """Return the name by which the service knows the recipe."""
         return self.name if self.shipped else str(self.path)
 
     @property
     def sent(self) -> str:
-        """Return the text to send: the service may not find our files, but has the shipped ones."""
+        """Return the text to send to the service, which may not have access to our files but has the shipped
+        recipes.
+        """
         return "" if self.shipped else self.text
 
 
@@ -62,7 +64,7 @@ def shelf(folder: Path) -> list[ListedRecipe]:
 
 
 def read_again(recipe: ListedRecipe) -> ListedRecipe:
-    """Return the recipe as its file is now."""
+    """Return the recipe with the present content of its file."""
     return _read(recipe.name, recipe.path, shipped=recipe.shipped)
 
 
@@ -79,7 +81,7 @@ def own_copy(recipe: ListedRecipe, folder: Path) -> ListedRecipe:
 
 
 def _looks_like_one(recipe: ListedRecipe) -> bool:
-    """Return whether a file is a recipe, finished or not: a folder may hold other YAML files."""
+    """Return whether a file looks like a recipe, finished or not: a folder may contain other YAML files."""
     return bool(recipe.unreadable) or "recipe:" in recipe.text
 
 

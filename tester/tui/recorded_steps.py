@@ -12,7 +12,7 @@ from tester.service.protocol import Event
 from tester.service.state_view import PlanStep, PlanView, StepState
 
 _STOPS = re.compile(r"(run|hold) -> (?!run\b|hold\b)")
-"""Start of the event text for a change of mode that ends a run, or a part of it."""
+"""Pattern of the event text for a change of mode that ends a run, or a part of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +26,14 @@ class RecordedStep:
 
     @property
     def took_s(self) -> float:
-        """Return its duration, whole s."""
+        """Return the step's duration, whole s."""
         return float(round(self.ended_s - self.began_s))
 
 
 def recorded_steps(events: Iterable[Event], length_s: float) -> tuple[RecordedStep, ...]:
     """Return the steps of a journal in order; ``length_s``: rig seconds of the run.
 
-    A run whose parts ran side by side has no journal, so no steps.
+    A run whose parts ran side by side has no journal, and therefore no steps.
     """
     begun: list[tuple[str, str, float]] = []
     for event in events:
@@ -41,7 +41,7 @@ def recorded_steps(events: Iterable[Event], length_s: float) -> tuple[RecordedSt
             begun.append(("step", event.text, event.t_s))
         elif event.kind == "mode" and _STOPS.match(event.text) and begun and begun[-1][0] != STANDSTILL:
             begun.append((STANDSTILL, "to standstill", event.t_s))
-    ends = [*(began_s for _, _, began_s in begun), length_s][1:]  # none where no step began
+    ends = [*(began_s for _, _, began_s in begun), length_s][1:]  # none if no step began
     return tuple(
         RecordedStep(kind, title, began_s, max(ended_s, began_s))
         for (kind, title, began_s), ended_s in zip(begun, ends, strict=True)
@@ -49,12 +49,12 @@ def recorded_steps(events: Iterable[Event], length_s: float) -> tuple[RecordedSt
 
 
 def present_of(steps: Sequence[RecordedStep], at_s: float) -> int:
-    """Return how many of the steps have begun at a moment: the number of the present one."""
+    """Return how many steps have begun at a moment, which is the number of the present step."""
     return sum(step.began_s <= at_s for step in steps)
 
 
 def left_of(steps: Sequence[RecordedStep], at_s: float) -> tuple[float, float]:
-    """Return the rig seconds left at a moment, whole s: of the run, as the list of steps adds up, and of the present
+    """Return the rig seconds left at a moment, whole s: of the run (the sum over the list of steps), and of the present
     step.
     """
     here = present_of(steps, at_s)
@@ -63,7 +63,7 @@ def left_of(steps: Sequence[RecordedStep], at_s: float) -> tuple[float, float]:
 
 
 def plan_of(name: str, steps: Sequence[RecordedStep], at_s: float) -> PlanView:
-    """Return the steps as a list at a moment."""
+    """Return the list of steps as it was at a moment."""
     here = present_of(steps, at_s)
     listed = tuple(
         PlanStep(

@@ -1,4 +1,4 @@
-"""`tester replay`: the screens over a stored run, with a time slider. No rig, no service."""
+"""`tester replay`: the screens for a stored run, with a time slider. There is no rig and no service."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class TimeLine(Panel):
 
 
 class ReplayApp(TesterApp):
-    """Shows moments of a run."""
+    """Shows a run at any moment of its time."""
 
     FIRST = "run"
     SCREENS_HERE: ClassVar[Tabs] = tuple(tab for tab in TABS if tab[2] in ("run", "results", RING))
@@ -80,13 +80,13 @@ class ReplayApp(TesterApp):
         self.speed = 60.0
 
     def views(self) -> Iterable[View]:
-        """Return the screens that a record can fill."""
+        """Return the screens for which a record has data."""
         yield RunPage(plain=self.options.plain, id="run")
         yield ResultsView(id="results")
         yield RingPage(id=RING)
 
     def below(self) -> Iterable[Widget]:
-        """Return the slider."""
+        """Return the slider, which is above the last line."""
         yield TimeLine(id="time")
 
     def keys_of(self, view: View) -> Keys:
@@ -137,7 +137,7 @@ class ReplayApp(TesterApp):
         line.show(self.scene)
 
     def action_hold(self) -> None:
-        """Play, or pause."""
+        """Play, or pause the replay."""
         self.playing = not self.playing
         self._show_time()
 
@@ -147,7 +147,7 @@ class ReplayApp(TesterApp):
         self._show_time()
 
     def action_stop(self) -> None:
-        """Report that a replay has nothing to stop."""
+        """Report that there is nothing to stop in a replay."""
         self.say("a replay has no rig: `tester stop` stops one", problem=True)
 
     def action_abort(self) -> None:
@@ -160,5 +160,5 @@ class ReplayApp(TesterApp):
         self.action_stop()
 
     def action_detach(self) -> None:
-        """Leave."""
+        """Leave the replay."""
         self.exit("")

@@ -1,4 +1,4 @@
-"""The rings of stored runs, for the screen. Reading is slow enough to need a thread."""
+"""The slip rings of stored runs, for the screen. Reading them is slow enough to need a thread."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tester.store.record_schema import StoreError
 from tester.store.run_folders import run_folders, under_way
 
 MOST: Final = 200
-"""Most runs read, the newest."""
+"""Greatest number of runs read; the newest are read."""
 
 
 @dataclass(frozen=True, slots=True)
 class RingRow:
-    """A run: the turns of the ring until its end, and the sectors where its errors gather."""
+    """A run: the turns of the ring up to its end, and the sectors in which its errors are concentrated."""
 
     run: RingRun
     age: float
@@ -28,7 +28,7 @@ class RingRow:
 
 @dataclass(slots=True)
 class KeptRings:
-    """The runs of one rig: the rig of the last run."""
+    """The runs of one rig: the rig of the newest run."""
 
     since: str = ""
     """The run from which the ring counts as new; "" = the first."""
@@ -38,7 +38,7 @@ class KeptRings:
     _rows: list[RingRow] = field(default_factory=list[RingRow])
 
     def read(self, runs: Path) -> KeptRings:
-        """Read new runs, skipping unreadable ones, and return this; raises OSError."""
+        """Read new runs, skipping unreadable ones, and return this object; raises OSError."""
         known: dict[str, RingFound] = {}
         for folder in list(run_folders(runs))[-MOST:]:
             ring = self._found.get(folder.name)

@@ -1,4 +1,4 @@
-"""The scene: everything the screens show at present, live from the service or replayed from a run."""
+"""The scene: all data that the screens show at present, live from the service or replayed from a run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tester.service.protocol import Snapshot as SnapshotMessage
 from tester.service.state_view import Alarm, PlanView, RunView, StateView
 
 STALE_S = 2.0
-"""A state older than this is stale, and none of its values is trustworthy, s."""
+"""Age above which a state is stale and none of its values is trustworthy, s."""
 FRAMES_KEPT = 1000
 UNDER_WAY = "running"
 """Outcome of a run under way (docs/protocol.md)."""
@@ -32,7 +32,7 @@ UNDER_WAY = "running"
 
 @dataclass(slots=True)
 class ScreenScene:
-    """The data of the screens. ``state`` None: none has arrived yet.
+    """The data of the screens. ``state`` is None until a state has arrived.
 
     ``now`` returns seconds, by default of tester.base.clock.monotonic.
     """
@@ -45,19 +45,19 @@ class ScreenScene:
         default_factory=lambda: deque[tuple[float | None, ...]](maxlen=TREND_ROWS)
     )
     machine: MachineView = UNKNOWN
-    """Tables of the kind on display."""
+    """Tables of the kind of rig on display."""
     epoch: int = 0
     """Changes when ``trend`` is replaced, not when it grows."""
     frames: deque[Frame] = field(default_factory=lambda: deque[Frame](maxlen=FRAMES_KEPT))
     frames_dropped: int = 0
     frames_seen: int = 0
     lost: str = ""
-    """Why there is no link, "" while there is one."""
+    """Why there is no link; "" while there is one."""
     gone: Gone = ""
-    """What became of the service behind a lost link, as far as known."""
+    """What happened to the service behind a lost link, as far as known."""
     received_s: float = 0.0
     service: str = ""
-    """The life of the service that the events come from."""
+    """The instance of the service from which the events come."""
     controls: bool = False
     view_only: bool = False
     replayed: bool = False
@@ -79,7 +79,7 @@ class ScreenScene:
         return run if run is not None and run.outcome != UNDER_WAY and run.folder else None
 
     def take(self, message: ServerMessage | Lost, client: Client | None) -> None:
-        """Take a message from the link."""
+        """Process a message from the link."""
         if isinstance(message, Lost):
             self.lost, self.gone = message.reason or "the connection is lost", message.gone
             return
@@ -117,11 +117,11 @@ class ScreenScene:
         self.epoch += 1
 
     def value(self, key: str) -> Value | None:
-        """Return a value by its key."""
+        """Return the value with this key; None if there is none."""
         return self.state.value(key) if self.state is not None else None
 
     def alarms(self) -> list[Alarm]:
-        """Return the alarms, the most urgent first: unacknowledged, then by priority, first-up, number."""
+        """Return the alarms, most urgent first: unacknowledged ones, then by priority, first-up, number."""
         if self.state is None:
             return []
         return sorted(
@@ -129,5 +129,5 @@ class ScreenScene:
         )
 
     def top_alarm(self) -> Alarm | None:
-        """Return the most urgent unacknowledged alarm, None without any."""
+        """Return the most urgent unacknowledged alarm; None if there is none."""
         return next((alarm for alarm in self.alarms() if alarm.state != "acknowledged"), None)

@@ -1,7 +1,8 @@
-"""STOP's own way to the service: sent from the thread that reads the terminal, past the screen's loop.
+"""STOP's own connection to the service: the thread that reads the terminal sends it, independently of the screen's
+loop.
 
-A screen that is drawing, or that hangs because its terminal is not read, does not delay STOP. The connection to the
-service's lane for STOP stays open, so that it need not be opened when it counts.
+A screen that is drawing, or that hangs because its terminal is not read, does not delay STOP. The separate connection
+to the service stays open, so that STOP takes no time to connect.
 """
 
 from __future__ import annotations
@@ -21,14 +22,14 @@ from tester.service.address import Address
 from tester.service.stop_call import NotTakenError, StopCall
 
 LOOK_S = 1.0
-"""Period for reopening a lost connection, s."""
+"""Period at which a lost connection is opened again, s."""
 
 
 class TakesStop(Protocol):
-    """Takes STOP."""
+    """An object that accepts STOP."""
 
     def press(self, *, fast: bool = False) -> None:
-        """STOP; from any thread."""
+        """Send STOP; may be called from any thread."""
         ...
 
 
@@ -36,7 +37,7 @@ class StopLine:
     """Sends STOP from a separate thread."""
 
     def __init__(self, address: Address | None, name: str) -> None:
-        """Connect nothing before ``open`` or ``press``. ``name``: who stops, for the record."""
+        """Connect nothing before ``open`` or ``press``. ``name``: the sender of STOP, for the record."""
         self._call = StopCall(address, name)
         self._pressed: SimpleQueue[tuple[bool, Future[None]] | None] = SimpleQueue()
         self._sent: Future[None] | None = None
@@ -49,14 +50,16 @@ class StopLine:
             self._thread.start()
 
     def press(self, *, fast: bool = False) -> None:
-        """Send STOP; from any thread."""
+        """Send STOP; may be called from any thread."""
         sent: Future[None] = Future()
         self._sent = sent
         self._pressed.put((fast, sent))
         self.open()
 
     def take(self) -> Future[None] | None:
-        """Return the result of the newest press (or its exception, NotTakenError), once; None without a press."""
+        """Return the result of the newest press (or its exception, NotTakenError), only once; None if there was no
+        press.
+        """
         sent, self._sent = self._sent, None
         return sent
 
@@ -88,7 +91,7 @@ class StopLine:
 
 
 def stopping(driver: type[Driver], line: TakesStop) -> type[Driver]:
-    """Return a terminal driver that presses ``line`` on STOP's keys before the screen gets them."""
+    """Return a terminal driver that presses ``line`` on STOP's keys before the screen receives them."""
 
     class StoppingDriver(driver):
         """Reads the keys, in a separate thread."""

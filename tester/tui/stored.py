@@ -1,4 +1,4 @@
-"""A stored run for the Results screen. Reading is slow enough to need a thread."""
+"""A stored run for the Results screen. Reading it is slow enough to need a thread."""
 
 from __future__ import annotations
 
@@ -22,7 +22,9 @@ from tester.tui.plot import OTHER, SERIES, Bin, Point
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One condition: cells of ``Stored.header``, its setpoint, mu (None: none), its number in the store."""
+    """One condition: its cells under ``Stored.header``, its setpoint, mu (None if it has none), its number in the
+    store.
+    """
 
     cells: tuple[str, ...]
     held: Setpoint
@@ -30,7 +32,7 @@ class Row:
     mu: float | None
     condition: int
     mark: str = ""
-    """Mark of mu (tester.analysis.trust): "" if it is trustworthy."""
+    """Mark of mu (tester.analysis.trust); "" if mu is trustworthy."""
     figures: str = ""
     """Text of the columns after the setpoints, with their headings."""
     flags: tuple[str, ...] = ()
@@ -43,11 +45,11 @@ class RepeatRow:
 
     repeat: int
     figures: str
-    """Its coefficient with its heading."""
+    """The repeat's coefficient with its heading."""
     status: str
     exclusion: str
     by_hand: str
-    """Who excluded it, and when; "" unless excluded by a person."""
+    """Who excluded the repeat, and when; "" unless a person excluded it."""
     trace: tuple[Bin | None, ...]
 
 
@@ -60,22 +62,22 @@ class Stored:
     recipe: str
     status: str
     header: tuple[str, ...]
-    """The paper's axes, further axes off their default, and the columns for a screen. With more axes than the paper's,
-    values that all rows share are in ``common`` instead.
+    """The paper's axes, further axes that differ from their default, and the columns for a screen. If there are more
+    axes than the paper's, ``common`` contains the values that all rows share.
     """
     common: str
     rows: tuple[Row, ...]
     axes: Axes
     record_head: str = ""
-    """Head of the chain over the run's record; "" without one."""
+    """Head of the hash chain over the run's record; "" if it has none."""
     conditions: int = 0
     """Number of the recipe's conditions, without references; replicates count once."""
     values: int = 0
-    """How many of these have a trustworthy value."""
+    """Number of these conditions that have a trustworthy value."""
 
     @property
     def plotted(self) -> tuple[Axis, ...]:
-        """Axes to plot the coefficient against: the paper's, and others that differ here."""
+        """Axes against which to plot the coefficient: the paper's, and others that differ between these conditions."""
         more = self.axes.differing(row.held for row in self.rows)
         shown = (axis for axis in self.axes if not axis.choices and (axis.paper or axis in more))
         return tuple(sorted(shown, key=lambda axis: axis.plotted))
@@ -95,7 +97,7 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
     setpoints = [measured.info.setpoint for measured in conditions]
     shown, common = results.axes.columns(setpoints), ""
     if len(setpoints) > 1 and any(not axis.paper for axis in shown):
-        # A narrow screen has room for the axes that differ; shared values are shown once, above.
+        # A narrow screen has room only for the axes that differ; shared values are shown once, above the table.
         words = ListWords(setpoints)
         shown, common = words.axes, words.common
     table = conditions_table(results)
@@ -112,7 +114,7 @@ def stored_of(folder: Path, results: RunResults) -> Stored:
 
 
 def _row(one: ConditionRow, view: Table[ConditionRow]) -> Row:
-    """Return a condition with its cells of ``view``."""
+    """Return a condition with its cells in ``view``."""
     setpoint, result = one.info.setpoint, one.result
     figures = "  ".join(
         f"{column.heading} {column.text(one)} {column.unit}".rstrip()
@@ -151,7 +153,7 @@ def _who(word: StoredExclusion | None) -> str:
 
 
 def _trace(reader: RunReader, condition: int, repeat: int, columns: int) -> tuple[Bin | None, ...]:
-    """Return the coefficient of the accepted samples, least and greatest in each column."""
+    """Return the trace of the accepted samples: least and greatest coefficient in each column."""
     import numpy as np
 
     samples, roles = reader.samples(condition, repeat), reader.quantities().roles
@@ -170,7 +172,7 @@ def row_words(row: Row) -> str:
 
 
 def series(stored: Stored, row: Row, along: Axis) -> list[Row]:
-    """Return the conditions with a value that differ from ``row`` in at most this axis."""
+    """Return the conditions with a value that differ from ``row`` at most along this axis."""
 
     def others(r: Row) -> tuple[object, ...]:
         return r.compound, *(other.of(r.held) for other in r.held.axes if other.name != along.name)

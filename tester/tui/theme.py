@@ -1,4 +1,6 @@
-"""Themes: a grey base, with colour only for abnormal states. Two use 24-bit colours, one the 16 of every terminal."""
+"""Themes: a grey base, with colour only for abnormal states. Two use 24-bit colours, the third the 16 colours of every
+terminal.
+"""
 
 from __future__ import annotations
 
@@ -59,11 +61,11 @@ SIXTEEN = Theme(
     success="#c0c0c0",
     dark=True,
 )
-"""Uses the terminal's own palette, so that no colour is blended away."""
+"""Theme in the terminal's own palette, so that no colour is blended away."""
 THEMES = {"dark": DARK, "light": LIGHT, "16": SIXTEEN}
 
 SMALLEST, WIDE, HUGE = (60, 15), (110, 34), (180, 46)
-"""Columns and lines: of the smallest terminal for the screens, and from which there is room for more panels."""
+"""Columns and lines: of the smallest terminal for the screens, and of terminals with room for more panels."""
 STYLES = Path(__file__).with_name("screens.tcss")
 
 
@@ -77,7 +79,7 @@ class LookApp(App[str]):
     ]
 
     def __init__(self, theme: str = "", *, plain: bool = False) -> None:
-        """``theme``: a name of THEMES, "" = by the terminal; ``plain``: ASCII only."""
+        """``theme``: a name of THEMES, "" = chosen by the terminal; ``plain``: use only ASCII."""
         super().__init__()
         self._theme_wanted = theme
         for known in THEMES.values():
@@ -88,13 +90,13 @@ class LookApp(App[str]):
             self._last_filters.append(AsciiOnly())
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return the filters between screen and terminal; NO_COLOR removes all colour, not only its saturation."""
+        """Return the filters between screen and terminal. NO_COLOR removes all colour, not only its saturation."""
         if self._last_filters and self.no_color:
             return list(self._last_filters)
         return [*super().get_line_filters(), *self._last_filters]
 
     def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
-        """Show the person a message, as plain text."""
+        """Show a message to the person, as plain text."""
         self.notify(
             clean(text), severity="error" if problem else "information", timeout=60.0 if lasting else 6.0, markup=False
         )
@@ -108,6 +110,6 @@ class LookApp(App[str]):
         base.set_class(width >= HUGE[0] and height >= HUGE[1], "-huge")
 
     def choose_colours(self) -> None:
-        """Use the sixteen colours if the terminal has no more, unless a theme was chosen."""
+        """Use the sixteen colours if the terminal has no others, unless a theme was chosen."""
         if not self._theme_wanted and self.console.color_system == "standard":
             self.theme = THEMES["16"].name

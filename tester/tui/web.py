@@ -1,8 +1,8 @@
 """`tester tui --web`: the screen in a browser, on this machine only, view only.
 
-Every user of this machine can reach the port. So no command works there, not even STOP (docs/decisions/0023). A page of
-another origin is refused by the ``Host`` and ``Origin`` headers that a browser sends, even if its name resolves to this
-machine (DNS rebinding).
+Every user of this machine can reach the port, so no command works there, not even STOP (docs/decisions/0023). A page of
+another origin is refused because of the ``Host`` and ``Origin`` headers that its browser sends, even if its name
+resolves to this machine (DNS rebinding).
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")
-"""Names of this machine in a browser."""
+"""Names of this machine that a browser may use."""
 HTTP_PORT = 80
-"""Browsers leave this port out of the header."""
+"""Port that browsers leave out of the header."""
 
 
 def is_own(host: str, origin: str | None, port: int) -> bool:
@@ -53,7 +53,7 @@ async def application(port: int, address: str) -> web.Application:
         return await handler(request)
 
     class OwnServer(Server):
-        """A server that answers only requests for itself."""
+        """A server that answers only requests addressed to itself."""
 
         async def answering(self) -> web.Application:
             app = await self._make_app()
@@ -67,7 +67,7 @@ def serve(port: int, address: str) -> None:
     """Serve view-only screens until interrupted, one process for each browser. Raises ImportError without
     textual-serve.
 
-    ``address``: of the service as `--connect` takes it, "" = the user's own.
+    ``address``: of the service, as `--connect` accepts it; "" = the user's own.
     """
     from aiohttp import web
 

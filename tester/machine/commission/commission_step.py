@@ -1,4 +1,4 @@
-"""A step of a commissioning, and the parts that a kind supplies for it."""
+"""A step of commissioning, and the parts that a kind supplies for it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tester.machine.rig_ports import Ports
 
 
 class Seat(Protocol):
-    """A rig on its wires for one step: a ticker drives it, a procedure uses it."""
+    """A rig on its wires for one step. A ticker ticks it, and a procedure uses it."""
 
     @property
     def ready(self) -> bool:
@@ -31,7 +31,7 @@ class Seat(Protocol):
 
     @property
     def reason(self) -> str:
-        """Why it ended by itself; "" after a request."""
+        """Why the seat ended by itself; "" if it ended on request."""
         ...
 
     def tick(self, now: float) -> float:
@@ -43,7 +43,7 @@ class Seat(Protocol):
         ...
 
     def abandon(self) -> None:
-        """Send a safe state once: no tick follows."""
+        """Send a safe state once; no tick follows."""
         ...
 
 
@@ -55,17 +55,19 @@ class Notes:
     read: Callable[[str, Mapping[str, Any]], object]
     """Record a reading at once."""
     done: Mapping[str, Mapping[str, Any]]
-    """Values of the finished steps, by step."""
+    """Values that the finished steps recorded, by step."""
     given: Mapping[str, str] = field(default_factory=dict[str, str])
-    """The command line's answers, by the question's key."""
+    """Answers from the command line, by the question's key."""
     values: dict[str, Any] = field(default_factory=dict[str, Any])
-    """Values of the entry with which the step passes."""
+    """Values to store in the entry that records the step's success."""
     text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class StepReading:
-    """A present reading of the rig, for a person: ``value`` in ``unit``, NaN without one; ``words`` beside it."""
+    """A present reading of the rig, shown to a person: ``value`` in ``unit`` (NaN if it has no number), and text in
+    ``words``.
+    """
 
     label: str
     value: float
@@ -85,8 +87,9 @@ Raises StepRefused if it did not complete.
 class CommissionStep:
     """One step. ``sections``: dotted keys of the rig file that its result depends on; a change of them invalidates it.
 
-    ``needs``: steps whose results it uses. Either ``seat`` or ``alone`` is set: the step has the rig on its wires, or
-    it runs a recipe or nothing. ``readings``: reads values for the person from a seat; changes nothing.
+    ``needs``: steps whose results it uses. Either ``seat`` or ``alone`` is set: with ``seat`` the step uses the rig on
+    its wires; with ``alone`` it runs a recipe or uses no rig. ``readings``: returns values for the person from a seat,
+    and changes nothing.
     """
 
     name: str
@@ -94,14 +97,14 @@ class CommissionStep:
     sections: tuple[str, ...]
     needs: tuple[str, ...] = ()
     seat: Callable[[Any, Ports, Any], Any] | None = None
-    """Makes a seat from rig, wires and the hands at the rig."""
+    """Makes a seat from the rig, its wires and the attendant."""
     procedure: Callable[[Any, Notes], Dialogue] | None = None
     alone: Callable[[Rig, RunRecipe, Notes], None] | None = None
     readings: Callable[[Any], Sequence[StepReading]] | None = None
 
 
 def sections_sha256(rig: Rig, sections: tuple[str, ...]) -> str:
-    """Return the hash of a rig file's content under some dotted keys; missing keys count as nothing."""
+    """Return the hash of a rig file's content under some dotted keys; missing keys are left out."""
     tree = as_tree(rig)
     sections_found = {key: _at(tree, key.split(".")) for key in sections}
     text = json.dumps(sections_found, sort_keys=True, ensure_ascii=False, default=str)
@@ -141,17 +144,17 @@ class Walk:
 
     @property
     def finished(self) -> bool:
-        """Whether the rig is at rest, or out of reach."""
+        """Whether the rig is at rest, or can no longer be reached."""
         return bool(self.lost) or self.seat.finished
 
     @property
     def waiting(self) -> bool:
-        """Whether simulated time stops because a person thinks."""
+        """Whether simulated time stops while a person thinks."""
         asked = self._prompt is not None and self._prompt.answer is None and not self.ended and not self.finished
         return asked and self.person.time_stands and self.seat.ready
 
     def tick(self, now: float) -> float:
-        """Tick the rig, then resume the procedure as far as possible."""
+        """Tick the rig, then resume the procedure until it has to wait."""
         self._prompts.now_s = now
         try:
             due = self.seat.tick(now)
@@ -168,7 +171,7 @@ class Walk:
         self.seat.stop(why, fast=fast)
 
     def _resume(self, now: float) -> None:
-        """Resume the procedure as long as its condition is already met."""
+        """Resume the procedure until it waits for a condition that is not yet met."""
         try:
             if self._awaited is None:
                 self._await(next(self._procedure))
@@ -176,7 +179,7 @@ class Walk:
                 self._await(self._procedure.send(answer))
         except StopIteration:
             self.stop("step done")
-        except Exception as error:  # noqa: BLE001 - whatever it raises, the rig stops first; raised again later
+        except Exception as error:  # noqa: BLE001 - on any error the rig stops first; the error is raised again later
             self.error = error
             self.stop("step given up")
 
@@ -194,9 +197,9 @@ class Walk:
 
 @dataclass(frozen=True, slots=True)
 class CommissionPart:
-    """The steps in their order, and the person who does them on the simulated rig."""
+    """A kind's steps in their order, and the person who does them on the simulated rig."""
 
     steps: tuple[CommissionStep, ...]
     compounds: tuple[str, ...]
-    """Compounds with a model for the expected coefficient; any other is only a name."""
+    """Compounds that have a model of the expected coefficient; of any other only the name is known."""
     twin: Callable[[Callable[[str], None]], Person]

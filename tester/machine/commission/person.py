@@ -1,4 +1,4 @@
-"""The person who commissions a rig: the interface of the fronts, and what a procedure can ask of a person."""
+"""The person who commissions a rig: the interface of the user interfaces, and what a procedure can ask a person."""
 
 from __future__ import annotations
 
@@ -20,40 +20,40 @@ class Person:
     """
 
     time_stands: bool = True
-    """A simulated rig's time stops while this person thinks; a scripted person takes rig time."""
+    """Whether a simulated rig's time stops while this person thinks; a scripted person takes rig time."""
     scripted: bool = False
-    """The person reads a simulated rig: a recipe mounts wheels and answers by itself."""
+    """Whether the person is a script that reads a simulated rig: a recipe then mounts wheels and answers by itself."""
 
     def at(self, hands: Any) -> None:
-        """Move to a rig with newly opened wires; ``hands``: the simulated rig."""
+        """Move to a rig with newly opened wires; ``hands``: the attendant of a simulated rig."""
 
     def message(self, text: str) -> None:
         """Show a message."""
         raise NotImplementedError
 
     def attend(self, prompts: Prompts) -> None:
-        """Ask the waiting question, and answer it once its answer is known."""
+        """Show the waiting question, and answer it once the answer is known."""
         raise NotImplementedError
 
     def commands(self) -> list[str]:
-        """Return the commands given since the last call (tester.base.keys)."""
+        """Return the commands that the person gave since the last call (tester.base.keys)."""
         return []
 
     def entered(self, entry: RecordEntry) -> None:
-        """Take an entry that was just recorded."""
+        """Receive an entry that was just recorded."""
 
     def look(self, step: CommissionStep, walk: Walk) -> None:
         """Look at the rig in a step; called about every tester.machine.tickers.POLL_S of wall time."""
 
 
 class StepRefused(Exception):  # noqa: N818 - a finding for a person
-    """A step does not pass: the finding and the remedy, for people and for the record."""
+    """A step does not pass. The text gives the finding and the remedy, for people and for the record."""
 
 
 Until = Callable[[float], bool]
-"""Wait for a condition: called once a tick with rig time, s."""
+"""A condition to wait for: called once a tick with rig time, s."""
 Waits = Question | Until
-"""A procedure waits for a valid answer, or for a condition."""
+"""What a procedure can wait for: a valid answer, or a condition."""
 Dialogue = Generator[Waits, str, None]
 Measured = Generator[Waits, str, float]
 
@@ -75,9 +75,9 @@ def line(key: str, text: str) -> Generator[Waits, str, str]:
 
 
 def press(key: str, text: str, guarded: Callable[[], bool] = lambda: True) -> Dialogue:
-    """Ask for the word that starts a motion, again while ``guarded`` finds guard or safety chain open.
+    """Ask for the word that starts a motion; ask again while ``guarded`` reports that guard or safety chain is open.
 
-    Raises StepRefused for "no".
+    Raises StepRefused if the answer is "no".
     """
     asked = text
     while (yield Question(key, asked, Asks.KEY)) == GO:
@@ -88,7 +88,7 @@ def press(key: str, text: str, guarded: Callable[[], bool] = lambda: True) -> Di
 
 
 def wait(seconds: float) -> Dialogue:
-    """Let rig time pass, s."""
+    """Wait for some seconds of rig time."""
     until_s = inf
 
     def over(now_s: float) -> bool:

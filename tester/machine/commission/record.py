@@ -1,8 +1,8 @@
 """The record of a rig's commissioning: a file of JSON lines that is only appended to.
 
-Each entry holds time, author, rig file (its SHA-256), step and result, and the hash of the entry before it, so that a
-changed or removed line shows. An entry is written, flushed and synced before anything else happens. A line that a kill
-cut off is skipped, and the next entry begins on a line of its own.
+Each entry holds time, author, rig file (its SHA-256), step and result, and the hash of the previous entry, which
+reveals a changed or removed line. An entry is written, flushed and synced before anything else happens. If a kill cuts
+a line off, the reader skips it, and the next entry begins on a line of its own.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from tester.machine.commission.commission_step import CommissionStep, sections_s
 from tester.store.disk import sync_folder
 
 BEGUN, READING, DONE, REFUSED = "begun", "reading", "done", "refused"
-"""Kinds of entry about a step: its begin, a reading in it, its success, its refusal."""
+"""Kinds of entry about a step: its beginning, a reading, success, refusal."""
 FIRST: Final = "0" * 64
 FOLDER: Final = "commissioning"
-"""Folder below that of the runs, with a record for each rig."""
+"""Folder, inside the folder of the runs, with one record for each rig."""
 
 
 def record_path(runs: Path, rig: str) -> Path:
-    """Return the file of a rig's record, by the rig's name, below the folder of the runs."""
+    """Return the path of a rig's record, by the rig's name, in the folder of the runs."""
     slug = re.sub(r"[^a-z0-9]+", "-", rig.lower()).strip("-") or "rig"
     return runs / FOLDER / f"{slug}.jsonl"
 
@@ -39,7 +39,7 @@ class RecordError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RecordEntry:
-    """One line. ``values``: numbers and texts by name, with units in the names."""
+    """One entry. ``values``: numbers and texts by name, with units in the names."""
 
     at: str
     by: str
@@ -69,7 +69,7 @@ class CommissionRecord:
         self.by = by
         self.entries: list[RecordEntry] = []
         self.torn = False
-        """The last line is incomplete."""
+        """Whether the last line is incomplete."""
         self._utc = utc
         self._read()
 
@@ -101,7 +101,9 @@ class CommissionRecord:
         text: str = "",
         values: Mapping[str, Any] | None = None,
     ) -> RecordEntry:
-        """Append an entry; it is on the disk when this returns. Raises OSError, ValueError for what is no number."""
+        """Append an entry and sync it to the disk before returning. Raises OSError, or ValueError if a value is not a
+        number.
+        """
         previous = self.entries[-1].sha256 if self.entries else FIRST
         at = self._utc()
         unsigned = RecordEntry(at, self.by, rig, rig_sha256, sections, step, what, text, values or {}, previous)
@@ -121,17 +123,19 @@ class CommissionRecord:
         return entry
 
     def last(self, step: str) -> RecordEntry | None:
-        """Return the newest entry of a step, ignoring readings."""
+        """Return the newest entry of a step that is not a reading."""
         return next((entry for entry in reversed(self.entries) if entry.step == step and entry.what != READING), None)
 
     def standing(self, step: str, sections: str) -> RecordEntry | None:
-        """Return the entry with which a step passed with these sections of the rig file; None if it is not done."""
+        """Return the entry that records the step's success with these sections of the rig file; None if it is not
+        done.
+        """
         entry = self.last(step)
         return entry if entry is not None and entry.what == DONE and entry.sections == sections else None
 
 
 def _entry(raw: bytes) -> RecordEntry | None:
-    """Return a line's entry, None if the line is not an entry or its hash is wrong."""
+    """Return a line's entry; None if the line is not an entry or its hash is wrong."""
     try:
         fields: dict[str, Any] = json.loads(raw)
         sha256 = str(fields.pop("sha256"))
@@ -143,7 +147,7 @@ def _entry(raw: bytes) -> RecordEntry | None:
 
 @dataclass(frozen=True, slots=True)
 class StepStanding:
-    """One step: its valid entry, None if it is not done; its newest entry, None without any."""
+    """The state of one step: its valid entry (None if it is not done), and its newest entry (None if it has none)."""
 
     step: CommissionStep
     stands: RecordEntry | None
@@ -151,7 +155,7 @@ class StepStanding:
 
     @property
     def words(self) -> str:
-        """Return the state for people."""
+        """Return the state in words, for people."""
         if self.stands is not None:
             return f"done on {self.stands.at[:10]}, {self.stands.by}: {self.stands.text}"
         if self.last is None:

@@ -36,7 +36,7 @@ class Ended(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CommissionOutcome:
-    """How it ended, at which step, and the text; ``took_s``: rig time of each step, s."""
+    """How commissioning ended, at which step, and the text; ``took_s``: rig time of each step, s."""
 
     ended: Ended
     step: str = ""
@@ -50,7 +50,7 @@ class CommissionOutcome:
 
 
 class Commissioning:
-    """A commissioning of a rig, with its steps, person and record."""
+    """The commissioning of a rig, with its steps, person and record."""
 
     def __init__(
         self,
@@ -63,11 +63,11 @@ class Commissioning:
         lapse: float | None = None,
         given: Mapping[str, str] | None = None,
     ) -> None:
-        """Take the parts; connect nothing yet.
+        """Store the parts; connect nothing yet.
 
-        ``connect`` opens the wires once a step (and the simulated rig behind them, with the hands at it); raises
-        BusLost. ``lapse``: of simulated time, None as fast as possible. ``given``: the command line's answers, by the
-        question's key.
+        ``connect`` opens the wires once for each step (and starts the simulated rig with its attendant); it raises
+        BusLost. ``lapse``: of simulated time, None for as fast as possible. ``given``: answers from the command line,
+        by the question's key.
         """
         self.steps = tuple(steps)
         self.rig = rig
@@ -83,7 +83,7 @@ class Commissioning:
         self._stopped = False
 
     def stop(self, *, fast: bool = False) -> None:
-        """STOP, even from a signal handler. The present step is given up, and no other begins."""
+        """Stop, also from a signal handler: abort the present step, and begin no other."""
         self._stopped = True
         if self._walk is not None:
             self._walk.stop(STOPPED, fast=fast)
@@ -113,7 +113,7 @@ class Commissioning:
         return CommissionOutcome(ended, step.name, text, tuple(self._took_s))
 
     def _do(self, step: CommissionStep) -> CommissionOutcome | None:
-        """Run a step; return the outcome if it ends the commissioning, None if that continues."""
+        """Run a step; return the outcome if the step ends commissioning, None if the next step follows."""
         self._add(step, BEGUN)
         notes = Notes(
             self.person.message, lambda text, values: self._add(step, READING, text, values), self._done(), self._given
@@ -178,7 +178,7 @@ class Commissioning:
             run_real_time(walk, None, poll=poll, statistics=TickStatistics(), pace=ports.pace)
 
     def _ask(self, question: Question) -> str:
-        """Ask a question while no rig runs."""
+        """Ask a question while no rig is running."""
         prompts = Prompts()
         prompt = prompts.put(question)
         while True:

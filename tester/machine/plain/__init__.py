@@ -1,6 +1,7 @@
 """A plain machine: drives with speeds, sensors with profiles, one step for each condition.
 
-Defaults for such machines, on what ``tester.machine`` has for all; a kind overrides what differs:
+These modules are defaults for plain machines, built on the common parts in ``tester.machine``; a kind overrides what
+differs:
 
 - ``image``: readings, demand, setpoints; a kind's readings inherit from ``PlainReadings`` and derive its channels from
   drives and sensors in ``update``;
@@ -10,6 +11,7 @@ Defaults for such machines, on what ``tester.machine`` has for all; a kind overr
 - ``runs``, ``served``: the kind's answers to a run and to a service.
 
 Its rig file is a ``tester.inputs.rig.plain_rig.PlainRig``, its recipe a
-``tester.inputs.recipe.plain_recipe.PlainPart``, its twin on the same wires a ``sim.plain_twin.PlainTwin``. A machine
-that heats, presses or positions needs more: see ``tester.kinds.specimen_on_track``.
+``tester.inputs.recipe.plain_recipe.PlainPart``, and its simulated twin on the same wires a
+``sim.plain_twin.PlainTwin``. A machine that heats, presses or positions needs more: see
+``tester.kinds.specimen_on_track``.
 """

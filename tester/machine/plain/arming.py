@@ -1,7 +1,7 @@
-"""The proof of a plain machine before a run may begin: the watchdog of every drive is tried.
+"""The proof of a plain machine before a run may begin: it tests the watchdog of every drive.
 
-A drive watches a heartbeat only from the first one it receives (CiA 301), and a wrong parameter shows only when it
-matters. The drives are enabled at standstill: nothing is lifted, and nothing moves.
+A drive watches a heartbeat only from the first one it receives (CiA 301), so a wrong parameter would show only when the
+watchdog is needed. The proof enables the drives at standstill: nothing is lifted, and nothing moves.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tester.machine.proof import WatchdogProof
 
 
 class NothingToLift:
-    """The lift of a machine on which nothing is lifted: done at once."""
+    """The lift of a machine that lifts nothing: done at once."""
 
     done = True
     failure = ""
@@ -25,12 +25,12 @@ class NothingToLift:
         """Do nothing: nothing has been moved."""
 
     def trouble(self, now: float) -> str:
-        """Return "": no load can come on."""
+        """Return "": no load can arise."""
         return ""
 
 
 class StandingProof(WatchdogProof):
-    """Tries the watchdogs with the drives enabled at standstill."""
+    """Tests the watchdogs with the drives enabled at standstill."""
 
     def begin(self, now: float) -> None:
         """Move nothing."""
@@ -50,13 +50,13 @@ class StandingProof(WatchdogProof):
 
 
 class PlainArming(Arming[PlainDevices, PlainRig]):
-    """Tries the drives' watchdogs; lifts nothing."""
+    """Tests the drives' watchdogs; lifts nothing."""
 
     def lift(self) -> NothingToLift:
         """Lift nothing."""
         return NothingToLift()
 
     def prove(self) -> StandingProof:
-        """Begin to try the drives' watchdogs."""
+        """Begin to test the drives' watchdogs."""
         arming = self.rig.arming
         return StandingProof(self.devices, follow=False, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)

@@ -1,4 +1,4 @@
-"""The context of a plain machine's steps, and the hands at the rig."""
+"""The context of a plain machine's steps, and its attendant, which does a person's work at the rig."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from tester.machine.prompts import Prompts
 from tester.store.recorder import Recorder
 
 SPEED_SHARE: Final = 0.02
-"""Greatest deviation of a drive from its demanded speed with an open gate, as a share [A]."""
+"""Greatest deviation of a drive from its demanded speed while the gate stays open, as a share [A]."""
 GATE_SPEED: Final = 1
-"""Bit of that gate."""
+"""Bit of the gate of the speeds."""
 
 
 class PlainAttendant(Protocol):
-    """The hands at the rig: a person's work. A simulated rig does it itself; on a real one the calls do nothing."""
+    """A person's work at the rig. A simulated rig does it itself; on a real rig the calls do nothing."""
 
     def install(self, specimen: int, compound: str) -> None:
-        """Put a new specimen on."""
+        """Mount a new specimen."""
         ...
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
@@ -34,7 +34,7 @@ class PlainAttendant(Protocol):
 
 
 class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
-    """One per run; only activities read and write it."""
+    """The context of one run; only activities read and write it."""
 
     def __init__(
         self,
@@ -57,14 +57,14 @@ class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
         return (self.mounted.piece if self.mounted is not None else 0), nan, self.readings.slid_m
 
     def at_speed(self) -> bool:
-        """Return whether every drive has its demanded speed."""
+        """Return whether every drive is at its demanded speed."""
         drives = self.readings.drives
         return all(abs(drives[name] - v) <= SPEED_SHARE * abs(v) for name, v in self.demand.speeds.items())
 
     def closed_gates(self) -> int:
-        """Return the mask: the gate is closed while a drive does not have its speed."""
+        """Return the mask of closed gates: the gate is closed while a drive is not at its demanded speed."""
         return 0 if self.at_speed() else GATE_SPEED
 
     def touching(self) -> bool:
-        """Return whether a motion is demanded: then every scan is recorded."""
+        """Return whether a motion is demanded; every scan is then recorded."""
         return bool(self.demand.speeds)

@@ -1,4 +1,4 @@
-"""The commands of a plain machine in each mode: the demand in RUN, standstill in every other."""
+"""The commands of a plain machine in each mode: the demand in RUN, standstill in every other mode."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
     """The control of drives with speeds."""
 
     def __init__(self, rig: PlainRig, table: InterlockTable, readings: PlainReadings) -> None:
-        """``readings``: the kind's, before anything has been read."""
+        """``readings``: the kind's readings, before anything has been read."""
         view = PlainInputs(rig=rig, readings=readings)
         state = ControlState(PlainSetpoints())
         super().__init__(rig, state, view, table, (PlainDemand(), PlainDemand()), HOLD_AT_MOST_S)
@@ -50,7 +50,7 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
             self.state.setpoints.speeds[name] = 0.0
 
     def stop_ended(self) -> bool:
-        """Return whether every drive is at rest, or the time for that is over."""
+        """Return whether every drive is at rest, or the time limit for that has passed."""
         v = self.view
         over = v.readings.now_s - self.state.mode_since_s > v.parameters[STOP_TIMEOUT_S]
         return over or (v.readings.standing and v.readings.now_s - v.readings.drives_at_s <= self._fresh_s)

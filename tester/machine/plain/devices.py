@@ -14,7 +14,7 @@ from tester.machine.rig_drivers import RigDrivers
 from tester.machine.rig_ports import Ports
 
 STANDING_SHARE: Final = 0.01
-"""Speed below which a drive counts as standing, as a share of its greatest [A]."""
+"""Speed below which a drive counts as at rest, as a share of its greatest speed [A]."""
 
 
 class PlainDevices(DeviceList):
@@ -50,7 +50,7 @@ class PlainDevices(DeviceList):
         r.update(dt if dt <= 1.0 else 0.0)
 
     def apply(self, out: PlainSetpoints) -> None:
-        """Hand the setpoints to the drives; the frames leave with ``transmit``."""
+        """Pass the setpoints to the drives; ``transmit`` sends the frames."""
         self.apply_common(out)
         for name, speed in out.speeds.items():
             drive = self.named[name]

@@ -17,7 +17,7 @@ class PlainReadings(BaseReadings):
     drives_at_s: float = NEVER
     """Time stamp of the drive with the oldest data."""
     standing: bool = False
-    """Every drive is known to stand."""
+    """Every drive is known to be at rest."""
     sensors: dict[str, Sequence[float]] = field(default_factory=dict[str, Sequence[float]])
     """Values of each of the machine's own sensors, in the order of its profile; NaN where not valid."""
     sensors_at_s: float = NEVER
@@ -31,7 +31,7 @@ class PlainReadings(BaseReadings):
 
 @dataclass(slots=True)
 class PlainDemand(BaseDemand):
-    """The demand of a step on the drives; one that is not listed stands."""
+    """The demand of a step on the drives; a drive that is not listed is at rest."""
 
     speeds: dict[str, float] = field(default_factory=dict[str, float])
 

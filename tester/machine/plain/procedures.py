@@ -31,11 +31,11 @@ ZERO_S: Final = 1.0
 """Averaging time of a zero, s [A]."""
 
 SpeedsOf = Callable[[Setpoint, PlainReadings], Mapping[str, float]]
-"""Returns the speeds that a condition demands of the drives, at the begin of each repeat."""
+"""Function that returns the speeds that a condition demands of the drives, at the start of each repeat."""
 
 
 class Standstill:
-    """Switch the drives on or off, and wait for standstill."""
+    """Switches the drives on or off, and waits for standstill."""
 
     def __init__(self, *, enabled: bool) -> None:
         """``enabled``: with or without power."""
@@ -43,7 +43,7 @@ class Standstill:
         self.since_s = nan
 
     def step(self, ctx: PlainContext) -> bool:
-        """Done when standstill is measured; raises MoveFailedError after ``MOVE_AT_MOST_S``."""
+        """Return True when standstill is measured; raises MoveFailedError after ``MOVE_AT_MOST_S``."""
         ctx.moving, r = True, ctx.readings
         ctx.demand.enabled = self.enabled
         ctx.demand.speeds.clear()
@@ -56,7 +56,7 @@ class Standstill:
 
 
 class PutOn:
-    """Come to standstill without power, ask a person to mount a specimen, then zero the sensors."""
+    """Brings the drives to standstill without power, asks a person to mount a specimen, then zeroes the sensors."""
 
     def __init__(self, step: Mount, title: str) -> None:
         """``title``: the question to the person."""
@@ -65,14 +65,14 @@ class PutOn:
         self.ask = Ask(title)
         self.answered = False
         self.zeros: dict[str, ZeroOfCell] = {}
-        """Of the sensors that are zeroed, by their names."""
+        """The zeros of the sensors that are zeroed, by sensor name."""
 
     def resume(self, ctx: PlainContext) -> None:
         """Come to standstill again."""
         self.stand = Standstill(enabled=False)
 
     def step(self, ctx: PlainContext) -> bool:
-        """Done when it is mounted and the sensors are zeroed."""
+        """Return True when the specimen is mounted and the sensors are zeroed."""
         if not self.answered:
             if not self.stand.step(ctx) or not self.ask.step(ctx):
                 return False
@@ -109,14 +109,14 @@ class PutOn:
 
 
 class SteadyRepeat:
-    """One repeat: at speed, settled, counted (``tester.machine.measured.MeasuredRepeat``)."""
+    """One repeat: reach speed, settle, count samples (``tester.machine.measured.MeasuredRepeat``)."""
 
     rolling_only = False
     warming_k_s = nan
     holdable_band_k = nan
 
     def __init__(self, step: ConditionStep, speeds: Mapping[str, float], settle_s: float, table: Quantities) -> None:
-        """``speeds``: of the drives; ``settle_s``: from being at speed to the first sample that counts."""
+        """``speeds``: of the drives; ``settle_s``: time from reaching speed to the first sample that counts."""
         self.condition = step
         self.speeds = speeds
         self.settle_s = settle_s
@@ -126,7 +126,7 @@ class SteadyRepeat:
         self._since_s = self._settled_s = nan
 
     def step(self, ctx: PlainContext) -> bool:
-        """Advance by one scan; done when it has its samples, or gets none."""
+        """Advance by one scan; return True when the repeat has its samples, or can get none."""
         ctx.moving = True
         ctx.demand.speeds.update(self.speeds)
         if self._since_s != self._since_s:
@@ -158,12 +158,12 @@ class SteadyRepeat:
 
 
 class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat]):
-    """One condition: its repeats, from standstill to standstill."""
+    """The measurement of one condition: its repeats, from standstill to standstill."""
 
     def __init__(
         self, step: ConditionStep, results: StoredResults[PlainContext], speeds: SpeedsOf, settle_s: float
     ) -> None:
-        """``speeds``: what the condition demands of the drives."""
+        """``speeds``: returns the speeds that the condition demands of the drives."""
         super().__init__(step, results)
         self.speeds = speeds
         self.settle_s = settle_s
@@ -175,7 +175,7 @@ class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat])
         self.stand = Standstill(enabled=True)
 
     def ready(self, ctx: PlainContext) -> bool:
-        """Return whether the drives are on and stand."""
+        """Return whether the drives are on and at rest."""
         return self.stand.step(ctx)
 
     def begin(self, ctx: PlainContext, attempt: int) -> SteadyRepeat:
@@ -201,7 +201,7 @@ class PlainProcedures(Procedures[PlainContext]):
         self.speeds = speeds
 
     def title(self, step: Step) -> str:
-        """Return a description of a step, in a line."""
+        """Return a one-line description of a step."""
         return self.part.title(step)
 
     def activity(self, step: Step, to_come: Sequence[Step], ctx: PlainContext) -> Activity[PlainContext]:

@@ -32,10 +32,10 @@ class PlainLimits:
     """Limits of the conditions beside their parameters, from the rig file's other sections."""
 
     heartbeat_s: float
-    """``can.drive_heartbeat``."""
+    """The rig file's ``can.drive_heartbeat``."""
     ramp_s: float
     quick_stop_s: float
-    """Longest times of a drive from its greatest speed to standstill, by its ramp and by its quick stop."""
+    """Longest times of a drive from its greatest speed to standstill: by its ramp, and by its quick stop."""
 
 
 @dataclass(slots=True)
@@ -57,7 +57,7 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
         )
 
     def look(self, state: ControlState[Any], demand: PlainDemand, readings: ReadingsT, scan_s: float) -> None:
-        """Update from this scan's demand and readings."""
+        """Update the inputs from this scan's demand and readings."""
         self.readings, self.demand = readings, demand
         self.note_times(state, readings.now_s, scan_s)
         self.attended = demand.attended
@@ -88,7 +88,7 @@ OVERSPEED_DELAY_S: Final = Parameter(
 
 
 def _fastest(v: AnyInputs) -> float:
-    """Return the greatest speed as a share of its axis's limit; NaN where one is unknown."""
+    """Return the greatest speed as a share of its axis's limit; NaN if a speed is unknown."""
     shares = [
         abs(v.readings.drives.get(name, float("nan"))) / axis.max_speed
         for name, axis in v.rig.axes.items()
@@ -188,7 +188,7 @@ HOLD_AT_MOST_S: Final = Parameter(
 )  # fmt: skip
 OPERATION: Final = (HOLD_AT_MOST_S, ACK_WAIT_S)
 ABOUT: Final = "holds and acknowledgements"
-"""Parameters that belong to no row, and their purpose."""
+"""Purpose of the parameters that belong to no row."""
 
 ROWS: Final[tuple[Interlock[Any], ...]] = (
     INPUTS_STALE, DEVICE_REFUSED, LINE_NOISY, DRIVE_DATA_STALE, DRIVE_DROPPED_OUT, OVERSPEED, NOT_STOPPING,

@@ -1,4 +1,4 @@
-"""A plain machine, for a run (``tester.machine.run_parts.KindRun``). A kind defines twin, table and speeds."""
+"""Builds the runs of a plain machine (``tester.machine.run_parts.KindRun``). A kind defines twin, table and speeds."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class PlainRuns(KindRun):
         raise NotImplementedError
 
     def split(self, plan: Plan) -> tuple[Part, ...]:
-        """Return a part for each specimen that is put on."""
+        """Return a part of the plan for each specimen that is mounted."""
         starts = [place for place, step in enumerate(plan.steps) if isinstance(step, Mount)] or [0]
         parts: list[Part] = []
         for number, (begin, end) in enumerate(zip(starts, [*starts[1:], len(plan.steps)], strict=True), start=1):
@@ -74,5 +74,5 @@ class PlainRuns(KindRun):
         return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: PlainAttendant, compound: str) -> None:
-        """Put a new specimen on."""
+        """Mount a new specimen."""
         attendant.install(0, compound)

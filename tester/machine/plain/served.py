@@ -1,4 +1,4 @@
-"""A plain machine, for a service (``tester.machine.served.ServedKind``): its screen, and its drives by hand."""
+"""A plain machine's answers to a service (``tester.machine.served.ServedKind``): its screen, and manual mode."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tester.machine.wires import STALE_INPUTS_S
 from tester.store.recorder import Recorder
 
 STEPS_TO_TOP: Final = 20
-"""Steps by hand from standstill to a drive's greatest speed [A]."""
+"""Manual steps from standstill to a drive's greatest speed [A]."""
 
 
 class PlainPanel(RunPanel):
@@ -39,7 +39,7 @@ class PlainPanel(RunPanel):
         self._stale_s = self._ctx.rig.values()[STALE_INPUTS_S]
 
     def news(self) -> dict[str, News]:
-        """Return the news of the drives, as "can", and of each of the machine's own sensors."""
+        """Return the state of the data of the drives, as "can", and of each of the machine's own sensors."""
         r = self._ctx.readings
         drives = {"can": News(r.drives_at_s, not r.drive_fault, self._stale_s)}
         return drives | {
@@ -64,7 +64,7 @@ class SpeedHand:
         self.wanted = dict.fromkeys(tops, 0)
 
     def demand(self, ctx: PlainContext) -> None:
-        """Write the demand of the steps so far."""
+        """Write the demand that results from the steps so far."""
         for name, steps in self.wanted.items():
             ctx.demand.speeds[name] = self.tops[name] * steps / STEPS_TO_TOP
 
@@ -93,7 +93,9 @@ class PlainServed(ServedKind):
         plots: tuple[PlotView, ...] = (),
         compound: str = "1#",
     ) -> None:
-        """``drives``: name of each for people; ``plots``: trends to draw; ``compound``: of a specimen by hand."""
+        """``drives``: each drive's name for people; ``plots``: trends to draw; ``compound``: of a specimen in manual
+        mode.
+        """
         self.runs = runs
         self.quantities = quantities
         self.compound = compound
@@ -108,7 +110,7 @@ class PlainServed(ServedKind):
         )
 
     def title(self, step: Step) -> str:
-        """Return a description of a step, in a line."""
+        """Return a one-line description of a step."""
         return self.runs.part.title(step)
 
     def panel(self, engine: Engine) -> PlainPanel:
@@ -116,13 +118,13 @@ class PlainServed(ServedKind):
         return PlainPanel(engine)
 
     def alone(self, rig: Rig) -> str:
-        """Return the reactions of the drives without a program, in words."""
+        """Return what the drives do without a program, in words."""
         return drives_alone(rig)
 
     def by_hand(
         self, rig: Rig, ports: Ports, attendant: PlainAttendant, record: Recorder, left: Left | None, history: History
     ) -> ByHand:
-        """Put a person in the place of a recipe."""
+        """Build manual mode: a person's steps in place of a recipe."""
         own = PlainRig.of(rig)
         run = self.runs.build(own, Plan(NAME, (), (), 1), ports, attendant, record, Prompts())
         attendant.install(1, self.compound)

@@ -1,4 +1,4 @@
-"""One run of a sweep: runs in any process, and returns plain data."""
+"""One run of a sweep. It runs in any process, and returns plain data."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ NOT_RUN = "not run"
 
 @dataclass(frozen=True, slots=True)
 class SweepTask:
-    """One run as texts, so that it may go to another machine.
+    """One run as texts, so that it can be sent to another machine.
 
-    ``case`` counts from 1: point after point, seed after seed.
+    ``case`` counts from 1: all seeds of the first point, then those of the next.
     """
 
     case: int
@@ -45,7 +45,7 @@ class SweepTask:
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """One row of the recipe's table: its nominal setpoints, and its cells of the table of conditions by key."""
+    """One row of the recipe's table: its nominal setpoints, and its cells in the table of conditions, by key."""
 
     row: int
     setpoint: Setpoint
@@ -53,16 +53,16 @@ class RowResult:
 
     @property
     def ok(self) -> bool:
-        """Whether it has a trustworthy value."""
+        """Whether the row has a trustworthy value."""
         return self.cells["status"] == ConditionStatus.OK
 
     @property
     def with_care(self) -> bool:
-        """Whether its value carries a doubt."""
+        """Whether the row's value carries a doubt."""
         return self.cells["mark"] == WITH_CARE
 
     def number(self, key: str) -> float:
-        """Return a number of a row with a trustworthy value; NaN for any other row."""
+        """Return a number of the row if its value is trustworthy; else NaN."""
         value = self.cells[key]
         return value if self.ok and isinstance(value, int | float) else NAN
 
@@ -71,7 +71,8 @@ class RowResult:
 class CaseResult:
     """How one run ended.
 
-    Exit code as of ``tester run``; rig time in s; how often a specimen was mounted; rows of its table.
+    The exit code is that of ``tester run``. Rig time is in s. The other fields give how often a specimen was mounted,
+    and the rows of the run's table.
     """
 
     case: int
@@ -86,12 +87,12 @@ class CaseResult:
 
     @property
     def missing(self) -> int:
-        """Rows without a trustworthy value."""
+        """Number of rows without a trustworthy value."""
         return sum(not row.ok for row in self.rows)
 
     @property
     def with_care(self) -> int:
-        """Rows whose value carries a doubt."""
+        """Number of rows whose value carries a doubt."""
         return sum(row.with_care for row in self.rows)
 
 
@@ -131,7 +132,7 @@ def _row(row: ConditionRow) -> RowResult:
 
 
 class Unseen(ReportScreen):
-    """A screen without output; it forwards the pool's stop to the session."""
+    """A screen without output; it forwards a stop of the pool to the session."""
 
     answer_yes = True
 

@@ -29,7 +29,7 @@ class NoClusterError(MisuseError):
 
 
 Submit: TypeAlias = Callable[[Callable[[SweepTask], CaseResult], SweepTask], Future[CaseResult]]
-"""Runs a task somewhere, and returns the future of its result."""
+"""Starts a task, and returns the future of its result."""
 
 
 class Audience(Protocol):
@@ -40,12 +40,12 @@ class Audience(Protocol):
         ...
 
     def ran(self, result: CaseResult, done: int) -> None:
-        """Called with a run's result; ``done`` runs are over."""
+        """Called with a run's result; ``done``: the number of runs that have ended."""
         ...
 
 
 class NotSimulatedError(MisuseError):
-    """A sweep needs simulated rigs; the message names the real one."""
+    """A sweep needs simulated rigs; the message names the real rig."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class SweepOptions:
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """A sweep ready to run: its tasks in order, and the texts they come from."""
+    """A sweep ready to run: its tasks in order, and the texts from which they are made."""
 
     options: SweepOptions
     name: str
@@ -71,7 +71,7 @@ class Sweep:
     condition_axes: Axes
     """Axes of the recipe's conditions."""
     worn: str
-    """People's name for the part of the machine that wears."""
+    """Name for people of the part of the machine that wears."""
     tasks: tuple[SweepTask, ...]
 
 
@@ -106,8 +106,8 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
 def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, int]:
     """Run every task; return the sweep's folder and its exit code.
 
-    0: every run completed with every value; 6: any did not; 130: interrupted, with the results up to then. Raises
-    OSError if the folder cannot be written.
+    0: every run completed with every value; 6: at least one did not; 130: interrupted, with the results up to then.
+    Raises OSError if the folder cannot be written.
     """
     options = sweep.options
     folder = make_folder(options.out, sweep.name)
@@ -129,7 +129,7 @@ def carry_out(sweep: Sweep, submit: Submit, audience: Audience) -> tuple[Path, i
 
 
 def _results(tasks: Sequence[SweepTask], submit: Submit) -> Iterator[CaseResult]:
-    """Yield results as they arrive; a run that raises also gives a result."""
+    """Yield results as they arrive; a run that raises an error also gives a result."""
     futures: dict[Future[CaseResult], SweepTask] = {submit(run_case, task): task for task in tasks}
     for future in as_completed(futures):
         error = future.exception()
@@ -138,16 +138,17 @@ def _results(tasks: Sequence[SweepTask], submit: Submit) -> Iterator[CaseResult]
 
 @contextmanager
 def local(jobs: int) -> Generator[Submit]:
-    """Use up to ``jobs`` processes of this machine; leaving the block ends the runs under way."""
+    """Provide up to ``jobs`` processes of this machine; leaving the block ends the runs under way."""
     with WorkerPool(jobs) as pool:
         yield lambda work, task: pool.submit(work, task)
 
 
 @contextmanager
 def dask(address: str) -> Generator[Submit]:
-    """Use the cluster whose scheduler is at ``address``, e.g. ``tcp://host:8786``; its workers need this package.
+    """Provide the cluster whose scheduler is at ``address``, e.g. ``tcp://host:8786``; its workers need this package.
 
-    Leaving early drops waiting tasks; a task that a worker has begun runs there to its end. Raises NoClusterError.
+    Leaving the block early drops waiting tasks; a task that a worker has begun runs to its end there. Raises
+    NoClusterError.
     """
     try:
         distributed: Any = import_module("distributed")  # it has no types, and may not be installed
@@ -158,7 +159,7 @@ def dask(address: str) -> Generator[Submit]:
     except (OSError, ValueError) as error:
         raise NoClusterError(f"--dask {address}: no scheduler answers there: {in_words(error)}") from error
     try:
-        # Not pure: equal tasks run again. No retries: a lost worker counts as a result.
+        # Not pure: equal tasks run again. No retries: the loss of a worker counts as a result.
         yield client.get_executor(pure=False, retries=0).submit
     finally:
         client.close()

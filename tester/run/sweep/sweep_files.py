@@ -1,4 +1,4 @@
-"""The folder of a sweep: results are written as they arrive, and put in order at the end."""
+"""The folder of a sweep: results are written as they arrive, and sorted at the end."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ RUNS, CONDITIONS, SUMMARY, TOTALS = "runs.csv", "conditions.csv", "summary.csv",
 
 
 class SweepFiles:
-    """Writes results as they arrive; ``finish`` puts them in order and adds the statistics.
+    """Writes results as they arrive; ``finish`` sorts them and adds the statistics.
 
     Raises OSError.
     """
@@ -27,8 +27,7 @@ class SweepFiles:
     def __init__(self, folder: Path, axes: Sequence[SweepAxis], condition_axes: Axes, worn: str) -> None:
         """Create ``runs.csv`` and ``conditions.csv`` in ``folder``.
 
-        ``condition_axes``: the axes of the recipe's conditions; ``worn``: people's name for the part that wears, in the
-        headers.
+        ``condition_axes``: the axes of the recipe's conditions; ``worn``: name of the part that wears, in the headers.
         """
         self.folder = folder
         self.axes = axes
@@ -39,13 +38,13 @@ class SweepFiles:
         self._conditions = _begin(folder / CONDITIONS, sweep_tables.condition_header(axes, condition_axes))
 
     def add(self, result: CaseResult) -> None:
-        """Write a run's result; it is in the files on return."""
+        """Write a run's result; it is in the files when this returns."""
         self.results.append(result)
         _append(self._runs, [sweep_tables.run_row(result)])
         _append(self._conditions, sweep_tables.condition_rows(result))
 
     def finish(self) -> None:
-        """Write every table in order: the same results give the same files, in any order of arrival."""
+        """Write every table in order, so that the same results give the same files, in whatever order they arrived."""
         results, axes = sorted(self.results, key=sweep_tables.case_of), self.axes
         self._runs.close()
         self._conditions.close()

@@ -1,6 +1,6 @@
 """The tables of a sweep: every run, every condition in it, and their statistics.
 
-The same results give the same bytes: the tables contain no wall-clock time, path, host or version.
+The same results give the same bytes, because the tables contain no wall-clock time, path, host or version.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _STATISTICS = ("n", "mean", "sd", "min", "max")
 
 
 def head_of(axes: Sequence[SweepAxis]) -> Row:
-    """Return the columns that name a point: its keys of the rig file."""
+    """Return the columns that identify a point: its keys of the rig file."""
     return tuple(axis.key for axis in axes)
 
 
@@ -29,7 +29,7 @@ def head_of(axes: Sequence[SweepAxis]) -> Row:
 
 
 def run_header(axes: Sequence[SweepAxis], worn: str) -> Row:
-    """Return the columns of ``runs.csv``; ``worn``: people's name for the part that wears."""
+    """Return the columns of ``runs.csv``; ``worn``: name for people of the part that wears."""
     counts = ("rig_seconds", f"{worn}s", "rows", "missing_rows")
     return (*head_of(axes), "seed", "outcome", "reason", "exit_code", *counts)
 
@@ -57,9 +57,9 @@ def condition_rows(result: CaseResult) -> Iterator[Row]:
 def summary_header(axes: Sequence[SweepAxis], condition_axes: Axes) -> Row:
     """Return the columns of ``summary.csv``.
 
-    ``mu_sd`` is the spread between seeds, ``u_standard`` the root mean square of the runs' stated uncertainties,
+    ``mu_sd`` is the spread between seeds, ``u_standard`` the root mean square of the runs' stated uncertainties, and
     ``sd_over_u`` their ratio: 1 if the stated uncertainties match the spread. ``n`` counts the runs with a value,
-    ``with_care`` those of them whose value carries a doubt (its flags are in ``conditions.csv``).
+    ``with_care`` the runs among them whose value carries a doubt (its flags are in ``conditions.csv``).
     """
     mu = tuple(f"mu_{name}" for name in _STATISTICS[1:])
     return (*head_of(axes), *_setpoint_header(condition_axes), "runs", "n", *mu, "u_standard", "sd_over_u", "with_care")
@@ -82,14 +82,14 @@ def summary_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
 
 
 def totals_header(axes: Sequence[SweepAxis], worn: str) -> Row:
-    """Return the columns of ``totals.csv``; ``worn``: people's name for the part that wears."""
+    """Return the columns of ``totals.csv``; ``worn``: name for people of the part that wears."""
     seconds = tuple(f"rig_seconds_{name}" for name in _STATISTICS[1:])
     mounted = tuple(f"{worn}s_{name}" for name in _STATISTICS[1:])
     return (*head_of(axes), "runs", "done", "other_outcomes", "rows", "missing_rows", *seconds, *mounted)
 
 
 def totals_rows(results: Sequence[CaseResult]) -> Iterator[Row]:
-    """Yield, for every point, its runs' outcomes, durations and numbers of worn parts.
+    """Yield, for every point, the outcomes, durations and numbers of worn parts of its runs.
 
     Durations and parts cover only completed runs.
     """
@@ -124,7 +124,7 @@ def row_record(row: RowResult) -> dict[str, Cell]:
 
 
 def _by_point(results: Sequence[CaseResult]) -> Iterator[tuple[tuple[str, ...], list[CaseResult]]]:
-    """Yield the results of every point, in the order of cases whatever their order of arrival."""
+    """Yield the results of every point, in the order of cases, in whatever order they arrived."""
     groups: dict[tuple[str, ...], list[CaseResult]] = {}
     for result in sorted(results, key=case_of):
         groups.setdefault(result.point, []).append(result)
@@ -132,12 +132,12 @@ def _by_point(results: Sequence[CaseResult]) -> Iterator[tuple[tuple[str, ...], 
 
 
 def case_of(result: CaseResult) -> int:
-    """Return the sort key of results."""
+    """Return the sort key of a result."""
     return result.case
 
 
 def _statistics(values: Sequence[float]) -> tuple[int, float | None, float | None, float | None, float | None]:
-    """Return count, mean, standard deviation, least and greatest of the finite values; None without any."""
+    """Return count, mean, standard deviation, least and greatest of the finite values; None where they give none."""
     finite = [value for value in values if isfinite(value)]
     if not finite:
         return 0, None, None, None, None

@@ -1,1 +1,1 @@
-"""Dialogs: they leave lines 1, 2 and the last visible, and STOP works in every one of them."""
+"""Dialogs. They leave lines 1, 2 and the last line visible, and STOP works in every dialog."""

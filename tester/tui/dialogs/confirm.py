@@ -1,4 +1,6 @@
-"""Dialogs before a run stops or moves again: abort (typed word), resume (list of runs), and the pre-flight list."""
+"""Dialogs before a run stops or moves again: abort (by typing a word), resume (from a list of runs), and the pre-flight
+list.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,7 @@ SIGNS = {True: "✔", False: "✘", None: "?"}
 
 
 def preflight_rows(checks: tuple[Check, ...]) -> Parts:
-    """Return the pre-flight list; checks that need a connection are marked as made when the service connects."""
+    """Return the pre-flight list; a check that needs a connection is marked as made when the service connects."""
     lines: list[Parts] = []
     for check in checks:
         text = f" {SIGNS[check.ok]} {clean(check.name)}" + (f": {clean(check.text)}" if check.text else "")
@@ -33,17 +35,17 @@ def preflight_rows(checks: tuple[Check, ...]) -> Parts:
 
 
 class AbortDialog(Dialog):
-    """A controlled stop of the run, after a typed word."""
+    """A controlled stop of the run, after the person has typed a word."""
 
     TITLE = "Abort the run"
 
     def content(self) -> Iterable[Widget]:
-        """Return what it costs, and the field."""
+        """Return the consequence of the stop, and the field for the word."""
         yield line("The rig makes a controlled stop. Committed repeats stay; `tester resume` continues later.")
         yield field(f"Type: {WORD}", entry("word"))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Stop, if the word is right."""
+        """Stop, if the word is correct."""
         event.stop()
         if event.value.strip().lower() == WORD:
             self.host.order(Stop(), "aborting: controlled stop")
@@ -53,7 +55,7 @@ class AbortDialog(Dialog):
 
 
 class GoOnDialog(Dialog):
-    """Motion starts again: the pre-flight list, then Enter."""
+    """Asks before motion starts again: the pre-flight list, then Enter."""
 
     TITLE = "Resume"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Resume", show=False)]
@@ -75,19 +77,19 @@ class GoOnDialog(Dialog):
         self.action_go()
 
     def action_go(self) -> None:
-        """Give the order."""
+        """Send the order."""
         self.host.order(self.action, self.words)
         self.dismiss(None)
 
 
 def resumable(answer: JsonValue) -> list[Listed]:
-    """Return the listed runs (``runs_in``) that can be resumed, the newest first."""
+    """Return those of the listed runs (``runs_in``) that can be resumed, newest first."""
     resumables = [run for run in runs_in(answer) or () if run.get("can_resume") is True]
     return sorted(resumables, key=lambda run: str(run.get("started_utc")), reverse=True)
 
 
 def run_line(run: Listed) -> str:
-    """Return a run in a line: name, status, share committed."""
+    """Return a run as a line: name, status, committed share."""
     committed = f"{run.get('repeats')} of {run.get('repeats_planned')} repeats committed"
     return f"{clean(str(run.get('run')))}  {clean(str(run.get('status')))}, {committed}"
 

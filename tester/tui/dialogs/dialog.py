@@ -1,4 +1,4 @@
-"""Base of every dialog: the fixed lines stay visible, Escape closes it, and STOP always works."""
+"""Base of every dialog: the fixed lines stay visible, Escape closes the dialog, and STOP always works."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Dialog(ModalScreen[None]):
     TITLE: ClassVar[str | None] = ""
     SUBTITLE: ClassVar[str] = "Esc closes · F12 STOP"
     TALL: ClassVar[bool] = False
-    """Whether the box takes the whole height."""
+    """Whether the box uses the whole height."""
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "close", "Close", show=False)]
 
     @property
@@ -50,7 +50,7 @@ class Dialog(ModalScreen[None]):
 
 
 def line(parts: Parts | str, *, id: str | None = None) -> Static:  # noqa: A002 - as in Textual
-    """Return a plain text."""
+    """Return a widget that shows plain text."""
     content = Content(parts) if isinstance(parts, str) else Content.assemble(*parts)
     return Static(content, classes="line", markup=False, id=id)
 
@@ -70,7 +70,7 @@ WIDTH = 400
 
 
 TEXT_WIDTH = 70
-"""Columns in a dialog's box, beside its scroll bar."""
+"""Columns of text in a dialog's box, without its scroll bar."""
 
 
 class LogDialog(Dialog):
@@ -89,7 +89,7 @@ class TextDialog(Dialog):
     """A text to read."""
 
     def __init__(self, title: str, text: str) -> None:
-        """``text``: paragraphs, and keys followed by two spaces or more and their description."""
+        """``text``: paragraphs, or keys that are followed by two spaces or more and their description."""
         super().__init__()
         self.title = title
         self._text = reflow(text, TEXT_WIDTH)

@@ -1,4 +1,4 @@
-"""Export a table of a run to a file with a separate process, `tester export`."""
+"""Exports a table of a run to a file in a separate process, `tester export`."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def _choices() -> list[tuple[str, str, str]]:
 
 
 class ExportDialog(Dialog):
-    """Format and file."""
+    """Asks for the format and the file."""
 
     TITLE = "Export"
 
     def __init__(self, name: str, runs: Path) -> None:
-        """``name``: of the run below ``runs``."""
+        """``name``: of the run in the folder ``runs``."""
         super().__init__()
         self.name_of_run, self.runs = name, runs
         self._formats = _choices()
@@ -40,16 +40,16 @@ class ExportDialog(Dialog):
         yield line("Enter writes it; a file of that name is replaced.")
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        """Name the file after the format."""
+        """Name the file for the highlighted format."""
         self.query_one("#file", Input).value = f"{self.name_of_run}-{self._formats[event.option_index][1]}"
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Enter on a format."""
+        """Export, after Enter on a format."""
         event.stop()
         self._write(event.option_index)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Enter in the field."""
+        """Export, after Enter in the field."""
         event.stop()
         self._write(self.query_one("#formats", OptionList).highlighted or 0)
 

@@ -17,7 +17,7 @@ from tester.tui.formatting import clean
 from tester.tui.recipe_library import ListedRecipe
 
 MOST_STEPS = 2000
-"""Most steps listed: more would be too many to scroll through."""
+"""Greatest number of steps listed: more would be too many to scroll through."""
 
 
 class PlanDialog(Dialog):
@@ -27,7 +27,7 @@ class PlanDialog(Dialog):
     TALL = True
 
     def __init__(self, recipe: ListedRecipe) -> None:
-        """``recipe``: what to plan."""
+        """``recipe``: the recipe to plan."""
         super().__init__()
         self.recipe = recipe
 
@@ -47,7 +47,9 @@ class PlanDialog(Dialog):
 
 
 def plan_text(plan: dict[str, JsonValue], part: str) -> str:
-    """Return a plan (`tester plan --json`) in lines; ``part``: people's name for the part that wears and is changed."""
+    """Return a plan (`tester plan --json`) in lines; ``part``: name for people of the part that wears and is
+    changed.
+    """
     steps = plan.get("steps")
     listed = steps if isinstance(steps, list) else []
     axes = _axes(plan)
@@ -61,7 +63,7 @@ def plan_text(plan: dict[str, JsonValue], part: str) -> str:
 
 
 def _axes(plan: dict[str, JsonValue]) -> Axes | None:
-    """Return the axes of a plan's conditions; None if it lacks them."""
+    """Return the axes of a plan's conditions; None if the plan does not contain them."""
     listed = plan.get("axes")
     rows = [row for row in listed if isinstance(row, dict)] if isinstance(listed, list) else []
     return axes_from(rows) if rows else None

@@ -17,7 +17,7 @@ from tester.tui.dialogs.dialog import Dialog, line
 from tester.tui.formatting import clean
 
 SEEN_S = 0.5
-"""An answer sooner than this after the question appears was typed before it, s [A]."""
+"""Time after a question appears within which an answer counts as typed before it, s [A]."""
 
 
 class PromptDialog(Dialog):
@@ -37,7 +37,7 @@ class PromptDialog(Dialog):
         self._shown_s = float("inf")
 
     def content(self) -> Iterable[Widget]:
-        """Return the question and its buttons; the one without effect comes first."""
+        """Return the question and its buttons; the button without effect comes first."""
         yield line([(clean(self.prompt.text), "bold")])
         yield line("Choose with the arrows, then Enter. The answer is recorded; the run continues at once.")
         with Horizontal(classes="buttons"):
@@ -59,5 +59,5 @@ class PromptDialog(Dialog):
         self.dismiss(None)
 
     def action_hold(self) -> None:
-        """HOLD, which works while the question waits."""
+        """HOLD, which also works while the question waits."""
         self.host.order(Hold(), "HOLD")

@@ -1,4 +1,4 @@
-"""The repeats of a condition, each with its trace, and the dialog that excludes one or includes it again."""
+"""The repeats of a condition, each with its trace, and the dialog that excludes a repeat or includes it again."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ HEIGHT = 5
 WIDTH = 60
 """Width of a trace if the screen's width is unknown, characters."""
 MARGIN = 14
-"""Width of the dialog beside a trace: borders, labels, scroll bar, characters."""
+"""Width of the dialog without the trace: borders, labels, scroll bar, characters."""
 LONGEST = 400
-"""Longest line of a repeat, characters."""
+"""Greatest length of a repeat's line, characters."""
 
 
 class ExcludeDialog(Dialog):
-    """Asks for the reason and the person. ``done`` is called once they are recorded."""
+    """Asks for the reason and the person's name. ``done`` is called once they are recorded."""
 
     def __init__(self, stored: Stored, row: Row, repeat: RepeatRow, done: Callable[[], None]) -> None:
-        """``repeat``: of the condition ``row`` of ``stored``."""
+        """``repeat``: a repeat of the condition ``row`` of ``stored``."""
         super().__init__()
         self.stored, self.row, self.repeat, self.done = stored, row, repeat, done
         self.verb = "include" if repeat.by_hand else "exclude"
@@ -49,7 +49,7 @@ class ExcludeDialog(Dialog):
         yield field("Who", entry("who", user()))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Record it, if there is a reason."""
+        """Record the decision, if there is a reason."""
         event.stop()
         reason, who = (self.query_one(f"#{name}", Input).value.strip() for name in ("reason", "who"))
         if not reason:
@@ -70,7 +70,7 @@ class ExcludeDialog(Dialog):
 
 
 class RepeatsDialog(Dialog):
-    """Traces of the accepted samples: every repeat in the same range, for comparison."""
+    """Shows the traces of the accepted samples, every repeat in the same range for comparison."""
 
     TITLE = "Repeats"
     SUBTITLE = "Enter excludes or includes · Esc closes · F12 STOP"
@@ -118,13 +118,13 @@ class RepeatsDialog(Dialog):
             self.query_one("#repeats", Static).update(Content.assemble(*parts))
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        """Scroll to the repeat's trace."""
+        """Scroll to the trace of the highlighted repeat."""
         event.stop()
         above = sum(1 + (HEIGHT if repeat.trace else 0) for repeat in self.found[: event.option_index])
         self.query_one("#traces", VerticalScroll).scroll_to(y=above, animate=False)
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Ask why to exclude it, or to include it again."""
+        """Ask why the repeat is to be excluded, or included again."""
         event.stop()
         if self.host.options.view_only:
             self.host.say("view only: nothing is changed from here")
@@ -138,7 +138,7 @@ class RepeatsDialog(Dialog):
 
 
 def repeat_words(one: RepeatRow) -> str:
-    """Return a repeat in a line: its coefficient, its status, why it is excluded and by whom."""
+    """Return a repeat as a line: its coefficient, its status, why it is excluded and by whom."""
     out = f"  ✘ not in the mean: {clean(one.exclusion)}" if one.exclusion else ""
     who = f" ({clean(one.by_hand)})" if one.by_hand else ""
     return fit(f"repeat {one.repeat}: {one.figures}  {clean(one.status)}{out}{who}", LONGEST)

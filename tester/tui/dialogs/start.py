@@ -1,4 +1,4 @@
-"""Start a run: specimen, operator, notes, and the pre-flight list. Motion starts only from here."""
+"""Starts a run: specimen, operator, notes, and the pre-flight list. Only this dialog starts motion."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from tester.tui.formatting import clean
 from tester.tui.recipe_library import ListedRecipe
 
 LATER = ("guard and safety chain", "zero of the load cell", "watchdogs of the drives")
-"""Checks that the service makes before a drive is armed, and without which it refuses to start (docs/safety.md)."""
+"""Checks that the service makes before a drive is armed, and that must succeed for a start (docs/safety.md)."""
 
 
 class PlainCheckbox(Checkbox):
-    """A box whose label shows whether it is set: Textual shows that only by colour."""
+    """A box whose label shows in words whether it is set, because Textual shows that only by colour."""
 
     BUTTON_INNER = "·"
 
@@ -35,7 +35,7 @@ class StartDialog(Dialog):
     AUTO_FOCUS = "#start"
 
     def __init__(self, recipe: ListedRecipe) -> None:
-        """``recipe``: one without problems."""
+        """``recipe``: a recipe without problems."""
         super().__init__()
         self.recipe = recipe
 
@@ -62,7 +62,7 @@ class StartDialog(Dialog):
 
     @property
     def _part(self) -> str:
-        """People's name for the part that is changed."""
+        """Name for people of the part that is changed."""
         return clean(self.host.scene.machine.specimen)
 
     def _ask(self, *, on: bool) -> str:
@@ -93,7 +93,7 @@ class StartDialog(Dialog):
             self.dismiss(None)
 
     def on_checkbox_changed(self, event: Checkbox.Changed) -> None:
-        """Show the state in words: not every terminal has colours."""
+        """Show the box's state in words, because not every terminal has colours."""
         event.checkbox.label = self._ask(on=event.value)
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
@@ -125,7 +125,7 @@ class StartDialog(Dialog):
 
 
 def totals(plan: dict[str, JsonValue], part: str) -> str:
-    """Return a plan's totals in a line; ``part``: people's name for the part that wears and is changed."""
+    """Return a plan's totals as a line; ``part``: name for people of the part that wears and is changed."""
     conditions = counted(int(number_in(plan, "conditions")), "condition")
     parts = counted(int(number_in(plan, f"{part}s")), part)
     return (
@@ -135,6 +135,6 @@ def totals(plan: dict[str, JsonValue], part: str) -> str:
 
 
 def number_in(record: dict[str, JsonValue], key: str) -> float:
-    """Return a number of a plan or a step, 0 where there is none."""
+    """Return a number of a plan or a step; 0 if it has none."""
     value = record.get(key)
     return float(value) if isinstance(value, int | float) else 0.0

@@ -1,4 +1,4 @@
-"""The commissioning engine in its own thread, and the view of it for the screen."""
+"""The commissioning engine in a thread of its own, and what the screen shows of it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from tester.store.record_schema import StoreError
 from tester.tui.guide.guide_person import Live, ScreenPerson
 
 REFUSALS = (CannotStartError, InvalidSource, RecordError, StoreError, OSError, sqlite3.Error)
-"""Errors that stop a commissioning and that a person can fix."""
+"""Errors that stop commissioning and that a person can correct."""
 
 
 @dataclass(frozen=True, slots=True)
 class GuideView:
-    """The data of the screen. ``now``: the step under way, "" for none; ``next``: the next step."""
+    """The data of the screen. ``now``: the step under way, "" if there is none; ``next``: the next step."""
 
     rig: str
     simulated: bool
@@ -44,12 +44,12 @@ class GuideView:
 
     @property
     def stand(self) -> int:
-        """Return how many steps are done."""
+        """Number of steps that are done."""
         return sum(step.stands is not None for step in self.steps)
 
 
 class Guide:
-    """Runs the engine, as often as the person wants; the record determines where it resumes."""
+    """Runs the engine, as often as the person wishes; the record determines where it resumes."""
 
     def __init__(self, load: Callable[[], Rig], options: CommissionOptions) -> None:
         """``load`` reads the rig file and raises InvalidSource."""
@@ -61,7 +61,7 @@ class Guide:
         self.outcome: CommissionOutcome | None = None
         self.trouble = ""
         self.crash: BaseException | None = None
-        """An error of the program itself: raised again when the screen ends."""
+        """An error of the program itself, which is raised again when the screen ends."""
         self._load = load
         self._thread: Thread | None = None
         self._standing: tuple[StepStanding, ...] = ()
@@ -70,21 +70,21 @@ class Guide:
 
     @property
     def running(self) -> bool:
-        """Whether the engine runs."""
+        """Whether the engine is running."""
         return self._thread is not None and self._thread.is_alive()
 
     @property
     def recipe_runs(self) -> bool:
-        """Whether the step under way runs a recipe, which can be held."""
+        """Whether the step under way is running a recipe, which can be held."""
         return any(step.name == self._now and step.alone is not None for step in self.steps)
 
     @property
     def moving(self) -> bool:
-        """Whether something may move: a step is under way without a question."""
+        """Whether something may move: a step is under way and asks no question."""
         return self.running and bool(self._now) and self.person.asked is None
 
     def begin(self) -> None:
-        """Read the rig file and begin; an error goes into ``trouble``."""
+        """Read the rig file and begin; put an error into ``trouble``."""
         if self.running:
             return
         self.outcome, self.trouble = None, ""
@@ -112,7 +112,7 @@ class Guide:
             self.person.end()
 
     def close(self) -> None:
-        """STOP, and wait until the rig is at rest; raises the program's own error, if any."""
+        """STOP, and wait until the rig is at rest; raise the program's own error, if there was one."""
         thread = self._thread
         if thread is not None:
             while thread.is_alive():
@@ -144,7 +144,7 @@ class Guide:
         )
 
     def on_record(self, step: str) -> str:
-        """Return every entry of a step, the newest first, in paragraphs."""
+        """Return every entry of a step, newest first, in paragraphs."""
         lines: list[str] = []
         for entry in reversed(self._record().entries):
             if entry.step == step:

@@ -41,7 +41,7 @@ from tester.tui.widgets.head import KeyLine
 DRAWN_S = 0.1
 """Period for reading the engine's state, s."""
 SEEN_S = 0.3
-"""An answer sooner than this after a question appears was typed before it, s [A]."""
+"""Time after a question appears within which an answer counts as typed before it, s [A]."""
 KEYS = (("Enter", "Answer"), ("Tab", "Steps"), ("space", "Hold"), ("r", "Continue"), ("F1", "Help"), ("^C", "Leave"))
 HELP = """\
 F12, Ctrl+X  STOP: gives up the step at once, without asking; everything comes to rest. The step starts again later.
@@ -104,7 +104,7 @@ class GuideApp(LookApp):
         yield KeyLine(id="keys")
 
     def on_mount(self) -> None:
-        """Start the engine: it connects nothing before a person answers yes to a step."""
+        """Start the engine, which connects nothing before a person answers yes to a step."""
         self.choose_colours()
         line = self.query_one(KeyLine)
         line.keys = KEYS
@@ -135,7 +135,7 @@ class GuideApp(LookApp):
         self._list(base, seen)
 
     def _ask(self, base: Screen[object], question: Question | None) -> None:
-        """Show another question, and discard text typed for the one before."""
+        """Show another question, and discard text typed for the previous one."""
         self._asked, self._asked_s = question, self._now()
         base.query_one(HintPanel).refusal = ""
         field = base.query_one("#guide-answer", Input)
@@ -179,7 +179,7 @@ class GuideApp(LookApp):
             self.look()
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Remove a refusal once another answer is typed."""
+        """Remove the refusal when another answer is typed."""
         hint = self.screen_stack[0].query_one(HintPanel)
         if event.value and hint.refusal:
             hint.refusal = ""
@@ -201,7 +201,7 @@ class GuideApp(LookApp):
     # -- keys -------------------------------------------------------------------------------------------------
 
     def action_stop(self) -> None:
-        """STOP, without asking, from everywhere; the terminal's thread has sent it already."""
+        """STOP, without a confirmation, in every dialog; the terminal's thread has already sent it."""
         self._stop(fast=False)
 
     def action_fast_stop(self) -> None:
@@ -216,7 +216,7 @@ class GuideApp(LookApp):
         self.say("FAST STOP taken" if fast else "STOP taken")
 
     def action_hold(self) -> None:
-        """HOLD a recipe; any other step cannot be held, and is stopped while something may move."""
+        """HOLD a recipe. Any other step cannot be held: stop it if something may move."""
         guide = self.guide
         if guide.running and guide.recipe_runs and guide.person.asked is None:
             guide.person.command(keys.HOLD.command)
@@ -226,7 +226,7 @@ class GuideApp(LookApp):
             self.say("nothing moves before you answer")
 
     def action_go_on(self) -> None:
-        """End HOLD, or continue at the first open step."""
+        """End HOLD, or continue at the first step that is not done."""
         if self.guide.running:
             if self.guide.recipe_runs:
                 self.guide.person.command(keys.RELEASE.command)
@@ -235,7 +235,7 @@ class GuideApp(LookApp):
         self.look()
 
     def action_leave(self) -> None:
-        """Leave; a step under way is stopped first."""
+        """Leave the screen; first stop a step under way."""
         if not self.guide.running:
             self.exit("")
             return
@@ -268,5 +268,5 @@ def completed(question: Question, typed: str) -> str:
 
 
 def clean_text(paragraph: str) -> str:
-    """Return a paragraph of the record as displayable text, with its lines kept."""
+    """Return a paragraph of the record as displayable text, keeping its lines."""
     return "\n".join(clean(line) for line in paragraph.split("\n"))

@@ -1,4 +1,6 @@
-"""The person at the screen, for the engine: passes questions, answers and commands between two threads."""
+"""The person at the screen, as the engine sees the person: passes questions, answers and commands between two
+threads.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,12 @@ from tester.machine.prompts import Prompt, Prompts, Question
 KEPT: Final = 500
 """Number of messages kept."""
 LOOK_S: Final = 0.2
-"""Period of readings, s of wall time."""
+"""Period of updating the readings, s of wall time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """The step that uses the rig: its name, its rig time, s, and the rig's readings."""
+    """The step that is using the rig: its name, its rig time, s, and the rig's readings."""
 
     step: str
     now_s: float
@@ -34,11 +36,11 @@ class ScreenPerson(Person):
     """The person at the screen: questions, answers, commands and readings pass between the two threads."""
 
     def __init__(self, *, time_stands: bool) -> None:
-        """``time_stands``: true for a rig simulated in this process."""
+        """``time_stands``: whether rig time stops while a person thinks; true for a rig simulated in this process."""
         self.time_stands = time_stands
         self.messages: deque[str] = deque(maxlen=KEPT)
         self.entries: deque[RecordEntry] = deque()
-        """Recorded entries that are not shown yet."""
+        """Recorded entries that the screen has not shown yet."""
         self.live: Live | None = None
         self._prompt: Prompt | None = None
         self._commands: SimpleQueue[str] = SimpleQueue()
@@ -81,7 +83,7 @@ class ScreenPerson(Person):
         return prompt.question if prompt is not None and prompt.answer is None else None
 
     def answer(self, question: Question, text: str) -> bool:
-        """Answer a question; return False if it no longer waits, or refuses the text."""
+        """Answer a question; return False if the question no longer waits or refuses the text."""
         prompt = self._prompt
         waits = prompt is not None and prompt.question is question and prompt.answer is None
         return waits and prompt is not None and not prompt.reply(text)
@@ -91,7 +93,7 @@ class ScreenPerson(Person):
         self.command((FAST_STOP if fast else STOP).command)
 
     def command(self, command: str) -> None:
-        """Give another command (tester.base.keys)."""
+        """Pass another command to the engine (tester.base.keys)."""
         self._commands.put(command)
 
     def begin(self) -> None:
@@ -100,6 +102,6 @@ class ScreenPerson(Person):
         self.end()
 
     def end(self) -> None:
-        """Called when the engine ends. Pending questions are dropped."""
+        """Drop waiting questions; called when the engine ends."""
         self._prompt = None
         self.live = None

@@ -28,7 +28,7 @@ class GuidePanel(Panel):
     seen: GuideView | None = None
 
     def see(self, seen: GuideView) -> None:
-        """Show this view from now on."""
+        """Use this view from now on."""
         self.seen = seen
         self.show(self.scene or ScreenScene())
 
@@ -53,7 +53,7 @@ class GuideLine(GuidePanel):
 
 
 class EndLine(GuidePanel):
-    """Line 2: the present activity; after the engine has ended, its outcome and how to resume."""
+    """Line 2: the present activity; once the engine has ended, the outcome and how to resume."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
         text, style = end_words(seen)
@@ -78,7 +78,7 @@ def end_words(seen: GuideView) -> tuple[str, str]:
 
 
 def step_row(one: StepStanding, seen: GuideView, width: int) -> Part:
-    """Return a step: sign, name, its rig time or state."""
+    """Return a step as a row: sign, name, its rig time or state."""
     name, style, sign, word = one.step.name, "", "·", ""
     if name == seen.now:
         sign, style, word = "▶", "bold", f"now {duration(seen.live.now_s)}" if seen.live is not None else "now"
@@ -94,7 +94,7 @@ def step_row(one: StepStanding, seen: GuideView, width: int) -> Part:
 
 
 class ReadingsPanel(GuidePanel):
-    """The rig's readings that matter for the step."""
+    """The rig's readings that are relevant to the step."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
         if seen.live is None:
@@ -105,7 +105,7 @@ class ReadingsPanel(GuidePanel):
 
 
 def reading_row(one: StepReading, width: int) -> Parts:
-    """Return a reading: label, value, unit, words."""
+    """Return a reading as a row: label, value, unit, words."""
     value = decimal(one.value, one.decimals) if isfinite(one.value) else "" if one.words and not one.unit else NONE
     text = f"{fit(clean(one.label), LABEL):<{LABEL}}{value:>{CELL}} {clean(one.unit, 5):<5} {clean(one.words)}"
     return [fit(text.rstrip(), width)]
@@ -136,7 +136,7 @@ class HintPanel(GuidePanel):
 
 
 class SaidPanel(GuidePanel):
-    """The engine's messages, the newest last."""
+    """The engine's messages, newest last."""
 
     def drawn(self, seen: GuideView, width: int, height: int) -> Parts:
         lines: list[Parts] = []

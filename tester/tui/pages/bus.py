@@ -1,4 +1,4 @@
-"""Bus: devices with the age of their data and their errors, buses with their load, and the frames as they pass."""
+"""Bus: devices with the age of their data and their errors, buses with their load, and frames as they arrive."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tester.tui.screen_scene import STALE_S, ScreenScene
 from tester.tui.widgets.panel_base import FAINT, NOTICE, WARNING, Panel, Parts, rows
 
 LOG_BYTES = 1_000_000
-"""Bytes from the end of the service's log."""
+"""Number of bytes to include from the end of the service's log."""
 
 
 def write_bundle(scene: ScreenScene, stamp: str, where: Path = Path()) -> Path:
@@ -66,7 +66,7 @@ b     support bundle: a zip file with state, events, plan, frames and the servic
 
 
 class DevicesPanel(Panel):
-    """A row a device."""
+    """A table with a row for each device."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the table."""
@@ -79,11 +79,11 @@ class DevicesPanel(Panel):
 
 
 HOURLY_FROM = 90
-"""Columns needed for errors per hour beside a drive's state."""
+"""Width from which the errors per hour are shown next to a drive's state, columns."""
 
 
 def device_row(one: DeviceView, width: int) -> Parts:
-    """Return a device."""
+    """Return a device as a row."""
     age = "—" if one.age_s is None else f"{one.age_s:.3f} s"
     hourly = f"{one.errors_per_hour:>7.1f}" if width >= HOURLY_FROM else ""
     text = (
@@ -95,7 +95,7 @@ def device_row(one: DeviceView, width: int) -> Parts:
 
 
 class BusesPanel(Panel):
-    """A row for each bus; the title shows how punctual the scan is."""
+    """A table with a row for each bus; the title shows how punctual the scan is."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return the table."""
@@ -108,7 +108,7 @@ class BusesPanel(Panel):
 
 
 def bus_row(one: BusState) -> str:
-    """Return a bus."""
+    """Return a bus as a row."""
     load = f"{decimal(one.load_percent, 1)} %" if one.load_percent is not None else "load unknown"
     return f"{clean(one.name):<9} {one.kind:<7} {load:>12}  {one.errors} errors  {clean(one.detail)}"
 
@@ -120,7 +120,7 @@ class FramesPanel(Panel):
     wanted = ""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return a row a frame."""
+        """Return a row for each frame."""
         source = self.frozen if self.frozen is not None else scene.frames
         lines = [frame_row(frame) for frame in source]
         if self.wanted:
@@ -134,7 +134,7 @@ class FramesPanel(Panel):
 
 
 def frame_row(frame: Frame) -> str:
-    """Return a frame."""
+    """Return a frame as a row."""
     return f"{frame.t_s:12.4f} {clean(frame.bus):<8} {'>' if frame.sent else '<'} {frame.ident:4X}  {clean(frame.data)}"
 
 
@@ -177,7 +177,7 @@ class BusPage(View, can_focus=True):
         super().show(scene)
 
     def leave(self) -> None:
-        """Stop the frames: they cost, and the screen no longer shows them."""
+        """Stop the frames, which cost time and are no longer visible."""
         self._watch(on=False)
 
     def _watch(self, *, on: bool) -> None:
@@ -185,13 +185,13 @@ class BusPage(View, can_focus=True):
             self.host.order(WatchFrames(on))
 
     def action_freeze(self) -> None:
-        """Freeze the frames, or let them run."""
+        """Freeze the frames, or show new ones again."""
         panel = self.query_one(FramesPanel)
         panel.frozen = tuple(self.host.scene.frames) if panel.frozen is None else None
         panel.redraw()
 
     def action_filter(self) -> None:
-        """Ask for a text."""
+        """Ask for the text by which to filter the frames."""
         entry = self.query_one("#filter", Input)
         entry.add_class("-open")
         entry.focus()
@@ -204,7 +204,7 @@ class BusPage(View, can_focus=True):
         self.focus()
 
     def on_input_changed(self, event: Input.Changed) -> None:
-        """Filter as it is typed."""
+        """Filter while the text is typed."""
         panel = self.query_one(FramesPanel)
         panel.wanted = event.value.strip().lower()
         panel.redraw()

@@ -1,4 +1,4 @@
-"""Manual: armed explicitly; a key press is one bounded step, which the service allows or refuses."""
+"""Manual: armed explicitly. A key press is one bounded step, which the service accepts or refuses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ COMMISSIONING = "load cell, scales, directions: c commissions the rig"
 SIGN_S = 0.25
 """Period of signs of life, s; a second without one ends manual mode."""
 SOON_S = 15.0
-"""Less time left than this is worth a warning."""
+"""Time left below which a warning is shown, s."""
 HELP = """\
 Manual mode moves the rig in bounded steps. A terminal cannot see a key being released: one press is one step, never
 more than five a second. Limits and interlocks are those of a run.
@@ -65,19 +65,19 @@ def armed_words(state: StateView) -> Part:
 
 
 class ManualValues(Panel):
-    """The values that move by hand."""
+    """The values that a person can change in manual mode."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return a row for each."""
+        """Return a row for each value."""
         values = [value for key in scene.machine.by_hand if (value := scene.value(key)) is not None]
         return rows([value_row(value, width, linked=scene.linked) for value in values[:height]])
 
 
 class ManualPage(View):
-    """Jog, zero, heat by hand."""
+    """Manual jogging, zeroing and heating."""
 
     axes: tuple[HandAxis, ...] = ()
-    """The machine's axes, as listed."""
+    """The machine's axes, in the order of the list."""
 
     KEYS: ClassVar[Keys] = (("m", "Arm"), ("↑↓", "Axis"), ("←→", "Step"), ("t", "Tare"), ("a", "Ack"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -104,7 +104,7 @@ class ManualPage(View):
                 yield EventsPanel(id="manual-events", classes="box", title="Events")
 
     def on_mount(self) -> None:
-        """Begin the signs of life."""
+        """Begin to send signs of life."""
         self.set_interval(SIGN_S, self._give_sign)
 
     def show(self, scene: ScreenScene) -> None:
@@ -118,7 +118,7 @@ class ManualPage(View):
             listed.highlighted = 0 if self.axes else None
 
     def _give_sign(self) -> None:
-        """Send a sign of life; called from the drawing loop, so that a hung screen sends none."""
+        """Send a sign of life. The drawing loop calls this, so that a screen that hangs sends none."""
         link = self.host.link
         if self.display and self.host.scene.controls and link is not None and link.client is not None:
             link.client.attend()
@@ -139,7 +139,7 @@ class ManualPage(View):
         return state is not None and state.manual.left_s is not None
 
     def action_arm(self) -> None:
-        """Arm, or disarm."""
+        """Arm manual mode, or disarm it."""
         self.host.order(Arm(on=not self.armed), "manual mode disarmed" if self.armed else "manual mode armed")
 
     def action_tare(self) -> None:

@@ -29,7 +29,7 @@ FIRST = "quickstart"
 EDITORS = ("VISUAL", "EDITOR")
 DEFAULT_EDITOR = "notepad" if os.name == "nt" else "vi"
 TAKES_A_LINE = ("vi", "vim", "nvim", "nano", "emacs")
-"""Editors that open a file at +LINE."""
+"""Editors that accept +LINE to open a file at a line."""
 HELP = """\
 The list on the left: ✔ valid on this rig, ✘ with the number of problems. Problems are below the text, each with line,
 column, the error and the source of the limit.
@@ -60,7 +60,7 @@ class RecipesView(View):
         super().__init__(id=id)
         self.recipes: list[ListedRecipe] = []
         self.checked: dict[str, Checked] = {}
-        """By the path of the recipe."""
+        """Problems of each recipe, by its path."""
         self.failed: dict[str, str] = {}
         self._asked = False
 
@@ -151,7 +151,7 @@ class RecipesView(View):
         self._begin_check(order)
 
     def _begin_check(self, recipes: list[ListedRecipe]) -> None:
-        """Check these recipes, abandoning earlier checks."""
+        """Check these recipes, and abandon earlier checks."""
         self.run_worker(partial(self._check, recipes), group="check", exclusive=True, exit_on_error=False)
 
     async def _check(self, recipes: list[ListedRecipe]) -> None:
@@ -178,7 +178,7 @@ class RecipesView(View):
             self._open()
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Enter: start, or jump to a problem."""
+        """Start the recipe, or jump to the chosen problem."""
         event.stop()
         if event.option_list.id == "problems":
             self._jump(event.option_index)
@@ -210,7 +210,7 @@ class RecipesView(View):
             self.host.push_screen(PlanDialog(recipe))
 
     def action_reload(self) -> None:
-        """Look for recipes again."""
+        """Search for recipes again."""
         self._read(self.chosen.name if self.chosen is not None else FIRST)
         self._check_all()
 

@@ -28,7 +28,7 @@ from tester.tui.widgets.panel_base import FAINT, Panel, Parts, rows
 
 
 class PlotDialog(Dialog):
-    """Mu against one setpoint after another."""
+    """A plot of mu against one setpoint, which a key changes."""
 
     TITLE = "Plot"
     SUBTITLE = "p next axis · Esc closes · F12 STOP"
@@ -45,7 +45,7 @@ class PlotDialog(Dialog):
         yield PlotPanel(id="big-plot")
 
     def on_mount(self) -> None:
-        """Draw."""
+        """Draw the plot."""
         self._plot()
 
     def _plot(self) -> None:
@@ -119,20 +119,20 @@ g       look for runs again.
 
 
 class TextTable(DataTable[Text]):
-    """A table of plain texts, never markup."""
+    """A table of plain text, never interpreted as markup."""
 
     def fill(self, header: Sequence[str], rows: Sequence[Sequence[str]] = ()) -> None:
-        """Show these cells, each column as wide as its widest.
+        """Show these cells, each column as wide as its widest cell.
 
-        The widths are explicit: a table that measures them does so only when idle, and cells painted before that, for
-        example under a dialog, stay on the screen with columns that are too narrow.
+        The widths are explicit, because a table measures them only when idle. Cells painted before that, for example
+        under a dialog, would stay on the screen in columns that are too narrow.
         """
         self.clear(columns=True)
         for number, title in enumerate(header):
             self.add_column(Text(title), width=max(cell_len(row[number]) for row in (header, *rows)))
         for row in rows:
             self.add_row(*(Text(cell) for cell in row))
-        self.call_later(self.refresh)  # the table updates its scroll range with its next message, and none is coming
+        self.call_later(self.refresh)  # the table updates its scroll range at its next message, so send one
 
 
 class ResultsView(View):
@@ -184,7 +184,7 @@ class ResultsView(View):
         self.runs_table.focus()
 
     def action_reload(self) -> None:
-        """Look for runs again."""
+        """Search for runs again."""
         if self.host.options.view_only or self.host.link is None:
             return
         self.runs_table.border_title = "Runs: looking …"
@@ -196,7 +196,7 @@ class ResultsView(View):
             self.fill(runs[::-1])
 
     def fill(self, runs: list[Listed]) -> None:
-        """Show these runs (`tester runs --json`), the newest first."""
+        """Show these runs (`tester runs --json`), newest first."""
         table = self.runs_table
         before = table.cursor_row
         self.names = [str(run.get("run", "")) for run in runs]
@@ -206,7 +206,7 @@ class ResultsView(View):
         table.border_title = f"Runs: {len(runs)}"
 
     def on_data_table_row_selected(self, event: DataTable.RowSelected) -> None:
-        """Enter: read a run, or show a condition's repeats."""
+        """Read the chosen run, or show the chosen condition's repeats."""
         event.stop()
         if self.runs_table.has_focus:
             if event.cursor_row < len(self.names):
@@ -215,7 +215,7 @@ class ResultsView(View):
             self.host.push_screen(RepeatsDialog(self.stored, row, self._read_again))
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
-        """Mark the series of the condition under the cursor."""
+        """Highlight the series of the condition under the cursor."""
         event.stop()
         self._plot(self.query_one(PlotPanel).axis)
 
@@ -264,7 +264,7 @@ class ResultsView(View):
         panel.entitle(panel.title)
 
     def action_plot(self) -> None:
-        """Plot against the next axis, on the whole screen if there is no room beside the tables."""
+        """Plot against the next axis, on the whole screen if there is no room next to the tables."""
         panel = self.query_one(PlotPanel)
         if panel.display:
             self._plot(panel.axis + 1)
@@ -274,7 +274,7 @@ class ResultsView(View):
             self.host.say("choose a run first")
 
     def action_export(self) -> None:
-        """Ask what to export, and where."""
+        """Ask what to export, and to which file."""
         at = self.runs_table.cursor_row
         name = self.stored.name if self.stored is not None else self.names[at] if at < len(self.names) else ""
         if name and not self.host.options.view_only:

@@ -1,4 +1,4 @@
-"""Ring: errors of the line over a ring, by angle of the ring, by speed, and from run to run."""
+"""Ring: errors of the line through a slip ring, by angle of the ring, by speed, and from run to run."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class RingPage(View):
         return self.query_one("#ring-runs", TextTable)
 
     def enter(self) -> None:
-        """Read the runs as they are now."""
+        """Read the runs as they are stored now."""
         super().enter()
         self.action_reload()
 
@@ -86,7 +86,7 @@ class RingPage(View):
             self._fill()
 
     def _fill(self) -> None:
-        """Show the runs, the newest under the cursor, and the panels of the chosen run."""
+        """Show the runs, with the cursor on the newest, and the panels of the chosen run."""
         before = self.rows[self.table.cursor_row].run.name if self.rows else ""
         self.rows = self.kept.rows()
         self.table.fill(HEADER, [cells(row) for row in self.rows])
@@ -118,7 +118,7 @@ class RingPage(View):
             panel.show(self.host.scene)
 
     def action_anew(self) -> None:
-        """Count from the run under the cursor, or again from the first."""
+        """Count the ring as new from the run under the cursor, or again from the first run."""
         run = self.chosen
         if run is not None:
             self.kept.since = "" if self.kept.since else run.name

@@ -26,10 +26,10 @@ TIME = 9
 
 
 class StepsPanel(Panel):
-    """As many steps around the present one as there are rows."""
+    """The steps around the present one, as many as there are rows."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return a row a step."""
+        """Return a row for each step."""
         plan = scene.plan
         if plan is None:
             return [("no plan", FAINT)]
@@ -37,7 +37,7 @@ class StepsPanel(Panel):
         first = max(min(now - height // 3, len(plan.steps) - height), 0)
         shown, below = plan.steps[first : first + height], plan.steps[first + height :]
         more = plan.total - plan.first + 1 - first - len(shown)
-        if more and len(shown) == height:  # use the last row for the steps without a row, so that the list adds up
+        if more and len(shown) == height:  # the last row sums up the steps not shown, so that the list adds up
             *shown, last = shown
             below, more = (last, *below), more + 1
         left_s = scene.state.progress.step_left_s if scene.state is not None else None
@@ -49,8 +49,8 @@ class StepsPanel(Panel):
 
 
 def step_row(step: PlanStep, width: int, left_s: float | None) -> Parts:
-    """Return a step: sign, title, and its measured duration, the time left in it (``left_s``), or its expected
-    duration.
+    """Return a step as a row: sign, title, and a time: its measured duration, the time left in it (``left_s``), or its
+    expected duration.
     """
     if step.measured_s is not None:
         time = duration(step.measured_s)
@@ -66,10 +66,10 @@ def _row(sign: str, title: str, time: str, width: int) -> str:
 
 
 class PromptPanel(Panel):
-    """Shown while a question waits."""
+    """The waiting question; visible only while there is one."""
 
     def show(self, scene: ScreenScene) -> None:
-        """Appear and vanish with the question."""
+        """Appear and disappear with the question."""
         self.display = scene.state is not None and scene.state.prompt is not None
         super().show(scene)
 
@@ -112,7 +112,7 @@ class RunPage(View, can_focus=True):
     ]
 
     def __init__(self, *, plain: bool, id: str) -> None:  # noqa: A002 - as in Textual
-        """``plain``: ASCII trends."""
+        """``plain``: draw trends in ASCII."""
         super().__init__(id=id)
         self.plain = plain
 
@@ -134,7 +134,7 @@ class RunPage(View, can_focus=True):
                 yield EventsPanel(id="events", classes="box", title="Alarms and events")
 
     def action_answer(self) -> None:
-        """Open the waiting question; at the end of a run, show its results."""
+        """Open the waiting question. At the end of a run, show its results instead."""
         state = self.host.scene.state
         if state is not None and state.prompt is not None:
             self.host.push_screen(PromptDialog(state.prompt))

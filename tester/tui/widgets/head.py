@@ -17,7 +17,7 @@ TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual
         ("f5", "Results", "results"), ("f6", "Bus", "bus"), ("f7", "Ring", "ring"))  # fmt: skip
 """Key, title, id of each screen."""
 RING: Final = "ring"
-"""The screen that only a machine with a ring has (tester.base.screen.MachineView)."""
+"""Id of the screen that only a machine with a ring has (tester.base.screen.MachineView)."""
 CALM_MODES = frozenset({"RUN", "IDLE", "OFFLINE", "ARMED", "CONNECTING", "MANUAL"})
 TRIPPED_MODES = frozenset({"FAST STOP", "LATCHED", "E-STOP"})
 ALARM_SIGNS = {"active": "■", "acknowledged": "▣", "returned": "◇"}
@@ -68,7 +68,7 @@ def _count(alarms: tuple[Alarm, ...]) -> Part:
 
 
 def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
-    """Return the pieces beside mode and alarms, the most important first."""
+    """Return the texts that follow mode and alarms, most important first."""
     progress, run = state.progress, state.run
     pieces: list[str] = []
     if progress.conditions:
@@ -89,7 +89,7 @@ def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
 
 
 def _cut(parts: Parts, width: int) -> Parts:
-    """Return as many whole parts as fit."""
+    """Return as many whole parts as fit into ``width``."""
     kept: Parts = []
     used = 0
     for part in parts:
@@ -126,7 +126,7 @@ class TabLine(Panel):
 
 
 def alarm_words(alarm: Alarm) -> str:
-    """Return an alarm in a line: name, value, limit, meaning, consequence."""
+    """Return an alarm as a line: name, value, limit, meaning, consequence."""
     text = f"{ALARM_SIGNS[alarm.state]} P{alarm.priority} {clean(alarm.name)}"
     if alarm.value is not None:
         limit = f" (limit {decimal(alarm.limit, 1)})" if alarm.limit is not None else ""
@@ -137,12 +137,12 @@ def alarm_words(alarm: Alarm) -> str:
 
 
 class KeyLine(Panel):
-    """The last line: the keys that work here, and always STOP."""
+    """The last line: the keys that work on this screen, and always STOP."""
 
     keys: tuple[tuple[str, str], ...] = ()
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return the line; STOP comes first if there is room for no more."""
+        """Return the line; STOP comes first, in case there is no room for the other keys."""
         stop: Part = (STOP_KEYS, "bold reverse") if not scene.view_only else " view only: `tester stop` "
         room = width - len(plain([stop]))
         parts: Parts = []
@@ -160,10 +160,10 @@ STYLES = {"debug": FAINT, "info": "", "warning": NOTICE, "alarm": NOTICE, "trip"
 
 
 class EventsPanel(Panel):
-    """Alarms first, then as many events as there is room for."""
+    """The alarms, then as many events as there is room for."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return a row an alarm and a row an event."""
+        """Return a row for each alarm and each event."""
         lines: list[Parts] = []
         for alarm in scene.alarms()[: height // 2]:
             style = ALARM_STYLES[alarm.priority] if alarm.state != "acknowledged" else NOTICE
@@ -173,7 +173,7 @@ class EventsPanel(Panel):
 
 
 def event_row(event: Event, width: int) -> Parts:
-    """Return an event: local time of day, sign, what."""
+    """Return an event as a row: local time of day, sign, text."""
     when = clock_text(event.utc, seconds=True)
     text = fit(f"{when} {SIGNS.get(event.severity, ' ')} {clean(event.text)}", width)
     return [(text, STYLES.get(event.severity, ""))]

@@ -1,4 +1,4 @@
-"""A panel draws a part of the scene as text in styles; it is drawn again only where that text has changed."""
+"""A panel draws a part of the scene as styled text; it is drawn again only if that text has changed."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ FAINT = "dim"
 
 
 def plain(parts: Parts) -> str:
-    """Return the text alone."""
+    """Return the text without styles."""
     return "".join(part if isinstance(part, str) else part[0] for part in parts)
 
 
 class Panel(Static):
-    """Shows what ``picture`` makes of the scene in the space there is. Text is never taken for markup."""
+    """Shows what ``picture`` makes of the scene in the available space. Text is never interpreted as markup."""
 
     def __init__(self, *, id: str | None = None, classes: str | None = None, title: str = "") -> None:  # noqa: A002
-        """Empty until the first scene. ``id``, ``classes`` as in Textual; ``title``: in the border."""
+        """Begin empty until the first scene. ``id``, ``classes``: as in Textual; ``title``: text in the border."""
         super().__init__("", markup=False, id=id, classes=classes)
         if title:
             self.border_title = title
@@ -42,7 +42,7 @@ class Panel(Static):
         self.redraw()
 
     def redraw(self) -> None:
-        """Draw again, if it has changed and is visible."""
+        """Draw again, if the text has changed and the panel is visible."""
         size = self.content_size
         if self.scene is None or not size.width or not size.height:
             return
@@ -52,7 +52,7 @@ class Panel(Static):
             self.update(Content.assemble(*parts), layout=False)
 
     def entitle(self, title: str) -> None:
-        """Put a title into the border, if it is another one; never taken for markup."""
+        """Put a title into the border, if it differs from the present one; it is never interpreted as markup."""
         if title != self._entitled:
             self._entitled = title
             self.border_title = Content(title)
@@ -67,12 +67,12 @@ class Panel(Static):
 
     @property
     def text(self) -> str:
-        """Return what is shown, without styles."""
+        """Return the displayed text, without styles."""
         return plain(self._drawn or [])
 
 
 def rows(lines: list[Parts]) -> Parts:
-    """Return lines one below the other."""
+    """Return the lines one below the other."""
     joined: Parts = []
     for number, line in enumerate(lines):
         if number:

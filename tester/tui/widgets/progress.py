@@ -13,7 +13,7 @@ NAME = 10
 
 
 class ProgressPanel(Panel):
-    """Three lines."""
+    """Three lines: campaign, repeat, step."""
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return campaign, repeat, step."""

@@ -1,4 +1,4 @@
-"""Errors over a ring: by angle as columns, by speed as rows, by age as points with their trend."""
+"""Errors of the line through a ring: by angle as columns, by speed as rows, by age as points with their trend."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from tester.tui.screen_scene import ScreenScene
 from tester.tui.widgets.panel_base import FAINT, NOTICE, Panel, Parts, rows
 
 STEPS: Final = " ▁▂▃▄▅▆▇█"
-"""Eighths of a row."""
+"""Characters for zero to eight eighths of a row."""
 SECTORS: Final = 12
 SCATTER_FROM: Final = 9
-"""Rows needed for points beside the words."""
+"""Number of rows from which points are shown in addition to the words."""
 
 
 class AnglePanel(Panel):
@@ -27,7 +27,7 @@ class AnglePanel(Panel):
     run: RingRun | None = None
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return columns above their angles."""
+        """Return columns of errors above their angles."""
         run = self.run
         if run is None:
             return [("no run has a record of a ring", FAINT)]
@@ -47,7 +47,8 @@ class AnglePanel(Panel):
 
 
 def columns(counts: Sequence[int], width: int, height: int) -> list[str]:
-    """Return a column for each sector, ``height`` rows with the angles below; the greatest count is above its column.
+    """Return a column for each sector, in ``height`` rows with the angles below; the greatest count is shown above its
+    column.
     """
     each = max(width // SECTORS, 1)
     most, room = max(counts), max(height - 2, 1)
@@ -68,7 +69,7 @@ class SpeedPanel(Panel):
     run: RingRun | None = None
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return a row a class."""
+        """Return a row for each class."""
         if self.run is None:
             return []
         lines: list[Parts] = []

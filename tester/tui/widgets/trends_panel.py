@@ -12,21 +12,21 @@ from tester.tui.widgets.panel_base import FAINT, Panel, Part, Parts
 
 WINDOW_S = SNAPSHOT_S * TREND_ROWS
 LABELS = 7
-"""Columns of the y labels."""
+"""Width of the y labels, columns."""
 
 
 class Bins:
-    """Least and greatest value of each stretch of time, updated with each new row of the trend."""
+    """Least and greatest value in each interval of time, updated with each new row of the trend."""
 
     def __init__(self, column: int, count: int, epoch: int) -> None:
-        """``column``: of the trend's rows; ``count``: stretches in the window."""
+        """``column``: the column in the trend's rows; ``count``: number of intervals in the window."""
         self.column, self.count, self.epoch = column, count, epoch
         self.bins: list[Bin | None] = []
         self._first = 0
         self._seen = float("-inf")
 
     def take(self, row: tuple[float | None, ...]) -> None:
-        """Take a row, if it is newer."""
+        """Include a row, if it is newer than those before."""
         wall_s = row[0]
         if wall_s is None or wall_s <= self._seen:
             return
@@ -51,7 +51,7 @@ class TrendPanel(Panel):
     """The trend of one of the machine's plots."""
 
     def __init__(self, place: int, *, plain: bool = False, id: str | None = None) -> None:  # noqa: A002
-        """``place``: among the plots of the machine, from 0."""
+        """``place``: index among the plots of the machine, from 0."""
         super().__init__(id=id, classes="trend box")
         self.place, self.plain = place, plain
         self._plot: PlotView | None = None
@@ -59,7 +59,7 @@ class TrendPanel(Panel):
         self._bins: Bins | None = None
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
-        """Return the plot, and show the value in the title."""
+        """Return the plot, and show the present value in the title."""
         plots, columns = scene.machine.plots, scene.machine.trend
         plot = plots[self.place] if self.place < len(plots) else None
         value = scene.value(plot.key) if plot is not None else None

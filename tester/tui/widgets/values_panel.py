@@ -10,11 +10,11 @@ from tester.tui.widgets.panel_base import ABNORMAL, FAINT, WARNING, Panel, Parts
 
 RAIL, LOW, HIGH, SETPOINT, BAND, HERE = "─", "├", "┤", "┼", "═", "●"
 OFF_LEFT, OFF_RIGHT = "◀", "▶"
-"""The value lies outside the bar."""
+"""Signs for a value to the left or to the right of the bar."""
 
 
 def bar(value: Value, width: int) -> str:
-    """Return the bar, ``width`` characters wide; without a value only the rail and the limits."""
+    """Return the bar, ``width`` characters wide; without a value it shows only the rail and the limits."""
     if width < 3:
         return ""
     span = value.scale_high - value.scale_low
@@ -48,7 +48,7 @@ def bar(value: Value, width: int) -> str:
 
 
 def beyond(value: Value) -> str:
-    """Return LOW or HIGH where the value is at or beyond a limit, else an empty text."""
+    """Return LOW or HIGH if the value is at or beyond a limit, else an empty text."""
     if value.value is None:
         return ""
     if value.high is not None and value.value >= value.high:
