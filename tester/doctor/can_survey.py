@@ -91,7 +91,7 @@ class CanSurvey:
     """Why the bus cannot be used; "" if it can."""
     traffic: Listened = field(default_factory=Listened)
     present: tuple[int, ...] = ()
-    """Nodes that answered."""
+    """Numbers of the nodes that answered."""
     surplus: Mapping[int, int] = field(default_factory=dict[int, int])
     """Number of surplus answers, by node."""
     objects: Mapping[int, Mapping[Key, ObjectAnswer]] = field(default_factory=dict[int, Mapping[Key, ObjectAnswer]])
@@ -132,7 +132,7 @@ def survey_can(rig: Rig, wires: Wires) -> CanSurvey:
 
 
 def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Listened:
-    """Listen without sending; raises BusLost."""
+    """Listen for ``seconds`` without sending; raises BusLost."""
     frames, begun_s = Listened(), wires.now()
     port.receive(begun_s)  # discard earlier frames
     due_s = begun_s

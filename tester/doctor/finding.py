@@ -18,7 +18,7 @@ class Severity(IntEnum):
 
     @property
     def word(self) -> str:
-        """The printed word."""
+        """The severity as printed."""
         return self.name.lower()
 
 
@@ -34,7 +34,7 @@ class Finding:
     """What a person can do about the finding; "" if nothing is needed."""
 
     def __str__(self) -> str:
-        """Return the printed line."""
+        """Return the finding as the line to print."""
         return f"{self.severity.word:7} {self.subject}: {self.found}"
 
 
@@ -44,7 +44,7 @@ def ok(subject: str, found: str) -> Finding:
 
 
 def note(subject: str, found: str, todo: str = "") -> Finding:
-    """Return a finding for information."""
+    """Return a finding that is only for information."""
     return Finding(Severity.NOTE, subject, found, todo)
 
 

@@ -37,7 +37,7 @@ _FREE: Final = Goal.FREE
 
 
 class CountedInRun(Protocol):
-    """Something that a kind of machine counts during a run."""
+    """A quantity that a kind of machine counts during a run."""
 
     def store(self, recorder: Recorder, now_s: float) -> None:
         """Store the count at ``now_s`` s."""

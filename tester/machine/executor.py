@@ -68,7 +68,7 @@ class Executor(Generic[ContextT]):
     """The remaining steps, the present activity, and whether the run is finished."""
 
     def __init__(self, plan: Plan, procedures: Procedures[ContextT]) -> None:
-        """Begin before the first step."""
+        """Begin before the first step of the plan."""
         self.plan = plan
         self.procedures = procedures
         self.steps: deque[Step] = deque(plan.steps)
@@ -134,7 +134,7 @@ class Executor(Generic[ContextT]):
         self.activity = extra.activity
 
     def _announce(self, text: str, ctx: ContextT) -> None:
-        """Report the next activity."""
+        """Report to people that the next activity begins."""
         ctx.progress.step += 1
         ctx.progress.steps = ctx.progress.step + len(self.steps)
         ctx.progress.repeat = ctx.progress.repeats = 0

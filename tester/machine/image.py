@@ -31,7 +31,7 @@ class BaseReadings:
     bus_fault: str = ""
     """Which wire is gone (CAN adapter, serial line), as text; empty while all are there."""
     can_heard_s: float = NEVER
-    """When the last CAN frame arrived."""
+    """Arrival time of the last CAN frame."""
     unheard: str = ""
     """Drives that send no new data while others do, as text; empty = none."""
     line_silent: str = ""
@@ -63,7 +63,7 @@ class BaseDemand:
     """The demand of a step on any machine; control bounds it and may refuse it."""
 
     enabled: bool = False
-    """Drives powered."""
+    """Whether the drives are to be powered."""
     attended: bool = False
     """A person was asked to come near: hands may be in danger."""
 

@@ -114,7 +114,7 @@ class InterlockTable:
             (self.bit(row.name), there) for row in self.rows if (there := row.still_there()) is not None
         )
         self.at_rest = sum(self.bit(row.name) for row in self.rows if row.at_rest is not None)
-        """Rows that also trip in idle."""
+        """Rows that also trip at rest."""
         self.warnings = sum(self.bit(row.name) for row in self.rows if row.reaction is WARN)
         """Rows that stop nothing, and do not prevent arming or acknowledging."""
 
@@ -170,7 +170,7 @@ class InterlockSheet:
     others: Sequence[Parameter] = ()
     """Parameters of the section ``interlocks`` that belong to no row."""
     others_are: str = ""
-    """Their purpose, in a few words."""
+    """Purpose of these other parameters, in a few words."""
 
     def table(self) -> str:
         """Return the table as Markdown, a line for each row; names like ``stale_cell`` are keys of the rig file's

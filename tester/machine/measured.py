@@ -62,7 +62,7 @@ class MeasuredRepeat(Protocol):
 
     @property
     def warming_k_s(self) -> float:
-        """How fast the surface warmed in contact, K/s; NaN if not measured."""
+        """How fast the surface warmed while in contact, K/s; NaN if not measured."""
         ...
 
     @property

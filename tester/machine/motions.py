@@ -34,7 +34,7 @@ class Sequence:
         self.since_s = float("nan")
 
     def resume(self, ctx: AnyContext) -> None:
-        """Restart the current part's time limit."""
+        """Resume after a hold: restart the time limit of the current part."""
         self.since_s = float("nan")
 
     def step(self, ctx: AnyContext) -> bool:
@@ -63,7 +63,7 @@ class Power(Move):
         self.on = on
 
     def step(self, ctx: AnyContext) -> bool:
-        """Wait for every drive."""
+        """Return True when every drive has confirmed."""
         ctx.demand.enabled = self.on
         ctx.moving = True
         return ctx.readings.drives_enabled if self.on else ctx.readings.drives_disabled
@@ -118,7 +118,7 @@ class Settle:
     """Waits at the fast scan rate for ``seconds``."""
 
     def __init__(self, seconds: float) -> None:
-        """``seconds``: how long, s."""
+        """``seconds``: duration of the wait."""
         self.seconds = seconds
         self.left_s = seconds
 

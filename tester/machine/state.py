@@ -35,7 +35,7 @@ class Mode(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Trip:
-    """First cause of a stop ("first-up")."""
+    """The trip that stopped the run first ("first-up")."""
 
     at_s: float
     name: str
@@ -101,7 +101,7 @@ class ControlState(Generic[SetpointsT_co]):
         self.ack_until_s = -inf
         """Deadline of a pending acknowledgement: it counts if every cause is gone by then."""
         self.ack_by = ""
-        """Who acknowledged."""
+        """Name of the person who acknowledged."""
 
     def enter(self, mode: Mode, now_s: float, why: str) -> None:
         """Change the mode and journal it; at the end of a hold, journal its duration."""

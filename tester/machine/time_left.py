@@ -308,7 +308,7 @@ class TimeLeft:
         return max(expected_s - so_far_s, OVERRUN * so_far_s)
 
     def standing(self) -> RunPosition:
-        """Return where the run is."""
+        """Return the present position of the run."""
         present_s = float(ceil(self._present_s()))
         left_s = present_s + self._ahead_s
         done_s = self._earlier.seconds + self._worked_s

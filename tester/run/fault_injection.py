@@ -28,7 +28,7 @@ class SkewedCan:
     """A CAN port that reports times of the computer's own clock."""
 
     def __init__(self, port: CanPort, skew: Skew) -> None:
-        """Wrap ``port``."""
+        """Wrap ``port``, changing its times by ``skew``."""
         self.port = port
         self.skew = skew
 
@@ -54,7 +54,7 @@ class SkewedLine:
     """A Modbus line that reports times of the computer's own clock."""
 
     def __init__(self, port: LinePort, skew: Skew) -> None:
-        """Wrap ``port``."""
+        """Wrap ``port``, changing its times by ``skew``."""
         self.port = port
         self.skew = skew
 

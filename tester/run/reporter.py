@@ -56,7 +56,7 @@ class LastingScreen(ReportScreen):
     """
 
     def __init__(self, screen: ReportScreen, lost: Callable[[str], None]) -> None:
-        """``lost`` is called once."""
+        """``lost`` is called once, with the text of the first error."""
         self._screen = screen
         self._lost = lost
         self.answer_yes = screen.answer_yes

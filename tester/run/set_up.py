@@ -77,7 +77,7 @@ class ParameterDifference:
     """Whether every connection writes the parameter, so that the difference does not matter before connecting."""
 
     def __str__(self) -> str:
-        """Return the printed line."""
+        """Return the difference as the line to print."""
         named = f" ({self.name})" if self.name else ""
         was = "missing" if self.was is None else self.was
         now = "missing" if self.found is None else self.found

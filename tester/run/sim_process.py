@@ -89,7 +89,7 @@ class StateLog:
         self._file.write(",".join((*LOG_COLUMNS, *self._machine.log_columns)) + "\n")
 
     def observe(self, rig: SimRig, controlled: bool) -> None:
-        """Write a row."""
+        """Write a row with the rig's present state."""
         row = self._machine.log_row(rig)
         self._file.write(self._form.format(rig.now_s, self._clock.computer_s(rig.now_s), controlled, *row))
 

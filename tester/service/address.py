@@ -36,7 +36,7 @@ class AddressError(MisuseError):
 
 @dataclass(frozen=True, slots=True)
 class UnixAddress:
-    """A socket in the file system."""
+    """A Unix socket in the file system."""
 
     path: Path
 

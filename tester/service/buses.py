@@ -1,4 +1,4 @@
-"""Devices and buses of a run, for people: states, ages, errors."""
+"""The devices and buses of a run as clients see them: states, ages, errors."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ class Client:
     """One connection. ``state``, ``plan``, ``events`` and ``trend`` always hold the newest data."""
 
     def __init__(self, connection: ClientConnection, hello: Hello) -> None:
-        """Use ``Client.connect``."""
+        """Use ``Client.connect`` instead."""
         self._connection = connection
         self.service = hello.service
         self.number = hello.client

@@ -1,6 +1,6 @@
 r"""The link between the process that owns the rig and the gateway that talks to clients: text lines over a socket.
 
-The owner's side never waits. It sends a letter, then JSON; the gateway forwards most of it unread.
+The owner's side never waits. Each of its lines is a letter, then JSON; the gateway forwards most of the JSON unread.
 
     s STATE \t ROW    the state and its row of the trend; only the newest counts
     m MACHINE         the tables of the kind of rig, before the first state, and when a run uses another kind

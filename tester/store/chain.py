@@ -3,11 +3,12 @@
 The table ``chain`` has an entry for each row at each commit that added, changed or deleted it:
 
   row_sha256 = SHA-256 of the JSON text [table, key, {column: value, ...}]      (null in place of a deleted row)
-  head       = SHA-256 of (head of the entry before | row_sha256), 32 bytes each; 32 zero bytes before the first
+  head       = SHA-256 of (previous entry's head | row_sha256), 32 bytes each; 32 zero bytes before the first
 
 ``key`` is the row's rowid. Columns are in the table's order, without those that are NULL (a column that a later version
-adds changes no hash); numbers as Python's ``repr`` writes them, text escaped to ASCII, a blob as its own SHA-256. A
-person who can write the file can also rebuild the whole chain. The last head, kept elsewhere by a person, reveals that.
+adds therefore changes no hash). Numbers are written as Python's ``repr`` writes them, text is escaped to ASCII, and a
+blob is replaced by its own SHA-256. A person who can write the file can also rebuild the whole chain. The last head, if
+a person keeps it elsewhere, reveals that.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ class SampleBlock:
 
 
 class RunReader(RecordFile):
-    """A run's record."""
+    """Reads a run's record."""
 
     def run(self) -> StoredRun:
         """Return the run; raises StoreError if none is recorded."""

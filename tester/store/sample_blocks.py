@@ -2,10 +2,10 @@
 
   blob = zlib( column 0 | column 1 | ... )        column = rows * float64, little endian
 
-Columns are the channels with a source, in the order of the table ``channel``; the number of rows is beside the blob.
-Values are kept bit by bit, NaN included. Measured on rows of 21 columns with quantised noise: 38 bytes a row in blocks
-of 512, 48 in blocks of 100. (Shuffling bytes before compressing, as HDF5 does, needs half as much again: readings
-repeat as whole 8-byte values. Level 6 saves a tenth and takes twice the time.)
+Columns are the channels with a source, in the order of the table ``channel``; the number of rows is stored next to the
+blob. Every bit of a value is kept, also of NaN. Measured on rows of 21 columns with quantised noise: 38 bytes a row in
+blocks of 512, 48 in blocks of 100. (Shuffling bytes before compressing, as HDF5 does, needs half as much again, because
+readings repeat as whole 8-byte values. Level 6 saves a tenth and takes twice the time.)
 """
 
 from __future__ import annotations

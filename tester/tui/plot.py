@@ -28,7 +28,7 @@ class PlotRange:
     low: float = 0.0
     high: float = 0.0
     least: float = 1.0
-    """Narrowest range."""
+    """Least width of the range."""
 
     def cover(self, low: float, high: float) -> None:
         """Extend the range to these values."""

@@ -47,7 +47,7 @@ class ScreenScene:
     machine: MachineView = UNKNOWN
     """Tables of the kind of rig on display."""
     epoch: int = 0
-    """Changes when ``trend`` is replaced, not when it grows."""
+    """A number that changes when ``trend`` is replaced, not when it grows."""
     frames: deque[Frame] = field(default_factory=lambda: deque[Frame](maxlen=FRAMES_KEPT))
     frames_dropped: int = 0
     frames_seen: int = 0

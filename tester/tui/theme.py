@@ -70,7 +70,7 @@ STYLES = Path(__file__).with_name("screens.tcss")
 
 
 class LookApp(App[str]):
-    """An application in the program's colours."""
+    """An application in the colours of this program."""
 
     CSS_PATH: ClassVar[CSSPathType | None] = [STYLES]
     BINDINGS: ClassVar[list[BindingType]] = [

@@ -53,7 +53,7 @@ class Notes:
 
     tell: Callable[[str], None]
     read: Callable[[str, Mapping[str, Any]], object]
-    """Record a reading at once."""
+    """Records a reading at once."""
     done: Mapping[str, Mapping[str, Any]]
     """Values that the finished steps recorded, by step."""
     given: Mapping[str, str] = field(default_factory=dict[str, str])

@@ -43,7 +43,7 @@ class Person:
         """Receive an entry that was just recorded."""
 
     def look(self, step: CommissionStep, walk: Walk) -> None:
-        """Look at the rig in a step; called about every tester.machine.tickers.POLL_S of wall time."""
+        """Show the rig's state in a step; called about every tester.machine.tickers.POLL_S of wall time."""
 
 
 class StepRefused(Exception):  # noqa: N818 - a finding for a person

@@ -25,7 +25,7 @@ STOPS = {STOP.command, FAST_STOP.command}
 
 
 class Ended(Enum):
-    """How a commissioning ended."""
+    """How commissioning ended."""
 
     DONE = "every step is done: the rig is commissioned"
     LEFT = "left before the end: it resumes at the first open step"

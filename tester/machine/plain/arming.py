@@ -33,7 +33,7 @@ class StandingProof(WatchdogProof):
     """Tests the watchdogs with the drives enabled at standstill."""
 
     def begin(self, now: float) -> None:
-        """Move nothing."""
+        """Do nothing: no drive moves in this proof."""
 
     def move(self, now: float, elapsed: float) -> bool:
         """Return True: nothing has to move."""

@@ -46,7 +46,7 @@ class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
         quantities: Quantities,
         sensors: Mapping[str, Sensor],
     ) -> None:
-        """``sensors``: the machine's own."""
+        """``sensors``: the names of the machine's own sensors."""
         super().__init__(rig, readings, PlainDemand(), prompts, journal)
         self.attendant = attendant
         self.quantities = quantities

@@ -38,7 +38,7 @@ class Standstill:
     """Switches the drives on or off, and waits for standstill."""
 
     def __init__(self, *, enabled: bool) -> None:
-        """``enabled``: with or without power."""
+        """``enabled``: whether the drives are to have power."""
         self.enabled = enabled
         self.since_s = nan
 
@@ -68,7 +68,7 @@ class PutOn:
         """The zeros of the sensors that are zeroed, by sensor name."""
 
     def resume(self, ctx: PlainContext) -> None:
-        """Come to standstill again."""
+        """Resume after a hold: come to standstill again."""
         self.stand = Standstill(enabled=False)
 
     def step(self, ctx: PlainContext) -> bool:
@@ -170,7 +170,7 @@ class MeasureSteady(MeasureCondition[PlainContext, ConditionStep, SteadyRepeat])
         self.stand = Standstill(enabled=True)
 
     def resume(self, ctx: PlainContext) -> None:
-        """Come to standstill again."""
+        """Resume after a hold: come to standstill again."""
         super().resume(ctx)
         self.stand = Standstill(enabled=True)
 

@@ -33,7 +33,7 @@ class PlainPanel(RunPanel):
     gates_of: ClassVar[Mapping[str, int]] = {"speed": GATE_SPEED}
 
     def __init__(self, engine: Engine) -> None:
-        """Read only."""
+        """Read the engine only; change nothing."""
         super().__init__(engine)
         self._ctx: PlainContext = engine.ctx
         self._stale_s = self._ctx.rig.values()[STALE_INPUTS_S]

@@ -141,7 +141,7 @@ class Unseen(ReportScreen):
         self.messages: list[str] = []
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Forward a stop of the sweep."""
+        """Forward a stop of the sweep to the session."""
         level = stop_level()
         if level and self.session is not None:
             self.session.stop(level)

@@ -61,7 +61,7 @@ class GoOnDialog(Dialog):
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "Resume", show=False)]
 
     def __init__(self, state: StateView, action: Action, words: str) -> None:
-        """``words``: what will happen."""
+        """``words``: text that describes what will happen."""
         super().__init__()
         self.state, self.action, self.words = state, action, words
 
@@ -72,7 +72,7 @@ class GoOnDialog(Dialog):
         yield Button("Resume (Enter)", id="go", compact=True)
 
     def on_button_pressed(self, event: Button.Pressed) -> None:
-        """Resume."""
+        """Send the order, after the button."""
         event.stop()
         self.action_go()
 

@@ -66,7 +66,7 @@ def entry(name: str, value: str = "", *, hint: str = "", limit: int = 200) -> In
 
 
 WIDTH = 400
-"""Longest line of the log."""
+"""Greatest length of a line in the log, characters."""
 
 
 TEXT_WIDTH = 70

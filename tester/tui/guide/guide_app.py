@@ -205,7 +205,7 @@ class GuideApp(LookApp):
         self._stop(fast=False)
 
     def action_fast_stop(self) -> None:
-        """STOP, fast."""
+        """Stop with a quick stop of the drives."""
         self._stop(fast=True)
 
     def _stop(self, *, fast: bool) -> None:

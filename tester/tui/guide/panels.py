@@ -16,7 +16,7 @@ from tester.tui.screen_scene import ScreenScene
 from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, rows
 
 TIME: Final = 8
-"""Columns of a step's time."""
+"""Width of a step's time, columns."""
 LABEL: Final = 19
 CELL: Final = 9
 BAD: Final = frozenset({Ended.REFUSED, Ended.FAILED, Ended.STOPPED})

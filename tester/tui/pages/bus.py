@@ -210,12 +210,12 @@ class BusPage(View, can_focus=True):
         panel.redraw()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Leave the field."""
+        """Move the focus out of the field."""
         event.stop()
         self.focus()
 
     def action_bundle(self) -> None:
-        """Write the support bundle."""
+        """Write the support bundle, and show its path."""
         try:
             path = write_bundle(self.host.scene, clock.local_stamp())
         except OSError as error:

@@ -44,7 +44,7 @@ While the editor has the terminal, keys go to it: `tester stop` in another shell
 
 
 class RecipesView(View):
-    """Choose, correct and start a recipe."""
+    """Lets a person choose, correct and start a recipe."""
 
     KEYS: ClassVar[Keys] = (("Enter", "Start"), ("e", "Edit"), ("d", "Plan"), ("space", "Hold"), ("a", "Ack"),
                             ("F1", "Help"), ("q", "Detach"))  # fmt: skip
@@ -173,7 +173,7 @@ class RecipesView(View):
     # -- keys -------------------------------------------------------------------------------------------------
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        """Show another recipe."""
+        """Show the highlighted recipe."""
         if event.option_list.id == "recipe-list":
             self._open()
 

@@ -74,7 +74,7 @@ class RingPage(View):
         self.table.focus()
 
     def action_reload(self) -> None:
-        """Read again."""
+        """Read the stored runs again."""
         self.table.border_title = "Runs: looking …"
         self.run_worker(self._read, group="rings", exclusive=True, exit_on_error=False)
 
