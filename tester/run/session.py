@@ -73,7 +73,7 @@ class Session(PartWatch):
         self.folder: Path | None = None
         self.ending: RunEnding | None = None
         self.prompts = Prompts(automatic=screen.answer_yes)
-        """Prompts of all parts in this process, numbered through."""
+        """Prompts of all parts in this process; their numbers continue from part to part."""
         self._level = StopLevel.NONE
         self._pool: WorkerPool | None = None
 

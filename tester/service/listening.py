@@ -20,7 +20,7 @@ from tester.service.gateway import Gateway
 from tester.service.manners import sparse_logger
 
 BACKLOG_BYTES = 65_536
-"""Unread bytes of a client above which the server stops receiving more from it."""
+"""Bytes that a client may leave unread before the server waits with the next message to it."""
 LOG = "tester.gateway"
 CLOSE_S = 2.0
 """Time for a client to complete the closing handshake, s."""
