@@ -22,7 +22,7 @@ def address(key: Key) -> str:
 class Substitute:
     """The maker's object in the place of a missing one: ``factor`` times the standard object's value is written to it.
 
-    ``per_mille_of``: an object that is read first; the value is then written in per mille of its value.
+    ``per_mille_of``: an object that is read first; its value / 1000 is a further factor.
     """
 
     key: Key

@@ -164,7 +164,7 @@ class ReceivePdo:
         self.load()
 
     def load(self) -> None:
-        """Take over the parameters."""
+        """Adopt the PDO's parameters."""
         parameters = self.parameters
         mapped = parameters.map()
         self.cob_id = parameters.cob_id
@@ -221,7 +221,7 @@ class TransmitPdo:
         self.load()
 
     def load(self) -> None:
-        """Take over the parameters."""
+        """Adopt the PDO's parameters."""
         parameters = self.parameters
         mapped = parameters.map()
         self.cob_id = parameters.cob_id

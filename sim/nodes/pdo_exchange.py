@@ -58,8 +58,8 @@ class PdoExchange(SyncFollower):
     """All PDOs of one device; running while the device is OPERATIONAL.
 
     ``due_s`` is the next deadline or event timer; ``urgent`` marks the next synchronous TPDO as urgent for the wire.
-    ``plain``: the next SYNC needs nothing but ``sample``, the TPDO ``sample_id``. A ``stale`` sample
-    has to be taken anew (``sim.wires.can_traffic.SyncFollower``).
+    ``plain``: the next SYNC needs only one TPDO, ``sample`` under ``sample_id``; a ``stale`` sample
+    is taken anew (``sim.wires.can_traffic.SyncFollower``).
     """
 
     def __init__(self, owner: PdoOwner, wire: CanWire, store: ObjectStore) -> None:

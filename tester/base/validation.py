@@ -209,7 +209,7 @@ def _tidy(key: str) -> str:
 
 
 def _elsewhere(key: str, near: list[str], model: type[BaseModel] | None) -> list[str]:
-    """Return the sections that have the exact key, where no key here has nearly the same spelling."""
+    """Return the sections that have exactly this key, none if a key here is spelt nearly alike."""
     if model is None or difflib.get_close_matches(_tidy(key), near, cutoff=NEARLY):
         return []
     return list(dict.fromkeys(_sections_with(key, model)))

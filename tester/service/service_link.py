@@ -55,7 +55,7 @@ class Order:
 
     @property
     def by(self) -> str:
-        """The sender for the record: the name that the client gave, and its peer."""
+        """The recorded sender: the client's name for itself, and its user id or address."""
         return with_peer(self.name, self.peer)
 
 

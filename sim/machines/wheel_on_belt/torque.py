@@ -79,7 +79,7 @@ class PressScrew:
         return (torque_nm - self._drag_nm) / (self._m * (1.0 + self._excess)) - self.spring_n
 
     def held_n(self, torque_nm: float) -> float:
-        """Return the greatest force that does not drive the press back against a torque, N."""
+        """Return the greatest force against which a torque can hold the press, N."""
         return (torque_nm + self._drag_nm) / (self._m * (1.0 - self._excess)) - self.spring_n
 
 

@@ -87,7 +87,7 @@ class GroupFit:
 
     @property
     def left_out(self) -> Errors:
-        """Return the errors of conditions, each predicted by a fit without its cell."""
+        """Return the errors of conditions, each predicted by fitting the other cells (``cells``)."""
         return _errors(self.left_out_pairs)
 
     def predict(self, points: Sequence[FitPoint]) -> list[float]:
