@@ -56,10 +56,9 @@ class TemperatureController(Device):
     def __init__(self, kind: ControllerKind, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
         """Put a controller of ``kind`` (jacket, chamber) on ``link``; its lease is written if the profile has one.
 
-        ``has_lease``: the profile has a lease. ``ends_s`` is the time without a setpoint after which the controller
-        stops heating by itself, s: by its lease, or by its own setpoint; None: the hardware must switch the heat off
-        when the PC is silent. Raises ProfileError for a profile without pv, output, setpoint, status, or a way to write
-        setpoint and run.
+        ``has_lease``: the profile has a lease. ``ends_s``: s without a setpoint until the controller stops heating by
+        itself, by its lease or its own setpoint; None: the hardware must switch the heat off when the PC is silent.
+        Raises ProfileError for a profile without pv, output, setpoint, status, or a way to write setpoint and run.
         """
         profile.expect(kind)
         super().__init__(profile, unit_id, link)
@@ -95,7 +94,6 @@ class TemperatureController(Device):
         self._status_s = -inf
         self.measured_c = self.output_percent = self.setpoint_c = nan
         self.sensor_break = self.out_of_range = self.lease_expired = False
-
         function, renew_s = profile.write_function, commanding.renew_s
         self._setpoint_write = link.write(self.station, function, self._register.address, (0,), renew_s)
         self._run_write = link.write(self.station, function, switch.address, (switch.off,), renew_s)

@@ -1,5 +1,4 @@
-"""The record's interface for a run: one verb for each kind of event. There are two recorders: the writer, and the null
-recorder.
+"""The record's interface for a run: one verb for each kind of event. Recorders: the writer, and the null recorder.
 
 A verb makes rows and queues them; it accesses no file. The statements of one verb are committed together. Only the
 scan's thread calls the verbs.
@@ -77,9 +76,7 @@ class Recorder:
     """Called with every recorded event: rig time in s, kind, text, severity."""
 
     def sample(self, row: tuple[float, ...]) -> None:
-        """Record one sample: a value for each recorded channel, as an exact tuple. Called in every scan, so it takes <
-        1 us.
-        """
+        """Record one sample: an exact tuple with a value for each recorded channel. In every scan: below 1 us."""
         raise TypeError("a recorder defines what happens to samples")
 
     def _put(self, batch: Batch) -> None:
