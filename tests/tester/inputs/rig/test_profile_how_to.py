@@ -117,8 +117,10 @@ def test_it_is_on_the_list_of_devices_and_in_the_record() -> None:
     assert (views["torque"].bus, views["torque"].state) == ("heat", "ready")
     recorded = [(one.quantity, one.value, one.unit) for one in calibration_of(rig) if one.device == "torque"]
     assert recorded == [
-        ("profile", "torque.toml", ""), ("scale of torque_nm", "0.001", "N m"), ("filter_hz", "20.0", "Hz"),
-    ]  # fmt: skip
+        ("profile", str(Path("torque.toml").resolve()), ""),
+        ("scale of torque_nm", "0.001", "N m"),
+        ("filter_hz", "20.0", "Hz"),
+    ]
 
 
 def problems(*overrides: str) -> str:
