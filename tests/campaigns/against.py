@@ -13,20 +13,20 @@ byte does, once the words of FILE are replaced. Exit code 1 on a miss.
 from __future__ import annotations
 
 import argparse
-import io
 import json
 import os
 import re
 import sqlite3
 import subprocess
 import sys
-import tarfile
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import yaml
+
+from bench.ladder import TESTER, sources
 
 ROOT = Path(__file__).parents[2]
 RIGS = {"grosch": "grosch", "pin-on-disc": "pin-on-disc"}
@@ -57,15 +57,6 @@ def walk(command, context, words):
             walk(inner, click.Context(inner, context, info_name=name), f"{words} {name}".strip())
 walk(root, click.Context(root, info_name="tester"), "")
 """
-TESTER = "from tester.cli.main import main; main()"
-
-
-def tree_of(commit: str, folder: Path) -> Path:
-    """Write the tree of a commit into a folder and return it."""
-    archive = subprocess.run(["git", "archive", commit], cwd=ROOT, check=True, capture_output=True).stdout
-    with tarfile.open(fileobj=io.BytesIO(archive)) as tar:
-        tar.extractall(folder, filter="data")
-    return folder
 
 
 def python(tree: Path, code: str, *arguments: str) -> str:
@@ -197,7 +188,7 @@ def main() -> int:
     misses = 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        before = tree_of(options.commit, folder / "before")
+        before = sources(options.commit, folder / "before")
         was, now = lists_of(before), lists_of(ROOT)
         for line in sorted(now - was):
             print(f"new   {line}")
