@@ -94,9 +94,9 @@ class TemperatureController(Device):
         self._status_s = -inf
         self.measured_c = self.output_percent = self.setpoint_c = nan
         self.sensor_break = self.out_of_range = self.lease_expired = False
-        function, renew_s = profile.write_function, commanding.renew_s
-        self._setpoint_write = link.write(self.station, function, self._register.address, (0,), renew_s)
-        self._run_write = link.write(self.station, function, switch.address, (switch.off,), renew_s)
+        renew_s, size, register = commanding.renew_s, self._register.size, self._register.address
+        self._setpoint_write = link.write(self.station, self.write_function(size), register, size * (0,), renew_s)
+        self._run_write = link.write(self.station, self.write_function(1), switch.address, (switch.off,), renew_s)
         self._set_up(commanding.lease_s)
 
     def _set_up(self, lease_s: float) -> None:

@@ -70,10 +70,14 @@ class Device(ABC):
             self._steps.append(SetupStep("first reading", self._polls[0]))
         self.link.enable(self._steps[0].request)
 
+    def write_function(self, registers: int) -> int:
+        """Return the function that writes so many registers in one request."""
+        return self.profile.write_function if registers == 1 else WRITE_MANY
+
     def add_write(self, what: str, address: int, words: tuple[int, ...], read_back: bool) -> None:
         """Add a write to the set-up, and a comparison of the registers afterwards."""
-        function = self.profile.write_function if len(words) == 1 else WRITE_MANY
-        self._steps.append(SetupStep(what, self.link.write(self.station, function, address, words)))
+        write = self.link.write(self.station, self.write_function(len(words)), address, words)
+        self._steps.append(SetupStep(what, write))
         if read_back:
             read = self.link.read(self.station, READ_HOLDING, address, len(words))
             self._steps.append(SetupStep(what, read, b"".join(word.to_bytes(2, "big") for word in words)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, isnan, nan
 
 import pytest
@@ -345,3 +346,12 @@ def test_without_setpoints_the_real_controller_heats_no_more_after_5_s_and_says_
     made.run(2.0, Command(jacket, 80.0))
     assert slave.heater_w > 0.0
     assert not jacket.lease_expired
+
+
+def test_a_setpoint_that_is_a_float_goes_out_in_two_registers_by_function_16() -> None:
+    writes = PROFILE.writes | {"setpoint": replace(PROFILE.writes["setpoint"], type="f32", scale=1.0)}
+    made = Rig(38400, ControllerSlave(PROFILE, 1, Quantities()))
+    jacket = TemperatureController("jacket", replace(PROFILE, writes=writes), 1, made.link)
+    made.run(2.0, Command(jacket, 41.5))
+    head = "0110" + PROFILE.writes["setpoint"].address.to_bytes(2, "big").hex() + "000204"
+    assert made.log.requests(head)[-1][1][7:11].hex() == "42260000"  # 41.5 as a float, not 42
