@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import nan
-from typing import Any, Generic, TypeAlias, TypeVar
+from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 
 from tester.inputs.rig import Rig
 from tester.machine.image import BaseDemand, BaseReadings
@@ -40,6 +41,9 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
 
     The engine calls the methods at fixed places of a scan (``tester.machine``).
     """
+
+    gate_bits: ClassVar[Mapping[str, int]] = {}
+    """Bits of the gates in ``gate``, the channel of that name, by the gates' keys on the screen, in its order."""
 
     def __init__(
         self,

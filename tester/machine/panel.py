@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite
-from typing import ClassVar
 
 from tester.base.screen import Check, Gate, SoakView
 from tester.inputs.rig import Rig
@@ -35,9 +33,6 @@ class Wanted:
 class RunPanel:
     """What clients see of a run, read between two ticks. A kind adds its devices, setpoints and checks."""
 
-    gates_of: ClassVar[Mapping[str, int]] = {}
-    """Bit of each gate in the channel ``gate``, by the gate's key on the screen."""
-
     def __init__(self, engine: Engine) -> None:
         """Read the engine only; change nothing."""
         self.engine = engine
@@ -54,8 +49,8 @@ class RunPanel:
         """Return the gates as of the last scan; none outside RUN, where they are not evaluated."""
         if self.engine.control.state.mode is not Mode.RUN:
             return ()
-        closed = self.engine.ctx.gate
-        return tuple(Gate(key, not closed & bit) for key, bit in self.gates_of.items())
+        ctx = self.engine.ctx
+        return tuple(Gate(key, not ctx.gate & bit) for key, bit in ctx.gate_bits.items())
 
     def soak(self, now: float) -> SoakView | None:
         """Return the soak under way at ``now`` (rig s); None if there is none."""

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import nan
-from typing import Protocol
+from typing import ClassVar, Final, Protocol
 
 from tester.base.quantities import Quantities
 from tester.kinds.specimen_on_track.devices import TrackDevices
-from tester.kinds.specimen_on_track.process import (
-    GATE_CONTACT,
-    GATE_SETTLING,
-    GATE_SPEED,
-    GATE_TEMPERATURE,
-    TrackDemand,
-    TrackReadings,
-    TrackSetpoints,
-)
+from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.context import BaseContext
 from tester.machine.prompts import Prompts
 from tester.store.recorder import Recorder
 
+GATES: Final = {"speed": 1, "temperature": 2, "contact": 8, "settling": 4}
+"""Bits of the gates in the channel ``gate``, by name: set while the gate is closed."""
+_SPEED, _TEMPERATURE, _CONTACT, _SETTLING = GATES.values()
 SAMPLES = 40.0
 """A stretch is recorded with about this many samples, or with every scan where it is shorter [A]."""
 
@@ -83,6 +79,8 @@ class TrackTarget:
 class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
     """One per run; only activities read and write it."""
 
+    gate_bits: ClassVar[Mapping[str, int]] = GATES
+
     def __init__(
         self,
         rig: TrackConfig,
@@ -130,13 +128,13 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         r, target = self.readings, self.target
         mask = 0
         if not abs(r.track_m_s - target.track_m_s) <= 0.01 * self.rig.gates.speed_percent * abs(target.track_m_s):
-            mask |= GATE_SPEED
+            mask |= _SPEED
         if not (r.air_valid and abs(r.air_c - target.temperature_c) <= target.band_k):
-            mask |= GATE_TEMPERATURE
+            mask |= _TEMPERATURE
         if not target.stationary:
-            mask |= GATE_SETTLING
+            mask |= _SETTLING
         if not (r.lowered and r.cell_valid):
-            mask |= GATE_CONTACT
+            mask |= _CONTACT
         return mask
 
     def touching(self) -> bool:

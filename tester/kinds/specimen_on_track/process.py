@@ -3,15 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpoints
-
-# Gates that are closed, as bits of the channel ``gate``; 0 = the sample is accepted.
-GATE_SPEED: Final = 1
-GATE_TEMPERATURE: Final = 2
-GATE_SETTLING: Final = 4
-GATE_CONTACT: Final = 8
 
 
 @dataclass(slots=True)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import ClassVar, Final
+from typing import Final
 
 from tester.base.screen import Check, HandAxis, MachineView, PlotView, SoakView, axis_views, trend_columns
 from tester.kinds.specimen_on_track.axes import AXES, NAME
 from tester.kinds.specimen_on_track.procedures.steps import TemperAir
-from tester.kinds.specimen_on_track.process import GATE_CONTACT, GATE_SETTLING, GATE_SPEED, GATE_TEMPERATURE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.engine import Engine
 from tester.machine.panel import News, RunPanel, Wanted, soak_view
@@ -40,10 +38,6 @@ MACHINE: Final = MachineView(
 
 class TrackPanel(RunPanel):
     """The view of one run on this machine."""
-
-    gates_of: ClassVar[Mapping[str, int]] = {
-        "speed": GATE_SPEED, "temperature": GATE_TEMPERATURE, "contact": GATE_CONTACT, "settling": GATE_SETTLING,
-    }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
         """Store the run; the panel only reads it."""

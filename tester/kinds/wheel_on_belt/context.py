@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import inf
-from typing import Final, Protocol
+from typing import ClassVar, Final, Protocol
 
 from tester.base.quantities import Quantities
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.procedures.gates import Gates
+from tester.kinds.wheel_on_belt.procedures.gates import GATES, Gates
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife, wheel_of
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.context import BaseContext
@@ -63,6 +63,8 @@ class CellZero(Protocol):
 
 class Context(BaseContext[RigConfig, Readings, Demand]):
     """One per run; only activities read and write it."""
+
+    gate_bits: ClassVar[Mapping[str, int]] = GATES
 
     def __init__(
         self,

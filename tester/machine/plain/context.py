@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import nan
-from typing import Final, Protocol
+from typing import ClassVar, Final, Protocol
 
 from drivers.sensor import Sensor
 from tester.base.quantities import Quantities
@@ -17,8 +17,6 @@ from tester.store.recorder import Recorder
 
 SPEED_SHARE: Final = 0.02
 """Greatest deviation of a drive from its demanded speed while the gate stays open, as a share [A]."""
-GATE_SPEED: Final = 1
-"""Bit of the gate of the speeds."""
 
 
 class PlainAttendant(Protocol):
@@ -35,6 +33,8 @@ class PlainAttendant(Protocol):
 
 class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
     """The context of one run; only activities read and write it."""
+
+    gate_bits: ClassVar[Mapping[str, int]] = {"speed": 1}
 
     def __init__(
         self,
@@ -63,7 +63,7 @@ class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
 
     def closed_gates(self) -> int:
         """Return the mask of closed gates: the gate is closed while a drive is not at its demanded speed."""
-        return 0 if self.at_speed() else GATE_SPEED
+        return 0 if self.at_speed() else 1
 
     def touching(self) -> bool:
         """Return whether a motion is demanded; every scan is then recorded."""

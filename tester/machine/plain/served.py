@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Final
+from typing import Final
 
 from tester.base.axes import Axes
 from tester.base.quantities import Quantities
@@ -15,7 +15,7 @@ from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.panel import News, RunPanel, drives_alone
-from tester.machine.plain.context import GATE_SPEED, PlainAttendant, PlainContext
+from tester.machine.plain.context import PlainAttendant, PlainContext
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
@@ -29,8 +29,6 @@ STEPS_TO_TOP: Final = 20
 
 class PlainPanel(RunPanel):
     """The view of one run on a plain machine."""
-
-    gates_of: ClassVar[Mapping[str, int]] = {"speed": GATE_SPEED}
 
     def __init__(self, engine: Engine) -> None:
         """Read the engine only; change nothing."""

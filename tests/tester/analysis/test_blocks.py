@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from tester.analysis.blocks import Block, BlockCounter, blocks_from_samples, resultant
 from tester.analysis.trace import Trace
-from tester.kinds.wheel_on_belt.image.process_image import GATE_LOAD, GATE_TEMPERATURE
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.procedures.gates import GATES
 from tests.tester.analysis.series import sample
 
 Sample = tuple[float, ...]
@@ -62,7 +62,7 @@ def test_the_remainder_of_a_stretch_is_not_counted() -> None:
 
 def test_a_gated_sample_ends_the_stretch() -> None:
     samples = turning(60)
-    samples[20] = sample(time_s=100.2, wheel_angle_rev=7.3 + 0.0283 * 20, gate=GATE_LOAD)
+    samples[20] = sample(time_s=100.2, wheel_angle_rev=7.3 + 0.0283 * 20, gate=GATES["load"])
     assert [block.samples for block in live(samples)] == [36]
     assert live(samples)[0].started_s == pytest.approx(100.21)
 
@@ -169,7 +169,7 @@ def random_session(seed: int) -> list[Sample]:
                 force_y_n=random.gauss(0, 5),
                 force_z_n=random.gauss(200, 5),
                 surface_c=random.gauss(25, 1),
-                gate=random.choices((0.0, GATE_TEMPERATURE), (0.99, 0.01))[0],
+                gate=random.choices((0.0, GATES["temperature"]), (0.99, 0.01))[0],
                 burst=burst if random.random() > 0.001 else 0.0,
                 repeat_key=key,
             )

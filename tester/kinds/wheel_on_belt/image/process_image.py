@@ -18,15 +18,6 @@ from tester.machine.image import NAN, NEVER, BaseDemand, BaseReadings, BaseSetpo
 if TYPE_CHECKING:
     from drivers.joined_cell import JoinedCell  # loads Modbus, which a plan does not need
 
-# Gates that are closed, as bits of the channel ``gate``; 0 = the sample is accepted.
-GATE_LOAD: Final = 1
-GATE_SPEED: Final = 2
-GATE_SLIP: Final = 4
-GATE_TEMPERATURE: Final = 8
-GATE_ALARM: Final = 16
-GATE_SETTLING: Final = 32
-
-
 CELL: Final = ("force_x_n", "force_y_n", "force_z_n", "moment_z_nm")
 """The load cell's channels, in its order; a tare is subtracted from each."""
 

@@ -10,15 +10,12 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Final
 
-from tester.kinds.wheel_on_belt.image.process_image import (
-    GATE_LOAD,
-    GATE_SETTLING,
-    GATE_SLIP,
-    GATE_SPEED,
-    GATE_TEMPERATURE,
-    Readings,
-)
+from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.rig.sections import GatesConfig
+
+GATES: Final = {"load": 1, "speed": 2, "slip": 4, "temperature": 8, "settling": 32}
+"""Bits of the gates in the channel ``gate``, by name: set while the gate is closed."""
+_LOAD, _SPEED, _SLIP, _TEMPERATURE, _SETTLING = GATES.values()
 
 _INF: Final = inf
 RESTART_SHARE: Final = 0.15
@@ -119,20 +116,20 @@ class Gates:
         mask = 0
         load = self.load.update(r.force_z_n, t.load_n, dt)
         if not abs(load - t.load_n) <= self._load_share * t.load_n:
-            mask |= GATE_LOAD
+            mask |= _LOAD
         share = self._speed_share
         if not abs(r.wheel_speed_m_s - t.wheel_speed_m_s) <= share * t.wheel_speed_m_s or not (
             abs(r.belt_speed_m_s - t.belt_speed_m_s) <= share * t.belt_speed_m_s
         ):
-            mask |= GATE_SPEED
+            mask |= _SPEED
         slip = self.slip.update(r.slip_m_s, t.slip_m_s, dt)
         if not abs(slip - t.slip_m_s) <= max(self._slip_share * t.slip_m_s, self._slip_floor_m_s):
-            mask |= GATE_SLIP
+            mask |= _SLIP
         surface = self.surface
         if r.surface_at_s > surface.stamp_s:
             surface.update(r.surface_c, r.surface_at_s, self._lag_s)
         if not abs(surface.now_c - t.temperature_c) <= t.band_k:
-            mask |= GATE_TEMPERATURE
+            mask |= _TEMPERATURE
         if not r.now_s - self.touched_s >= self._transient_s:
-            mask |= GATE_SETTLING
+            mask |= _SETTLING
         return mask

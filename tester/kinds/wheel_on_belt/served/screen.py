@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import isfinite
-from typing import ClassVar, Final
+from typing import Final
 
 from tester.base.screen import Check, MachineView, PlotView, SoakView, axis_views, trend_columns
 from tester.kinds.wheel_on_belt.image.axes import AXES, POSITIONED
-from tester.kinds.wheel_on_belt.image.process_image import (
-    GATE_LOAD,
-    GATE_SETTLING,
-    GATE_SLIP,
-    GATE_SPEED,
-    GATE_TEMPERATURE,
-    Press,
-)
+from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
@@ -53,11 +45,6 @@ MACHINE: Final = MachineView(
 
 class WheelPanel(RunPanel):
     """The view of one run on this machine."""
-
-    gates_of: ClassVar[Mapping[str, int]] = {
-        "load": GATE_LOAD, "speed": GATE_SPEED, "slip": GATE_SLIP, "temperature": GATE_TEMPERATURE,
-        "settling": GATE_SETTLING,
-    }  # fmt: skip
 
     def __init__(self, engine: Engine) -> None:
         """Store the run; the panel only reads it."""

@@ -6,15 +6,8 @@ import math
 
 import pytest
 
-from tester.kinds.wheel_on_belt.image.process_image import (
-    GATE_LOAD,
-    GATE_SETTLING,
-    GATE_SLIP,
-    GATE_SPEED,
-    GATE_TEMPERATURE,
-    Readings,
-)
-from tester.kinds.wheel_on_belt.procedures.gates import Average, Gates, SurfaceTrend
+from tester.kinds.wheel_on_belt.image.process_image import Readings
+from tester.kinds.wheel_on_belt.procedures.gates import GATES, Average, Gates, SurfaceTrend
 from tester.kinds.wheel_on_belt.rig.sections import GatesConfig
 
 CONFIG = GatesConfig(
@@ -53,15 +46,15 @@ def bench() -> Bench:
 @pytest.mark.parametrize(
     "field, value, bit",
     [
-        ("force_z_n", 205.0, GATE_LOAD),
-        ("force_z_n", math.nan, GATE_LOAD),
-        ("wheel_speed_m_s", 0.809, GATE_SPEED),
-        ("belt_speed_m_s", 0.494, GATE_SPEED),
-        ("wheel_speed_m_s", math.nan, GATE_SPEED),
-        ("slip_m_s", 0.307, GATE_SLIP),
-        ("slip_m_s", math.nan, GATE_SLIP),
-        ("surface_c", 42.2, GATE_TEMPERATURE),
-        ("surface_c", 37.8, GATE_TEMPERATURE),
+        ("force_z_n", 205.0, GATES["load"]),
+        ("force_z_n", math.nan, GATES["load"]),
+        ("wheel_speed_m_s", 0.809, GATES["speed"]),
+        ("belt_speed_m_s", 0.494, GATES["speed"]),
+        ("wheel_speed_m_s", math.nan, GATES["speed"]),
+        ("slip_m_s", 0.307, GATES["slip"]),
+        ("slip_m_s", math.nan, GATES["slip"]),
+        ("surface_c", 42.2, GATES["temperature"]),
+        ("surface_c", 37.8, GATES["temperature"]),
     ],
 )
 def test_each_quantity_closes_its_own_gate_only(bench: Bench, field: str, value: float, bit: int) -> None:
@@ -71,7 +64,7 @@ def test_each_quantity_closes_its_own_gate_only(bench: Bench, field: str, value:
 
 def test_a_gate_opens_again_when_its_quantity_is_back(bench: Bench) -> None:
     bench.readings.force_z_n = 240.0
-    assert bench.run(1.0) == GATE_LOAD
+    assert bench.run(1.0) == GATES["load"]
     bench.readings.force_z_n = 200.0
     assert bench.run(0.05) == 0
 
@@ -86,7 +79,7 @@ def test_the_runout_of_the_wheel_does_not_close_the_load_gate(bench: Bench) -> N
 
 def test_samples_settle_for_a_second_after_touching(bench: Bench) -> None:
     bench.gates.touched_s = bench.readings.now_s
-    assert bench.run(0.98) == GATE_SETTLING
+    assert bench.run(0.98) == GATES["settling"]
     assert bench.run(0.03) == 0
 
 
@@ -95,7 +88,7 @@ def test_a_warming_surface_closes_the_gate_before_it_reads_too_warm(bench: Bench
     while mask == 0 and bench.readings.surface_c < 43.0:
         bench.readings.surface_c += 0.01
         mask = bench.run(0.01)
-    assert mask == GATE_TEMPERATURE
+    assert mask == GATES["temperature"]
     # 1 K/s and a lag of 0.3 s: 0.3 K before the edge, within what the filters leave.
     assert 41.3 < bench.readings.surface_c < 42.0
 
@@ -107,7 +100,7 @@ def test_small_slip_is_gated_by_the_floor() -> None:
     bench.readings.slip_m_s = 0.0019
     assert bench.run(3.0) == 0
     bench.readings.slip_m_s = 0.0021
-    assert bench.run(3.0) == GATE_SLIP
+    assert bench.run(3.0) == GATES["slip"]
 
 
 def test_an_average_starts_again_after_a_jump() -> None:
