@@ -17,7 +17,7 @@ from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar, Union, cast, get_args, get_origin, get_type_hints
 
-from tester.base.source import InvalidSource, Tree, problems_from_validation
+from tester.base.source import InvalidSource, Tree
 from tester.base.units import Quantity, units_like
 
 if TYPE_CHECKING:
@@ -66,10 +66,12 @@ def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
     """
     from pydantic import TypeAdapter, ValidationError  # only commands that read a file pay for it
 
+    from tester.base.validation import problems_of
+
     try:
         return cast("Config", TypeAdapter[object](_built(kind)).validate_python(tree.data))
     except ValidationError as error:
-        raise InvalidSource(problems_from_validation(error, tree, _model(kind), missing)) from error
+        raise InvalidSource(problems_of(error, tree, _model(kind), missing)) from error
 
 
 def as_tree(config: DataclassInstance) -> dict[str, object]:

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TypeAlias, cast
 
 import yaml
 import yaml.events as ev
@@ -24,9 +24,6 @@ from tester.base.trouble import in_words
 from tester.base.units import shown
 from tester.base.words import FORBIDDEN, harmless
 from tester.base.yaml_trouble import OUT_OF_RANGE, plainer, too_deep
-
-if TYPE_CHECKING:
-    from pydantic import BaseModel, ValidationError
 
 MAX_BYTES = 256 * 1024
 MAX_DEPTH = 20
@@ -131,19 +128,6 @@ def read_tree(source: Path | str, name: str | None = None) -> tuple[Tree, list[P
 def printable(text: str) -> str:
     """Return a text that is safe on a terminal: characters that could steer it become question marks."""
     return harmless(text).replace("\n", "?").replace("\t", "?")
-
-
-def problems_from_validation(
-    error: ValidationError, tree: Tree, model: type[BaseModel] | None = None, missing: str = ""
-) -> list[Problem]:
-    """Return a pydantic error as problems with positions in the file.
-
-    With ``model`` (the validated class) unknown and missing keys name the valid ones. ``missing`` is added to the
-    message for a missing key.
-    """
-    from tester.base.validation import problems_of
-
-    return problems_of(error, tree, model, missing)
 
 
 def _read(path: Path, called: str) -> str:

@@ -86,8 +86,14 @@ _EXPECTED = {
 """Pydantic's type errors in words for authors of YAML."""
 
 
-def problems_of(error: ValidationError, tree: Tree, model: type[BaseModel] | None, missing: str = "") -> list[Problem]:
-    """Return the errors as problems, sorted by position; see ``tester.base.source.problems_from_validation``."""
+def problems_of(
+    error: ValidationError, tree: Tree, model: type[BaseModel] | None = None, missing: str = ""
+) -> list[Problem]:
+    """Return a pydantic error as problems, sorted by position.
+
+    With ``model`` (the validated class) unknown and missing keys name the valid ones. ``missing`` is added to the
+    message for a missing key.
+    """
     details = islice(error.errors(include_url=False), MAX_PROBLEMS + 1)
     errors_found = list(details)
     meant = {(at[:-1], near) for at, near in _misspelt(errors_found, tree, model)}

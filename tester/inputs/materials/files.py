@@ -10,8 +10,9 @@ from typing import Generic, Literal, NoReturn, TypeVar
 
 from pydantic import ValidationError
 
-from tester.base.source import InvalidSource, Problem, problems_from_validation, read_tree
+from tester.base.source import InvalidSource, Problem, read_tree
 from tester.base.trouble import in_words
+from tester.base.validation import problems_of
 from tester.inputs.materials.material_schema import MaterialModel
 
 ModelT = TypeVar("ModelT", bound=MaterialModel)
@@ -137,7 +138,7 @@ class OpenedMaterial(Generic[ModelT]):
         try:
             self.model = model.model_validate(self.tree.data)
         except ValidationError as error:
-            self.findings.problems += problems_from_validation(error, self.tree, model)
+            self.findings.problems += problems_of(error, self.tree, model)
 
     def content(self) -> ModelT:
         """Return the content; raises InvalidSource with every problem."""

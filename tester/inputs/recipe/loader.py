@@ -10,8 +10,9 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from tester.analysis.terms import PREFIX, Term
-from tester.base.source import InvalidSource, Problem, Tree, problems_from_validation, read_tree
+from tester.base.source import InvalidSource, Problem, Tree, read_tree
 from tester.base.units import shown
+from tester.base.validation import problems_of
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe, recipe_model
 from tester.inputs.recipe.semantics import semantic_problems
@@ -38,7 +39,7 @@ def validated(tree: Tree, part: RecipePart) -> tuple[Recipe | None, list[Problem
     try:
         recipe = model.model_validate(tree.data)
     except ValidationError as error:
-        return None, problems_from_validation(error, tree, model) + semantic_problems(None, tree, part)
+        return None, problems_of(error, tree, model) + semantic_problems(None, tree, part)
     return recipe, semantic_problems(recipe, tree, part)
 
 

@@ -21,9 +21,9 @@ from tester.base.source import (
     InvalidSource,
     Problem,
     load_tree,
-    problems_from_validation,
 )
 from tester.base.units import Quantity
+from tester.base.validation import problems_of
 
 
 @pytest.fixture(params=["CSafeLoader", "SafeLoader"])
@@ -279,7 +279,7 @@ def validated(text: str) -> list[str]:
     tree = load_tree(textwrap.dedent(text), "f.yaml")
     with pytest.raises(ValidationError) as raised:
         Outer.model_validate(tree.data)
-    return [str(problem) for problem in problems_from_validation(raised.value, tree, Outer)]
+    return [str(problem) for problem in problems_of(raised.value, tree, Outer)]
 
 
 def test_a_wrong_value_is_reported_at_the_value() -> None:

@@ -7,7 +7,8 @@ from math import prod
 import pytest
 from pydantic import ValidationError
 
-from tester.base.source import problems_from_validation, read_tree
+from tester.base.source import read_tree
+from tester.base.validation import problems_of
 from tester.inputs.recipe.recipe_schema import grid_model, recipe_model
 from tester.inputs.recipe.semantics import axis_values
 from tests.tester.inputs.recipe.texts import SMALL, recipe, with_line
@@ -40,7 +41,7 @@ def test_what_an_axis_does_not_take_is_told_where_it_stands(line: str, told: str
     model = recipe_model(TrackPart())
     with pytest.raises(ValidationError) as refused:
         model.model_validate(tree.data)
-    problems = [str(one) for one in problems_from_validation(refused.value, tree, model)]
+    problems = [str(one) for one in problems_of(refused.value, tree, model)]
     assert len(problems) == 1 and told in problems[0], problems
 
 
