@@ -93,15 +93,15 @@ def _materials(used: UsedMaterials) -> Iterator[str]:
 )
 def schema(what: str) -> None:
     """Print the JSON Schema of recipes, or of compounds or surfaces, for editors and other programs."""
+    from tester.base.validation import editor_text
+
     if what != "recipe":
-        from tester.base.validation import editor_text
         from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 
         click.echo(editor_text(CompoundModel if what == "compound" else SurfaceModel), nl=False)
         return
     from tester import kinds
-    from tester.inputs.recipe.recipe_schema import schema_text
 
     part = kinds.find(kinds.DEFAULT).recipe
     assert part is not None
-    click.echo(schema_text(part()), nl=False)
+    click.echo(editor_text(part().model()), nl=False)

@@ -14,7 +14,7 @@ from tester.base.source import InvalidSource, Problem, Tree, read_tree
 from tester.base.units import shown
 from tester.base.validation import problems_of
 from tester.inputs.recipe.recipe_part import RecipePart
-from tester.inputs.recipe.recipe_schema import Recipe, recipe_model
+from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.semantics import semantic_problems
 from tester.inputs.rig import Rig
 
@@ -35,7 +35,7 @@ def validated(tree: Tree, part: RecipePart) -> tuple[Recipe | None, list[Problem
     """Return the recipe of a tree (None where a value is not valid) and the problems found."""
     if not isinstance(tree.data, dict):
         return None, [tree.problem((), "a recipe is a list of keys: recipe, specimens, measure, grids and others")]
-    model = recipe_model(part)
+    model = part.model()
     try:
         recipe = model.model_validate(tree.data)
     except ValidationError as error:

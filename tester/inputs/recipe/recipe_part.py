@@ -16,7 +16,7 @@ from tester.base.axes import Axes
 from tester.base.source import Location, Problem, Tree
 from tester.inputs.recipe.grid_settings import settings_of
 from tester.inputs.recipe.plan import ConditionStep, Plan, Settings, Stand, Step
-from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe, recipe_model
 from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate, estimate
 from tester.inputs.rig import Rig
 
@@ -69,6 +69,10 @@ class RecipePart(ABC):
 
     def __hash__(self) -> int:
         return hash(type(self))
+
+    def model(self) -> type[Recipe]:
+        """Return the model of this kind's recipes: its sections, and grids over its axes."""
+        return recipe_model(self.kind, self.recipe, self.axes, self.grid)
 
     def settings(self, measure: MeasureModel, grid: GridModel) -> Settings:
         """Return how the conditions of a grid are measured; hashable, equal for equal measurements."""

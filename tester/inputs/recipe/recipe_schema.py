@@ -16,14 +16,12 @@ from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_m
 
 from tester.base.axes import Axes, Axis
 from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
-from tester.base.validation import Section, editor_text
+from tester.base.validation import Section
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
     from pydantic_core import CoreSchema
-
-    from tester.inputs.recipe.recipe_part import RecipePart
 
 MAX_REPEATS = 1000
 MAX_FREE_FIELD = 500
@@ -207,23 +205,33 @@ class MeasureModel(Section, frozen=True):
     soak: SoakModel = SoakModel()
 
 
+def _unpickled(make: Callable[..., type[BaseModel]], of: tuple[object, ...], state: dict[Any, Any]) -> BaseModel:
+    model = make(*of)
+    one = model.__new__(model)
+    one.__setstate__(state)
+    return one
+
+
+class Made(Section, frozen=True):
+    """A section of which the class is made at run time, over a kind's axes."""
+
+    axes: ClassVar[Axes]
+    """Axes of the kind of rig."""
+    made_by: ClassVar[tuple[Callable[..., type[BaseModel]], tuple[object, ...]]]
+    """The function that makes the class, and its arguments: pickle keeps them in place of the class."""
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _unpickled, (*self.made_by, self.__getstate__())
+
+
 class GridName(Section, frozen=True):
     """What a grid is called."""
 
     name: Text
 
 
-class GridModel(GridName, frozen=True):
+class GridModel(GridName, Made, frozen=True):
     """All combinations of its axes; missing keys are as in ``measure``."""
-
-    axes: ClassVar[Axes]
-    """Axes of the kind of rig."""
-    base: ClassVar[type[GridModel]]
-    """The kind's model of a grid without its axes."""
-
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickle the arguments from which the class itself is made."""
-        return _unpickled, (grid_model, (self.axes, self.base), self.__getstate__())
 
     repeats: Repeats | None = None
     until: Precision | None = None
@@ -244,7 +252,7 @@ def grid_model(axes: Axes, base: type[GridModel] = GridModel) -> type[GridModel]
     listed = create_model("GridAxes", __base__=GridName, **due_first)
     made = create_model("GridModel", __base__=(base, listed), __doc__=GridModel.__doc__)
     grid = cast("type[GridModel]", made)
-    grid.axes, grid.base = axes, base
+    grid.axes, grid.made_by = axes, (grid_model, (axes, base))
     return grid
 
 
@@ -279,17 +287,8 @@ class OrderModel(Section, frozen=True):
         return self
 
 
-class Recipe(Section, frozen=True):
+class Recipe(Made, frozen=True):
     """A recipe of the friction tester."""
-
-    axes: ClassVar[Axes]
-    """Axes of the kind of rig."""
-    part: ClassVar[RecipePart]
-    """That kind's part of the recipe reader."""
-
-    def __reduce__(self) -> tuple[object, ...]:
-        """Pickle the arguments from which the class itself is made."""
-        return _unpickled, (recipe_model, (self.part,), self.__getstate__())
 
     recipe: Text
     """the recipe's name"""
@@ -311,26 +310,13 @@ class Recipe(Section, frozen=True):
     order: OrderModel = OrderModel()
 
 
-def _unpickled(make: Callable[..., type[BaseModel]], of: tuple[object, ...], state: dict[Any, Any]) -> BaseModel:
-    model = make(*of)
-    one = model.__new__(model)
-    one.__setstate__(state)
-    return one
-
-
 @lru_cache
-def recipe_model(part: RecipePart) -> type[Recipe]:
-    """Return the model of a kind's recipes: its sections, and grids over its axes."""
+def recipe_model(kind: str, base: type[Recipe], axes: Axes, grid: type[GridModel]) -> type[Recipe]:
+    """Return the model of a kind's recipes: the sections of ``base``, and grids over its axes."""
     fields: dict[str, Any] = {
-        "kind": (Text, Field(default=part.kind, description="kind of the rig that it is for")),
-        "grids": (Annotated[list[grid_model(part.axes, part.grid)], Field(max_length=MAX_GRIDS)], []),
+        "kind": (Text, Field(default=kind, description="kind of the rig that it is for")),
+        "grids": (Annotated[list[grid_model(axes, grid)], Field(max_length=MAX_GRIDS)], []),
     }
-    recipe = create_model("Recipe", __base__=part.recipe, __doc__=Recipe.__doc__, **fields)
-    recipe.axes, recipe.part = part.axes, part
+    recipe = create_model("Recipe", __base__=base, __doc__=Recipe.__doc__, **fields)
+    recipe.axes, recipe.made_by = axes, (recipe_model, (kind, base, axes, grid))
     return recipe
-
-
-def schema_text(part: RecipePart) -> str:
-    """Return the JSON Schema (2020-12) of a kind's recipes as the text of a file, such as
-    ``recipes/recipe.schema.json``."""
-    return editor_text(recipe_model(part))

@@ -120,7 +120,7 @@ class WheelPart(RecipePart):
         if not top.get("grids") and top.get("pre_grind") is None:
             yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
         if recipe is not None:
-            yield from reference_problems(for_wheels(recipe), tree)
+            yield from reference_problems(for_wheels(recipe), tree, self.sense)
 
     def sense(self, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree) -> Iterator[Problem]:
         """Yield each slip at which the belt would stand or run backwards, and slips that cannot be reversed."""

@@ -6,7 +6,7 @@ every change of the wheel, which costs one more change instead of two; the count
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final, cast
 
@@ -16,7 +16,7 @@ from tester.base.source import Location, Problem, Tree
 from tester.base.units import shown
 from tester.inputs.recipe.conditions import Condition
 from tester.inputs.recipe.plan import Specimen
-from tester.inputs.recipe.recipe_schema import grid_model
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, grid_model
 from tester.inputs.recipe.reference_section import REFERENCE, reference_metadata
 from tester.inputs.recipe.semantics import axis_values
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, WheelStep
@@ -39,7 +39,7 @@ def as_grid(reference: ReferenceModel, recipe: WheelRecipe) -> WheelGrid:
     values = {name: [getattr(reference, name)] for name in REFERENCE_HELD}
     speed = None if reference.wheel_speed is None else [reference.wheel_speed]
     others: dict[str, Any] = {"name": REFERENCE, "wheel_speed": speed, "repeats": reference.repeats}
-    return cast("WheelGrid", grid_model(recipe.axes, recipe.part.grid).model_construct(**values, **others))
+    return cast("WheelGrid", grid_model(recipe.axes, WheelGrid).model_construct(**values, **others))
 
 
 def reference_condition(recipe: WheelRecipe) -> Condition[WheelSettings] | None:
@@ -54,8 +54,10 @@ def reference_condition(recipe: WheelRecipe) -> Condition[WheelSettings] | None:
     return Condition(values, 0, REFERENCE, how)
 
 
-def reference_problems(recipe: WheelRecipe, tree: Tree) -> Iterator[Problem]:
-    """Yield faults of a recipe's reference condition that do not depend on the rig."""
+def reference_problems(
+    recipe: WheelRecipe, tree: Tree, sense: Callable[[MeasureModel, GridModel, Location, Tree], Iterator[Problem]]
+) -> Iterator[Problem]:
+    """Yield faults of a recipe's reference condition that do not depend on the rig; ``sense``: those of any grid."""
     reference, measure = recipe.reference, recipe.measure
     if reference is None:
         return
@@ -72,7 +74,7 @@ def reference_problems(recipe: WheelRecipe, tree: Tree) -> Iterator[Problem]:
     if measure.combine == "paper" and reference.repeats is not None and reference.repeats.at_least != CLOSEST_OF:
         message = f"repeats: combine: paper takes the closest two of {CLOSEST_OF} (expected {CLOSEST_OF})"
         yield tree.problem((*AT, "repeats"), message)
-    yield from recipe.part.sense(measure, as_grid(reference, recipe), AT, tree)
+    yield from sense(measure, as_grid(reference, recipe), AT, tree)
 
 
 ABOVE_AMBIENT_K = 2.0

@@ -8,9 +8,9 @@ import pickle
 import pytest
 
 from tester.base.source import InvalidSource
+from tester.base.validation import editor_text
 from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.recipe.plan_text import json_chunks, lines
-from tester.inputs.recipe.recipe_schema import schema_text
 from tester.inputs.recipe.time_estimate import estimate
 from tests.tester.inputs.recipe.texts import load_recipe
 from tests.tester.inputs.recipe.track import TrackPart, TrackRecipe
@@ -89,6 +89,6 @@ def test_a_recipe_goes_to_another_process_and_is_of_the_same_class_there() -> No
 
 
 def test_editors_get_a_schema_with_the_sections_of_the_kind() -> None:
-    properties = json.loads(schema_text(PART))["properties"]
+    properties = json.loads(editor_text(PART.model()))["properties"]
     assert "run_in" in properties and "pre_grind" not in properties
     assert properties["kind"]["default"] == "track"

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from tester.base.source import read_tree
 from tester.base.validation import problems_of
-from tester.inputs.recipe.recipe_schema import grid_model, recipe_model
+from tester.inputs.recipe.recipe_schema import grid_model
 from tester.inputs.recipe.semantics import axis_values
 from tests.tester.inputs.recipe.texts import SMALL, recipe, with_line
 from tests.tester.inputs.recipe.track import TRACK, TrackPart
@@ -38,7 +38,7 @@ def test_what_an_axis_does_not_take_is_told_where_it_stands(line: str, told: str
     given[line.partition(":")[0]] = line
     text = "recipe: r\nspecimens: [{compound: a}]\ngrids:\n  - " + "\n    ".join(given.values()) + "\n"
     tree, _ = read_tree(text, "r.yaml")
-    model = recipe_model(TrackPart())
+    model = TrackPart().model()
     with pytest.raises(ValidationError) as refused:
         model.model_validate(tree.data)
     problems = [str(one) for one in problems_of(refused.value, tree, model)]

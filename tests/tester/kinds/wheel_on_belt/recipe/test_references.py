@@ -7,7 +7,6 @@ import pytest
 from tester.inputs.recipe.loader import check
 from tester.inputs.recipe.plan import Mounted, Stand
 from tester.inputs.recipe.plan_text import lines
-from tester.inputs.recipe.recipe_schema import recipe_model
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, WheelCondition, WheelPlan
@@ -96,7 +95,7 @@ def test_fewer_repeats_of_a_reference_do_not_change_what_tells_compounds_apart()
 
 
 def test_its_key_is_in_the_schema_for_editors() -> None:
-    assert "reference" in recipe_model(PART).model_fields
+    assert "reference" in PART.model().model_fields
 
 
 # -- a reserved wheel ------------------------------------------------------------------------------------------------
