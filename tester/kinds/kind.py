@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tester.base.axes import Axis
     from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig
-    from tester.machine.commission.commission_step import CommissionPart
+    from tester.machine.commission.person import CommissionPart
     from tester.machine.interlock_table import InterlockSheet
     from tester.machine.row import Interlock
     from tester.machine.run_parts import KindRun

@@ -9,7 +9,8 @@ from typing import Any
 
 from tester.analysis.schemes import misalignment
 from tester.base.words import finite
-from tester.machine.commission.person import Person, StepRefused
+from tester.machine.commission.commission_step import StepRefused
+from tester.machine.commission.person import Person
 from tester.machine.context import Progress
 from tester.machine.prompts import Prompts
 from tester.machine.time_left import RunPosition

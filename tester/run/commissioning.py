@@ -12,8 +12,7 @@ from tester.base.lock import ExclusiveUse, RigInUseError, user
 from tester.base.processes import stopped_by_signals
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.rig import Rig
-from tester.machine.commission.commission_step import CommissionPart
-from tester.machine.commission.person import Person
+from tester.machine.commission.person import CommissionPart, Person
 from tester.machine.commission.record import FOLDER, CommissionRecord, record_path
 from tester.machine.commission.step_engine import Commissioning, CommissionOutcome
 from tester.machine.rig_ports import Ports

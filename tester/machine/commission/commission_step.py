@@ -1,19 +1,71 @@
-"""A step of commissioning, and the parts that a kind supplies for it."""
+"""A step of commissioning: what a procedure can ask a person, and the parts that a kind supplies for a step."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any, Protocol
 
-from drivers.ports import BusLost
 from tester.base.config_reader import as_tree
 from tester.inputs.rig import Rig
-from tester.machine.commission.person import Dialogue, Person, Waits
-from tester.machine.prompts import Prompt, Prompts, Question
+from tester.machine.prompts import GO, Asks, Question
 from tester.machine.rig_ports import Ports
+
+
+class StepRefused(Exception):  # noqa: N818 - a finding for a person
+    """A step does not pass. The text gives the finding and the remedy, for people and for the record."""
+
+
+Until = Callable[[float], bool]
+"""A condition to wait for: called once a tick with rig time, s."""
+Waits = Question | Until
+"""What a procedure can wait for: a valid answer, or a condition."""
+Dialogue = Generator[Waits, str, None]
+Measured = Generator[Waits, str, float]
+
+
+def choose(key: str, text: str, *choices: str) -> Generator[Waits, str, str]:
+    """Ask for one of several words."""
+    return (yield Question(key, text, Asks.CHOICE, choices))
+
+
+def measure(key: str, text: str, unit: str) -> Measured:
+    """Ask for a quantity; return it in ``unit``."""
+    question = Question(key, text, Asks.QUANTITY, unit=unit)
+    return question.value((yield question))
+
+
+def line(key: str, text: str) -> Generator[Waits, str, str]:
+    """Ask for a line of text."""
+    return (yield Question(key, text, Asks.TEXT))
+
+
+def press(key: str, text: str, guarded: Callable[[], bool] = lambda: True) -> Dialogue:
+    """Ask for the word that starts a motion; ask again while ``guarded`` reports that guard or safety chain is open.
+
+    Raises StepRefused if the answer is "no".
+    """
+    asked = text
+    while (yield Question(key, asked, Asks.KEY)) == GO:
+        if guarded():
+            return
+        asked = f"the guard or the safety chain is open: close it, and again; {text}"
+    raise StepRefused(f"left by the person at: {asked}")
+
+
+def wait(seconds: float) -> Dialogue:
+    """Wait for some seconds of rig time."""
+    until_s = inf
+
+    def over(now_s: float) -> bool:
+        nonlocal until_s
+        until_s = min(until_s, now_s + seconds)
+        return now_s >= until_s - 1e-9
+
+    yield over
 
 
 class Seat(Protocol):
@@ -118,88 +170,3 @@ def _at(tree: object, keys: list[str]) -> object:
         section: Mapping[str, object] = tree  # pyright: ignore[reportUnknownVariableType]
         tree = section.get(key)
     return tree
-
-
-class Walk:
-    """A seat and a procedure, ticked together (tester.machine.tickers.Ticked)."""
-
-    def __init__(self, seat: Seat, procedure: Dialogue, person: Person) -> None:
-        """Do nothing before the first tick."""
-        self.seat = seat
-        self.person = person
-        self.ended = False
-        """The procedure is over, successful or not."""
-        self.error: Exception | None = None
-        self.lost = ""
-        """Why the bus is gone; "" while it works."""
-        self._procedure = procedure
-        self._prompts = Prompts(now_s=0.0)
-        self._awaited: Waits | None = None
-        self._prompt: Prompt | None = None
-
-    @property
-    def now_s(self) -> float:
-        """Rig time, s."""
-        return self._prompts.now_s
-
-    @property
-    def finished(self) -> bool:
-        """Whether the rig is at rest, or can no longer be reached."""
-        return bool(self.lost) or self.seat.finished
-
-    @property
-    def waiting(self) -> bool:
-        """Whether simulated time stops while a person thinks."""
-        asked = self._prompt is not None and self._prompt.answer is None and not self.ended and not self.finished
-        return asked and self.person.time_stands and self.seat.ready
-
-    def tick(self, now: float) -> float:
-        """Tick the rig, then resume the procedure until it has to wait."""
-        self._prompts.now_s = now
-        try:
-            due = self.seat.tick(now)
-        except BusLost as lost:
-            self.lost = str(lost)
-            return now
-        if self.seat.ready and not self.seat.finished and not self.ended:
-            self._resume(now)
-        return due
-
-    def stop(self, why: str, *, fast: bool = False) -> None:
-        """End the step: bring the rig to rest."""
-        self.ended = True
-        self.seat.stop(why, fast=fast)
-
-    def _resume(self, now: float) -> None:
-        """Resume the procedure until it waits for a condition that is not yet met."""
-        try:
-            if self._awaited is None:
-                self._await(next(self._procedure))
-            while not self.ended and (answer := self._answer(now)) is not None:
-                self._await(self._procedure.send(answer))
-        except StopIteration:
-            self.stop("step done")
-        except Exception as error:  # noqa: BLE001 - on any error the rig stops first; the error is raised again later
-            self.error = error
-            self.stop("step given up")
-
-    def _await(self, awaited: Waits) -> None:
-        self._awaited = awaited
-        self._prompt = self._prompts.put(awaited) if isinstance(awaited, Question) else None
-
-    def _answer(self, now: float) -> str | None:
-        """Return the value to resume the procedure with; None while it has to wait."""
-        if not isinstance(self._awaited, Question):
-            return "" if self._awaited is not None and self._awaited(now) else None
-        self.person.attend(self._prompts)
-        return self._prompt.answer if self._prompt is not None else None
-
-
-@dataclass(frozen=True, slots=True)
-class CommissionPart:
-    """A kind's steps in their order, and the person who does them on the simulated rig."""
-
-    steps: tuple[CommissionStep, ...]
-    compounds: tuple[str, ...]
-    """Compounds that have a model of the expected coefficient; of any other only the name is known."""
-    twin: Callable[[Callable[[str], None]], Person]

@@ -13,8 +13,8 @@ from drivers.ports import BusLost
 from tester.base import clock
 from tester.base.keys import FAST_STOP, STOP
 from tester.inputs.rig import Rig
-from tester.machine.commission.commission_step import CommissionStep, Notes, RunRecipe, Walk, sections_sha256
-from tester.machine.commission.person import Person, StepRefused
+from tester.machine.commission.commission_step import CommissionStep, Notes, RunRecipe, StepRefused, sections_sha256
+from tester.machine.commission.person import Person, Walk
 from tester.machine.commission.record import BEGUN, DONE, READING, REFUSED, CommissionRecord, RecordEntry
 from tester.machine.prompts import Asks, Prompts, Question
 from tester.machine.rig_ports import Ports

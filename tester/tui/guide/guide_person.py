@@ -12,8 +12,8 @@ from typing import Final
 
 from tester.base import clock
 from tester.base.keys import FAST_STOP, STOP
-from tester.machine.commission.commission_step import CommissionStep, StepReading, Walk
-from tester.machine.commission.person import Person
+from tester.machine.commission.commission_step import CommissionStep, StepReading
+from tester.machine.commission.person import Person, Walk
 from tester.machine.commission.record import RecordEntry
 from tester.machine.prompts import Prompt, Prompts, Question
 

@@ -17,7 +17,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.activity import Activity
-from tester.machine.commission.person import Dialogue, Waits
+from tester.machine.commission.commission_step import Dialogue, Waits
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.state import Mode

@@ -11,7 +11,8 @@ from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
-from tester.machine.commission.commission_step import CommissionPart, CommissionStep
+from tester.machine.commission.commission_step import CommissionStep
+from tester.machine.commission.person import CommissionPart
 
 _BUS: Final = ("can", "lines", "devices")
 _CELL: Final = ("devices.load_cell", "lines.load_cell")

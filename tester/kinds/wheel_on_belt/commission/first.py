@@ -12,8 +12,7 @@ from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
 from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.machine.commission.commission_step import Notes, RunRecipe
-from tester.machine.commission.person import StepRefused
+from tester.machine.commission.commission_step import Notes, RunRecipe, StepRefused
 
 RECIPE: Final = """\
 recipe: {title}

@@ -12,8 +12,16 @@ from math import degrees, pi
 from typing import Final
 
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat, JogSpeeds
-from tester.machine.commission.commission_step import Notes
-from tester.machine.commission.person import Dialogue, Measured, StepRefused, choose, measure, press, wait
+from tester.machine.commission.commission_step import (
+    Dialogue,
+    Measured,
+    Notes,
+    StepRefused,
+    choose,
+    measure,
+    press,
+    wait,
+)
 
 FIRST_SHARE: Final = 0.3
 """Tolerance of the first, short way, share [A]: a ruler on a few millimetres."""

@@ -10,8 +10,7 @@ from drivers.cia402 import State
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.jog import JoggedAxis
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
-from tester.machine.commission.commission_step import Notes, StepReading
-from tester.machine.commission.person import Dialogue, StepRefused, choose
+from tester.machine.commission.commission_step import Dialogue, Notes, StepReading, StepRefused, choose
 
 STATES: Final = {
     State.OPERATION_ENABLED: "has power", State.QUICK_STOP_ACTIVE: "quick stop", State.FAULT_REACTION: "fault",

@@ -17,8 +17,7 @@ from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperat
 from tester.kinds.wheel_on_belt.commission.settling import MEAN_S, SettlingFit
 from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
-from tester.machine.commission.commission_step import Notes
-from tester.machine.commission.person import Dialogue, StepRefused, Waits, wait
+from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, wait
 from tester.machine.motions import Power, Sequence
 
 MOST_C: Final = 45.0

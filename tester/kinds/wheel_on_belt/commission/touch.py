@@ -9,8 +9,7 @@ from sim.physics.friction import KNOWN
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact, Friction
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
-from tester.machine.commission.commission_step import Notes
-from tester.machine.commission.person import Dialogue, StepRefused, Waits, choose, line, measure
+from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, choose, line, measure
 from tester.machine.motions import Power, Sequence, Settle
 
 ANGLE_DEG: Final = 0.5

@@ -20,8 +20,7 @@ from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_devices
-from tester.machine.commission.commission_step import Notes
-from tester.machine.commission.person import Dialogue, Measured, StepRefused, Waits, choose, press, wait
+from tester.machine.commission.commission_step import Dialogue, Measured, Notes, StepRefused, Waits, choose, press, wait
 from tester.machine.proof import WatchdogProof
 from tester.machine.rig_ports import Ports
 

@@ -21,8 +21,7 @@ from statistics import fmean, median
 from typing import Final
 
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
-from tester.machine.commission.commission_step import Notes
-from tester.machine.commission.person import Dialogue, StepRefused, Waits, line, measure
+from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, line, measure
 
 LEAST_READINGS: Final = 20
 """Fewest readings of the cell for judging whether they have settled [A]: five per quarter."""

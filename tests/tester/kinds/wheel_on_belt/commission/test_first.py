@@ -10,8 +10,7 @@ import yaml
 
 from sim.physics.slip import predict
 from tester.kinds.wheel_on_belt.commission import first
-from tester.machine.commission.commission_step import Notes
-from tester.machine.commission.person import StepRefused
+from tester.machine.commission.commission_step import Notes, StepRefused
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench, believed, named
 
 SOAKED = {"hub_c": 42.0, "cold_hub_c": 23.0, "cold_c": 22.0}

@@ -9,7 +9,7 @@ import pytest
 
 from sim.noise import NormalStream
 from tester.kinds.wheel_on_belt.commission.weights import settled_cell
-from tester.machine.commission.person import StepRefused
+from tester.machine.commission.commission_step import StepRefused
 
 WEIGHT_N, SWING_N, NOISE_N = 100.0, 5.0, 0.25
 
