@@ -62,8 +62,6 @@ class Examination:
         self.say(f"watching for {self.seconds:g} s")
         return watched(self.rig, self.wires, lines, self.seconds, can=can)
 
-    def limit(self, *names: str) -> float | None:
-        """Return the first of these interlock parameters that the rig has; None if it has none."""
-        section = getattr(self.rig, "interlocks", None)
-        values = (getattr(section, name, None) for name in names)
-        return next((float(value) for value in values if isinstance(value, float | int)), None)
+    def limit(self, name: str) -> float | None:
+        """Return the value of an interlock parameter; None if the rig does not have it."""
+        return getattr(getattr(self.rig, "interlocks", None), name, None)

@@ -20,13 +20,6 @@ LATE_S = 0.008
 """An answer that exceeds the profile's longest time by this much was delayed by the adapter, s [A]."""
 FAILED_MOST = 0.01
 """Greatest acceptable share of failed questions on a line [A]."""
-STALE_LIMITS = {
-    "load_cell": ("stale_cell_s",),
-    "ir_thermometer": ("stale_ir_s",),
-    "jacket": ("stale_jacket_s",),
-    "chamber": ("stale_chamber_s",),
-}
-"""Interlock parameters that limit the age of a device's readings, by the kind in its profile."""
 
 
 def lines(e: Examination) -> Iterator[Finding]:
@@ -254,7 +247,7 @@ def ages(e: Examination) -> Iterator[Finding]:
             continue
         yield from _errors(name, watch)
         yield from _reply_time(e, name, unit, watch)
-        yield from _age(e, name, unit, watch)
+        yield from _age(e, key, unit, watch)
 
 
 def _errors(name: str, watch: UnitWatch) -> Iterator[Finding]:
@@ -285,8 +278,8 @@ def _reply_time(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -
         )  # fmt: skip
 
 
-def _age(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -> Iterator[Finding]:
-    limit_s = e.limit(*STALE_LIMITS.get(unit.profile.kind, ()))
+def _age(e: Examination, key: str, unit: UnitSurvey, watch: UnitWatch) -> Iterator[Finding]:
+    name, (_, limit_s) = title_of(e.rig, key), e.rig.stale_limits().get(unit.config.part_of or key, ("", None))
     text = f"{watch.readings} readings, at most {1e3 * watch.oldest_s:.0f} ms old when the next came"
     if limit_s is not None and watch.oldest_s > limit_s:
         yield warning(

@@ -36,7 +36,7 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
     ``limits``: for each device's name, the key in the rig file and the greatest age of its reading, s.
     """
     for device in devices.modbus:
-        key, limit_s = _limit(device, limits)
+        key, limit_s = age_limit(device, limits)
         if limit_s is None:
             continue
         link, station = device.driver.link, device.driver.station
@@ -57,7 +57,7 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
 def allow_late(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> None:
     """Lengthen time-outs when replies become slower during the run, as far as the limits of age allow."""
     for device in devices.modbus:
-        _, limit_s = _limit(device, limits)
+        _, limit_s = age_limit(device, limits)
         if limit_s is not None:
             device.driver.station.longest_s = limit_s / READINGS - device.driver.profile.blocks[0].period_s
 
@@ -78,10 +78,11 @@ def described(devices: DeviceList) -> str:
     return text
 
 
-def _limit(one: FieldDevice, limits: Mapping[str, tuple[str, float]]) -> tuple[str, float | None]:
-    if one.name in limits:
-        return limits[one.name]
-    return ("its age", one.driver.stale_s) if isinstance(one.driver, Sensor) else ("", None)
+def age_limit(device: FieldDevice, limits: Mapping[str, tuple[str, float]]) -> tuple[str, float | None]:
+    """Return the key and the greatest age, s, of a device's reading: of ``limits``, else of its own driver."""
+    if device.name in limits:
+        return limits[device.name]
+    return ("its age", device.driver.stale_s) if isinstance(device.driver, Sensor) else ("", None)
 
 
 def _ms(seconds: float) -> str:

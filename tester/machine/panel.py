@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 
 from tester.base.screen import Check, Gate, SoakView
 from tester.inputs.rig import Rig
 from tester.machine.engine import Engine
+from tester.machine.line_speed import age_limit
 from tester.machine.state import Mode
+from tester.machine.wires import STALE_CAN_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,15 +33,28 @@ class Wanted:
 
 
 class RunPanel:
-    """What clients see of a run, read between two ticks. A kind adds its devices, setpoints and checks."""
+    """What clients see of a run, read between two ticks. A kind adds setpoints and checks."""
 
     def __init__(self, engine: Engine) -> None:
         """Read the engine only; change nothing."""
         self.engine = engine
+        self._stale_can_s = engine.ctx.rig.values()[STALE_CAN_S]
 
     def news(self) -> dict[str, News]:
-        """Return the news of every device that the table of channels names."""
-        raise NotImplementedError
+        """Return the news of the devices that the table of channels names.
+
+        "can": the drives, with the oldest data of one; the kind's own devices by their names in the rig file; further
+        sensors by their places there.
+        """
+        devices, rig = self.engine.devices, self.engine.ctx.rig
+        limits = rig.stale_limits()
+        news = {f"can.nodes.{node.name}": News(node.stamp_s, node.online, node.stale_s) for node in devices.nodes}
+        for device in devices.modbus:
+            _, stale_s = age_limit(device, limits)
+            key = device.name if device.name in rig.own else f"devices.{device.name}"
+            news[key] = News(device.driver.stamp_s, device.driver.valid, stale_s or inf)
+        oldest_s = min(drive.stamp_s for drive in devices.drives)
+        return news | {"can": News(oldest_s, not self.engine.ctx.readings.drive_fault, self._stale_can_s)}
 
     def wanted(self) -> dict[str, Wanted]:
         """Return the setpoints of the values, by their keys; values without a setpoint may be left out."""

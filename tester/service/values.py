@@ -13,7 +13,7 @@ from tester.base.quantities import LAST, Channel, Quantities, Screen
 from tester.base.screen import Quality, Value
 from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.inputs.rig import Rig
-from tester.inputs.rig.further_sensors import further_sensors, quantities_on
+from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.engine import Engine
 from tester.machine.panel import News, RunPanel, Wanted
 from tester.machine.sampler import values_at
@@ -76,21 +76,18 @@ class ValueView:
         """Prepare everything that does not change."""
         self.engine = engine
         self.panel = panel
-        rig, devices = engine.ctx.rig, engine.devices
+        rig = engine.ctx.rig
         quantities = quantities_on(rig)
         self.unknown = unknown_values(quantities, rig)
         self._quantities = quantities
         recorded = quantities.recorded[: -len(LAST) - len(quantities.further)]
         self._read_off = {channel.name: values_at([channel.source]) for channel in recorded}
         self._place = {channel.name: place for place, channel in enumerate(quantities.further)}
-        self._sensors = dict(zip(further_sensors(rig), devices.sensors, strict=True))
-        self._nodes = dict(zip(rig.can.nodes, devices.nodes, strict=True))
 
     def values(self) -> tuple[Value, ...]:
         """Return all values as of the last scan."""
         wanted, now = self.panel.wanted(), self.engine.ctx.readings.now_s
-        all_news = {**self.panel.news(), **self._further_news()}
-        quality = {device: self._quality(news, now) for device, news in all_news.items()}
+        quality = {device: self._quality(news, now) for device, news in self.panel.news().items()}
         nothing: tuple[float | None, Quality] = (None, "none")
         return tuple(
             measured(
@@ -107,11 +104,6 @@ class ValueView:
         if name in self._place:
             return self.engine.ctx.readings.channels[self._place[name]]
         return float(self._read_off[name](self.engine.ctx)[0])
-
-    def _further_news(self) -> dict[str, News]:
-        """Return the state of the further sensors' data, by their places in the rig file."""
-        lines = {f"devices.{key}": News(s.stamp_s, s.valid, s.stale_s) for key, s in self._sensors.items()}
-        return lines | {f"can.nodes.{key}": News(n.stamp_s, n.online, n.stale_s) for key, n in self._nodes.items()}
 
     def _quality(self, news: News, now: float) -> tuple[float | None, Quality]:
         """Return age (s) and quality. No device is read more often than once a scan."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from tester.base.screen import Check, HandAxis, MachineView, PlotView, SoakView, axis_views, trend_columns
 from tester.kinds.specimen_on_track.axes import AXES, NAME
 from tester.kinds.specimen_on_track.procedures.steps import TemperAir
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
-from tester.machine.engine import Engine
 from tester.machine.panel import News, RunPanel, Wanted, soak_view
 
 HAND: Final = (
@@ -39,23 +39,12 @@ MACHINE: Final = MachineView(
 class TrackPanel(RunPanel):
     """The view of one run on this machine."""
 
-    def __init__(self, engine: Engine) -> None:
-        """Store the run; the panel only reads it."""
-        super().__init__(engine)
-        limits = engine.ctx.rig.interlocks
-        self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_air_s, limits.stale_exit_s)
-
     def news(self) -> dict[str, News]:
-        """Return the news of the devices; for the drives, that of the drive with the oldest data."""
-        r, (cell_s, can_s, air_s, exit_s) = self.engine.ctx.readings, self._stale_s
-        air = News(r.air_at_s, r.air_valid, air_s)
-        pyrometer = self.engine.ctx.devices.pyrometer is not None
-        return {
-            "cell": News(r.cell_at_s, r.cell_valid, cell_s),
-            "can": News(min(r.track_at_s, r.lift_at_s), not r.drive_fault, can_s),
-            "air": air,
-            "contact": News(r.exit_at_s, r.exit_valid, exit_s) if pyrometer else air,
-        }
+        """Return the news of the devices; "air": of chamber or thermometer, "contact": of the pyrometer, else "air"."""
+        news = super().news()
+        measured = "chamber" if "chamber" in news else "thermometer"
+        air = replace(news[measured], stale_s=self.engine.ctx.rig.interlocks.stale_air_s)
+        return news | {"air": air, "contact": news.get("pyrometer", air)}
 
     def wanted(self) -> dict[str, Wanted]:
         """Return the setpoints and gates, for values that have them."""

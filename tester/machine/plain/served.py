@@ -14,13 +14,12 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.engine import Engine
 from tester.machine.manual import NAME, ManualExecutor
-from tester.machine.panel import News, RunPanel, drives_alone
+from tester.machine.panel import RunPanel, drives_alone
 from tester.machine.plain.context import PlainAttendant, PlainContext
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.served import ByHand, History, Left, ServedKind
-from tester.machine.wires import STALE_INPUTS_S
 from tester.store.recorder import Recorder
 
 STEPS_TO_TOP: Final = 20
@@ -30,23 +29,9 @@ STEPS_TO_TOP: Final = 20
 class PlainPanel(RunPanel):
     """The view of one run on a plain machine."""
 
-    def __init__(self, engine: Engine) -> None:
-        """Read the engine only; change nothing."""
-        super().__init__(engine)
-        self._ctx: PlainContext = engine.ctx
-        self._stale_s = self._ctx.rig.values()[STALE_INPUTS_S]
-
-    def news(self) -> dict[str, News]:
-        """Return the state of the data of the drives, as "can", and of each of the machine's own sensors."""
-        r = self._ctx.readings
-        drives = {"can": News(r.drives_at_s, not r.drive_fault, self._stale_s)}
-        return drives | {
-            name: News(sensor.stamp_s, sensor.valid, sensor.stale_s) for name, sensor in self._ctx.sensors.items()
-        }
-
     def mounted(self) -> tuple[int, str]:
         """Return number and compound of the mounted specimen."""
-        mount = self._ctx.mounted
+        mount = self.engine.ctx.mounted
         return (mount.specimen, mount.compound) if mount is not None else (0, "")
 
 

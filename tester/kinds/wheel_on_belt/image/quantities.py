@@ -38,7 +38,7 @@ def _within(key: str, rank: int, device: str, limit: str, *, scale: float = 1.0,
     return Screen(key, rank, device, low, top, at, both, watched, setpoint, axis, trend, setpoint_trend)
 
 
-def _between(key: str, rank: int, low: float, high: float, device: str = "cell") -> Screen:
+def _between(key: str, rank: int, low: float, high: float, device: str = "load_cell") -> Screen:
     """Return a bar between two numbers."""
     return Screen(key, rank, device, Figure(offset=low), Figure(offset=high))
 
@@ -69,7 +69,7 @@ QUANTITIES: Final = Quantities(
         Channel("force_y_n", "N", "Force Fy", "readings.force_y_n", 2, 1,
                 screen=_between("force_y", 13, -_FORCE, _FORCE)),
         Channel("force_z_n", "N", "Load", "readings.force_z_n", 3, 1,
-                screen=_within("load", 2, "cell", "limits.load_n", watched=True,
+                screen=_within("load", 2, "load_cell", "limits.load_n", watched=True,
                                setpoint="load_setpoint_n", axis="load", trend="load_n",
                                setpoint_trend="load_setpoint_n")),
         Channel("moment_z_nm", "N m", "Moment Mz", "readings.moment_z_nm", 4, 2,
@@ -78,7 +78,7 @@ QUANTITIES: Final = Quantities(
                 screen=Screen("torque", 15, "can", Figure("axes.wheel.rated_torque_nm", -_PEAK),
                               Figure("axes.wheel.rated_torque_nm", _PEAK))),
         Channel("surface_c", "°C", "Surface temp", "readings.surface_c", 11, 1,
-                screen=Screen("surface", 4, "surface", _COLD, Figure("limits.surface_c", offset=5.0),
+                screen=Screen("surface", 4, "ir_thermometer", _COLD, Figure("limits.surface_c", offset=5.0),
                               Figure("limits.surface_c"), watched=True, axis="temperature", trend="surface_c",
                               setpoint_trend="surface_setpoint_c")),
         Channel("hub_c", "°C", "Jacket", "readings.hub_c", 12, 1,
@@ -96,7 +96,7 @@ QUANTITIES: Final = Quantities(
         Channel(BURST, "", "Burst", "burst", decimals=0, whole=True),
         Channel(KEY, "", "Repeat", "repeat_key", decimals=0, whole=True),
         Channel("friction", "", "Friction mu", "", decimals=3,
-                screen=Screen("friction", 1, "cell", _ZERO, _FRICTION_TOP, trend="friction")),
+                screen=Screen("friction", 1, "load_cell", _ZERO, _FRICTION_TOP, trend="friction")),
     ),
     Roles(friction=("force_x_n", "force_y_n"), normal="force_z_n", turn="wheel_angle_rev", temperature="surface_c",
           sliding="slip_m_s"),

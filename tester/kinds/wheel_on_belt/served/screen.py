@@ -13,7 +13,6 @@ from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelConditio
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.served.manual import HAND
-from tester.machine.engine import Engine
 from tester.machine.panel import News, RunPanel, Wanted, soak_view
 
 KIND: Final = "wheel_on_belt"
@@ -46,27 +45,16 @@ MACHINE: Final = MachineView(
 class WheelPanel(RunPanel):
     """The view of one run on this machine."""
 
-    def __init__(self, engine: Engine) -> None:
-        """Store the run; the panel only reads it."""
-        super().__init__(engine)
-        self._gates = engine.ctx.rig.gates
-        limits = engine.ctx.rig.interlocks
-        self._stale_s = (limits.stale_cell_s, limits.stale_can_s, limits.stale_ir_s, limits.stale_jacket_s)
-
     def news(self) -> dict[str, News]:
-        """Return the news of the devices; for the drives, that of the drive with the oldest data."""
-        r, (cell_s, can_s, surface_s, jacket_s) = self.engine.ctx.readings, self._stale_s
-        return {
-            "cell": News(r.cell_at_s, r.cell_valid, cell_s),
-            "can": News(min(r.wheel_at_s, r.belt_at_s, r.press_at_s), not r.drive_fault, can_s),
-            "surface": News(r.surface_at_s, r.surface_valid, surface_s),
-            "jacket": News(r.jacket_at_s, r.jacket_valid, jacket_s),
-        }
+        """Return the news of the devices; those of the load cell as a whole, which may be several transmitters."""
+        cell = self.engine.devices.cell
+        stale_s = self.engine.ctx.rig.interlocks.stale_cell_s
+        return super().news() | {"load_cell": News(cell.stamp_s, cell.valid, stale_s)}
 
     def wanted(self) -> dict[str, Wanted]:
         """Return the setpoints and gates, for values that have them."""
         ctx, out = self.engine.ctx, self.engine.control.state.setpoints
-        demand, target, gates = ctx.demand, ctx.gates.target, self._gates
+        demand, target, gates = ctx.demand, ctx.gates.target, ctx.rig.gates
         slip_band_m_s = max(0.01 * gates.slip_percent * target.slip_m_s, 1e-3 * gates.slip_floor_mm_s)
         wheel_m_s = out.wheel_rad_s * 0.5e-3 * ctx.readings.diameter_mm
         setpoints = {
