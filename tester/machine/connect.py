@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from enum import Enum
 from math import inf
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 from drivers.cia402 import Goal, State
 from drivers.ports import BusLost
@@ -52,30 +52,26 @@ _POWERED = (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTI
 """States in which a drive applies torque; a drive that ignores commands never leaves its quick stop by itself."""
 
 
-class Lifting(Protocol):
-    """Proves that nothing is loaded, one call of ``step`` a scan, and keeps watching that this stays so."""
+class Lifting:
+    """Proves that nothing is loaded, one call of ``step`` a scan, and keeps watching that this stays so.
 
-    @property
-    def done(self) -> bool:
-        """Whether the proof is over, successful or not."""
-        ...
+    By default it is done at once: the machine lifts nothing, and no load can arise.
+    """
 
-    @property
-    def failure(self) -> str:
-        """Why the proof failed; "" if it has not failed."""
-        ...
+    done: bool = True
+    """Whether the proof is over, successful or not."""
+    failure: str = ""
+    """Why the proof failed; "" if it has not failed."""
 
     def step(self, now: float) -> None:
         """Advance by one scan at ``now`` s."""
-        ...
 
     def stop(self) -> None:
         """Bring every axis that the proof moved to standstill, power off."""
-        ...
 
     def trouble(self, now: float) -> str:
         """Return why a rig that was proven unloaded may no longer be; "" if it still is."""
-        ...
+        return ""
 
 
 DevicesT = TypeVar("DevicesT", bound=DeviceList)
@@ -83,7 +79,7 @@ RigT = TypeVar("RigT", bound=Rig)
 
 
 class Arming(Generic[DevicesT, RigT]):
-    """Checks and proofs before a run may begin. A kind implements the lift and the proof of its drives."""
+    """Checks and proofs before a run may begin. A kind implements the proof of its drives, and a lift if it has one."""
 
     def __init__(self, devices: DevicesT, rig: RigT) -> None:
         """Send nothing."""
@@ -115,7 +111,7 @@ class Arming(Generic[DevicesT, RigT]):
 
     def lift(self) -> Lifting:
         """Begin to prove that nothing is loaded."""
-        raise NotImplementedError
+        return Lifting()
 
     def prove(self) -> WatchdogProof:
         """Begin to prove that the drives follow commands and stop."""

@@ -1,8 +1,8 @@
 """The proof of every machine before a run: its drives follow commands, and stop without our heartbeat.
 
 A drive watches a heartbeat only from the first one it receives (CiA 301), so a wrong parameter would show only when the
-watchdog is needed. The proof therefore tests the watchdog at creep speed, with nothing loaded. A kind implements the
-creeping.
+watchdog is needed. The proof therefore tests the watchdog, with nothing loaded: at standstill, or at creep speed if a
+kind implements the creeping.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ STILL_S = 1.5
 RESTORE_S = 3.0
 """Time limit for resetting faults and switching every drive off, s [A]."""
 RESET_EVERY_S = 0.2
+STANDING_SHARE = 0.01
+"""Speed below which a drive counts as at rest, as a share of its greatest speed [A]."""
 
 
 class ProofStage(Enum):
@@ -67,21 +69,22 @@ class WatchdogProof:
 
     def begin(self, now: float) -> None:
         """Begin to creep; every drive is in operation."""
-        raise NotImplementedError
 
     def move(self, now: float, elapsed: float) -> bool:
         """Continue the motion for ``elapsed`` s since ``begin``; return whether the drives creep, and follow if
         required.
         """
-        raise NotImplementedError
+        return True
 
     def stand(self) -> None:
-        """Command zero to every drive."""
-        raise NotImplementedError
+        """Command zero to every drive that has a speed."""
+        for drive in self.devices.drives:
+            if drive.config.mode == "velocity":
+                drive.target = 0.0
 
     def still(self) -> bool:
         """Return whether every drive is at rest."""
-        raise NotImplementedError
+        return all(abs(drive.actual) <= STANDING_SHARE * drive.config.max_speed for drive in self.devices.drives)
 
     # -- withholding ----------------------------------------------------------------------------------------
 

@@ -39,7 +39,7 @@ PLAIN_CEILINGS: Final = (
 
 @dataclass(frozen=True, slots=True)
 class ArmingSection:
-    """Proofs before a run may move anything (tester.machine.plain.arming)."""
+    """Proofs before a run may move anything (tester.machine.proof)."""
 
     listen_s: Annotated[float, "s", Range(ge=0.0)]
     """Time of silence at first, in which another master on the bus is detected."""

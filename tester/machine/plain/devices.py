@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf, nan
-from typing import Final
 
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.devices import DeviceList
 from tester.machine.image import NEVER
 from tester.machine.plain.image import PlainReadings, PlainSetpoints
+from tester.machine.proof import STANDING_SHARE
 from tester.machine.rig_drivers import RigDrivers
 from tester.machine.rig_ports import Ports
-
-STANDING_SHARE: Final = 0.01
-"""Speed below which a drive counts as at rest, as a share of its greatest speed [A]."""
 
 
 class PlainDevices(DeviceList):

@@ -12,14 +12,15 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.inputs.rig.plain_rig import PlainRig
+from tester.machine.connect import Arming
 from tester.machine.interlock_table import InterlockTable
-from tester.machine.plain.arming import PlainArming
 from tester.machine.plain.context import PlainAttendant, PlainContext
 from tester.machine.plain.control import PlainControl
 from tester.machine.plain.devices import PlainDevices
 from tester.machine.plain.image import PlainReadings
 from tester.machine.plain.procedures import PlainProcedures
 from tester.machine.prompts import Prompts
+from tester.machine.proof import WatchdogProof
 from tester.machine.result_keeping import StoredResults
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Run, run_of
@@ -27,6 +28,15 @@ from tester.machine.run_parts import KindRun, Part
 from tester.machine.served import History
 from tester.store.recorder import Recorder
 from tester.store.resumable import ResumePoint
+
+
+class PlainArming(Arming[PlainDevices, PlainRig]):
+    """Tests the drives' watchdogs at standstill; lifts nothing."""
+
+    def prove(self) -> WatchdogProof:
+        """Begin to test the drives' watchdogs."""
+        arming = self.rig.arming
+        return WatchdogProof(self.devices, follow=False, watchdog=arming.watchdog_proof, withhold_s=arming.withhold_s)
 
 
 class PlainRuns(KindRun):

@@ -10,7 +10,7 @@ from math import nan
 
 from tester.kinds.specimen_on_track.devices import TrackDevices
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.connect import Arming
+from tester.machine.connect import Arming, Lifting
 from tester.machine.proof import WatchdogProof
 
 BUMP_S = 0.6
@@ -21,13 +21,12 @@ SILENT_S = 1.0
 """Longest time without a valid reading of the cell, s [A]: it is read in every tick."""
 
 
-class TrackUnloaded:
+class TrackUnloaded(Lifting):
     """Waits for a valid reading of the cell, then watches that its readings stay valid and without force."""
 
     def __init__(self, devices: TrackDevices, rig: TrackConfig) -> None:
         """Move nothing: homing raises the arm."""
         self.devices, self.rig = devices, rig
-        self.failure = ""
         self.since_s = nan
         self.done = False
         self.raised = False
@@ -57,9 +56,6 @@ class TrackUnloaded:
             " is the arm down, or its zero wrong?"
         )
 
-    def stop(self) -> None:
-        """Do nothing: nothing was moved."""
-
 
 class TrackProof(WatchdogProof):
     """Proves that the track follows at creep speed, and that every drive stops without our heartbeat."""
@@ -85,10 +81,6 @@ class TrackProof(WatchdogProof):
             self.speed = (track.actual - self.seen[1]) / (track.stamp_s - self.seen[0])
             self.seen = track.stamp_s, track.actual
         super().step(now)
-
-    def stand(self) -> None:
-        """Command zero to the track."""
-        self.track.target = 0.0
 
     def still(self) -> bool:
         """Return whether the track is at rest."""

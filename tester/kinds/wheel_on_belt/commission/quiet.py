@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import copysign, hypot, inf
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from drivers.axis import AxisConfig
 from drivers.cia402 import Goal, State
@@ -78,36 +78,32 @@ class JogMove:
     over: bool = False
 
 
-class Moving(Lifting, Protocol):
+class Moving(Lifting):
     """Moves axes in place of a run's lift, as long as the seat is in use: it is never done."""
 
-    stepped_s: float
+    done = False
+    stepped_s = 0.0
     """Time of the last step, s."""
 
     @property
     def powered(self) -> bool:
         """Whether a drive has power, or is about to."""
-        ...
+        raise NotImplementedError
 
     @property
     def provokes(self) -> bool:
         """Whether drives are deliberately made to stop by themselves."""
-        ...
+        return False
 
 
-class Jogging:
-    """Moves one axis at a key press (``Moving``)."""
-
-    done = False
-    provokes = False
+class Jogging(Moving):
+    """Moves one axis at a key press."""
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
         """Move nothing before a jog begins."""
         self.devices = devices
         self.rig = rig
-        self.failure = ""
         self.jog: JogMove | None = None
-        self.stepped_s = 0.0
         self._drives: dict[str, ServoDrive] = {drive.config.name: drive for drive in devices.drives}
         self._phase = ""
         self._since_s = 0.0

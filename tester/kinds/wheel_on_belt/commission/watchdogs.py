@@ -14,7 +14,7 @@ from drivers.canopen import objects as o
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import TemperatureController
 from tester.inputs.rig import Rig
-from tester.kinds.wheel_on_belt.commission.quiet import QuietSeat, has_power
+from tester.kinds.wheel_on_belt.commission.quiet import Moving, QuietSeat, has_power
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
@@ -72,23 +72,14 @@ def deadline_s(drive: ServoDrive) -> float:
     return 1e-3 * drive.parameters.get((o.RPDO_COMMUNICATION, 5), 0)
 
 
-class Trials:
-    """Lifts, and then steps the proof that a procedure supplies (``Moving``)."""
-
-    done = False
-    """The procedure decides when it is done."""
+class Trials(Moving):
+    """Lifts, and then steps the proof that a procedure supplies. The procedure reports a failed proof itself."""
 
     def __init__(self, devices: Devices, rig: RigConfig) -> None:
         """Move nothing before the first ``step``."""
         self.devices = devices
         self.unloaded = Unloaded(devices, rig)
         self.proof: WatchdogProof | None = None
-        self.stepped_s = 0.0
-
-    @property
-    def failure(self) -> str:
-        """Reason why no trial is possible. The procedure reports a failed proof itself."""
-        return self.unloaded.failure
 
     @property
     def trying(self) -> bool:
@@ -110,6 +101,7 @@ class Trials:
         self.stepped_s = now
         if not self.unloaded.done:
             self.unloaded.step(now)
+            self.failure = self.unloaded.failure
         elif self.proof is not None and not self.proof.done:
             self.proof.step(now)
 

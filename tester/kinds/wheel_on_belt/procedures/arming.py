@@ -59,11 +59,6 @@ class Proof(WatchdogProof):
             shown.append("the setpoint that the jacket falls back to set and read back")
             left_out.append("that it falls back")
 
-    def stand(self) -> None:
-        """Command zero to the drives with a speed."""
-        axes = self.axes
-        axes.wheel.target = axes.belt.target = axes.press.target = 0.0
-
     def still(self) -> bool:
         """Return whether wheel and belt stand."""
         axes, least = self.axes, 0.1 * self.creep_m_s

@@ -13,6 +13,7 @@ from math import hypot, inf, nan
 from drivers.cia402 import Goal, State
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.connect import Lifting
 from tester.machine.proof import ENABLE_S
 
 LIFT_S = 6.0
@@ -33,7 +34,7 @@ class LiftStage(Enum):
     WATCH = "lifted"
 
 
-class Unloaded:
+class Unloaded(Lifting):
     """Lifts the press, with one call of ``step`` per scan; ``trouble`` then reports whether it stays unloaded.
 
     ``failure``: the reason why the rig may be loaded; "" for none.
@@ -43,18 +44,13 @@ class Unloaded:
         """Move nothing before the first ``step``; only the press's drive is enabled here."""
         self.devices = devices
         self.rig = rig
-        self.failure = ""
+        self.done = False
         self.stage = LiftStage.ENABLE
         self.since_s = nan
         self.good_s = -inf
         """When the last valid reading arrived."""
         self.first_n = nan
         """Normal force before the press moved."""
-
-    @property
-    def done(self) -> bool:
-        """Whether the check has ended: the press is lifted and the cell unloaded, or there is a ``failure``."""
-        return self.stage is LiftStage.WATCH or bool(self.failure)
 
     def step(self, now: float) -> None:
         """Advance by one scan at ``now`` s."""
@@ -68,6 +64,7 @@ class Unloaded:
             self._lift(now, elapsed)
         elif self.stage is LiftStage.ASK:
             self._ask(elapsed)
+        self.done = self.stage is LiftStage.WATCH or bool(self.failure)
         if self.failure:
             self.stop()
 
