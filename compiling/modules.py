@@ -88,6 +88,7 @@ HOT = (
     "tester/machine/inputs.py",
     "tester/machine/interlock_table.py",
     "tester/machine/manual.py",
+    "tester/machine/measured.py",
     "tester/machine/modbus_health.py",
     "tester/machine/mode_commands.py",
     "tester/machine/motions.py",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from math import nan
-from typing import Any, Protocol
+from typing import Any
 
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.results import ConditionStatus, RepeatStatus
@@ -37,42 +37,26 @@ CONDITION_STATUS: dict[Ending, ConditionStatus] = {
 }
 
 
-class MeasuredRepeat(Protocol):
-    """The activity that measures one repeat: it steps until ``ending`` is set."""
+class MeasuredRepeat:
+    """The activity that measures one repeat: it steps until ``ending`` is set. A kind implements ``step``."""
 
-    @property
-    def ending(self) -> Ending | None:
+    def __init__(self, counter: BlockCounter) -> None:
+        """``counter``: counts the repeat's blocks."""
+        self.counter = counter
+        self.ending: Ending | None = None
         """How the repeat ended; None while it is measured."""
-        ...
-
-    @property
-    def detail(self) -> str:
+        self.detail = ""
         """The reason for the ending, in words."""
-        ...
-
-    @property
-    def counter(self) -> BlockCounter:
-        """The counter with the repeat's counted blocks."""
-        ...
-
-    @property
-    def rolling_only(self) -> bool:
+        self.rolling_only = False
         """Whether the repeat was made without slip."""
-        ...
-
-    @property
-    def warming_k_s(self) -> float:
-        """How fast the surface warmed while in contact, K/s; NaN if not measured."""
-        ...
-
-    @property
-    def holdable_band_k(self) -> float:
-        """The narrowest temperature band that could be held, K; NaN if not measured."""
-        ...
+        self.warming_k_s: float = nan
+        self.holdable_band_k: float = nan
+        """How fast the surface warmed while in contact, K/s, and the narrowest temperature band that could be held, K;
+        NaN if not measured."""
 
     def step(self, ctx: Any) -> bool:
         """Advance by one scan; return True when done."""
-        ...
+        raise NotImplementedError
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.condition import MeasureCondition
 from tester.machine.executor import Procedures
-from tester.machine.measured import Ending
+from tester.machine.measured import Ending, MeasuredRepeat
 from tester.machine.motions import Ask, ZeroOfCell
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.image import PlainReadings
@@ -108,21 +108,15 @@ class PutOn:
         return True
 
 
-class SteadyRepeat:
-    """One repeat: reach speed, settle, count samples (``tester.machine.measured.MeasuredRepeat``)."""
-
-    rolling_only = False
-    warming_k_s = nan
-    holdable_band_k = nan
+class SteadyRepeat(MeasuredRepeat):
+    """One repeat: reach speed, settle, count samples."""
 
     def __init__(self, step: ConditionStep, speeds: Mapping[str, float], settle_s: float, table: Quantities) -> None:
         """``speeds``: of the drives; ``settle_s``: time from reaching speed to the first sample that counts."""
+        super().__init__(BlockCounter(table))
         self.condition = step
         self.speeds = speeds
         self.settle_s = settle_s
-        self.counter = BlockCounter(table)
-        self.ending: Ending | None = None
-        self.detail = ""
         self._since_s = self._settled_s = nan
 
     def step(self, ctx: PlainContext) -> bool:

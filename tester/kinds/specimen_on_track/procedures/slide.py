@@ -20,7 +20,7 @@ from tester.kinds.specimen_on_track.procedures.motions import ComeToStand, GoTo,
 from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES, TrackCondition
 from tester.machine.activity import Activity
 from tester.machine.condition import MeasureCondition
-from tester.machine.measured import ConditionEnd, Ending
+from tester.machine.measured import ConditionEnd, Ending, MeasuredRepeat
 from tester.machine.motions import Power, Sequence, Settle
 from tester.machine.result_keeping import StoredResults
 
@@ -74,15 +74,12 @@ class Stationary:
         return self.alike >= ALIKE or self.number >= LONGEST
 
 
-class MeasureTrackRepeat:
+class MeasureTrackRepeat(MeasuredRepeat):
     """State object of one repeat."""
-
-    rolling_only = False
-    warming_k_s = nan
-    holdable_band_k = nan
 
     def __init__(self, step: TrackCondition, ctx: TrackContext, tare_kind: str) -> None:
         """``tare_kind``: kind of the zero in the record."""
+        super().__init__(BlockCounter(ctx.quantities))
         self.condition = step
         held = held_by(step.setpoint)
         self.speed_m_s = held.track_m_s
@@ -90,7 +87,6 @@ class MeasureTrackRepeat:
         self.target = TrackTarget(
             temperature_c=held.temperature_c, band_k=step.temperature_band_k, stretch_m=self.stretch_m
         )
-        self.counter = BlockCounter(ctx.quantities)
         self.stationary = Stationary(ctx.rig.gates.stationary_percent)
         self.both = ctx.rig.linear
         wanted = REPEAT_WINDOWS * STRETCHES
@@ -104,8 +100,6 @@ class MeasureTrackRepeat:
         """Blocks counted before the present way."""
         self.sample: tuple[float, ...] = ()
         self.counted_s = inf
-        self.ending: Ending | None = None
-        self.detail = ""
 
     def step(self, ctx: TrackContext) -> bool:
         """Advance by one scan; done when the arm is raised and ``ending`` is set."""

@@ -20,6 +20,7 @@ from tester.analysis.directions import is_reversed
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.axes import Held
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
+from tester.machine.measured import MeasuredRepeat
 
 COLDER_K: Final = 0.3
 """Greatest distance of a burst's start below its target, K [A]: colder samples would be off the setpoint."""
@@ -105,20 +106,17 @@ def run_in_m(step: WheelCondition, repeat: int) -> float:
     return step.run_in_m if step.both_directions and turned else 0.0
 
 
-class CentredBursts:
+class CentredBursts(MeasuredRepeat):
     """The temperature rules of a repeat's bursts: start, end, and the learned start offset."""
 
     def __init__(self, step: WheelCondition, setpoint: Held, offset_k: float, counter: BlockCounter) -> None:
         """``offset_k``: distance of the start below the setpoint, from the previous repeat."""
+        super().__init__(counter)
         self.condition = step
         self.setpoint = setpoint
         self.offset_k = offset_k
-        self.counter = counter
         self.burst = BurstNotes()
         self.bursts: int = 0
-        self.warming_k_s = float("nan")
-        self.holdable_band_k = float("nan")
-        """Warming rate, and band that would hold one turn, where the temperature could not be held."""
         self.empty = 0
         """Bursts without a whole turn since the last burst with one."""
         self.mark_s = 0.0

@@ -77,8 +77,6 @@ class MeasureRepeat(CentredBursts):
         self.moves = Sequence()
         self.tare: TakeTare | None = None
         self.tared_s = float("-inf")
-        self.ending: Ending | None = None
-        self.detail = ""
         self.ready_since_s = float("nan")
         """Start of the wait for the next burst; NaN outside a wait."""
         self.rolling_since_s = float("nan")
