@@ -35,10 +35,6 @@ class Unforeseen(Generic[ContextT]):
 class Procedures(Generic[ContextT]):
     """Selects the activity for each step; a kind of machine implements it."""
 
-    def title(self, step: Step) -> str:
-        """Return a one-line description of a step."""
-        raise NotImplementedError
-
     def activity(self, step: Step, to_come: Sequence[Step], ctx: ContextT) -> Activity[ContextT]:
         """Return the activity for a step; ``to_come``: the steps after it."""
         raise NotImplementedError
@@ -114,7 +110,7 @@ class Executor(Generic[ContextT]):
     def _begin(self, step: Step, ctx: ContextT) -> Activity[ContextT]:
         extra = self.procedures.before(step, ctx)
         if extra is None:
-            self._announce(self.procedures.title(step), ctx)
+            self._announce(step.title, ctx)
             return self.procedures.activity(step, self.steps, ctx)
         self.steps.appendleft(step)
         self.steps.extendleft(reversed(extra.steps))

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 if TYPE_CHECKING:
     from tester.base.quantities import Quantities
     from tester.base.screen import Check, MachineView
-    from tester.inputs.recipe.plan import Step
     from tester.inputs.rig import Rig
     from tester.machine.engine import Engine
     from tester.machine.manual import ManualExecutor
@@ -73,10 +72,6 @@ class ServedKind:
     """The tables that clients need."""
     quantities: Quantities
     """The table of channels."""
-
-    def title(self, step: Step) -> str:
-        """Return a one-line description of a step of a plan."""
-        raise NotImplementedError
 
     def panel(self, engine: Engine) -> RunPanel:
         """Return what clients see of a run."""

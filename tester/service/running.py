@@ -20,7 +20,7 @@ from tester.machine.run import Run
 from tester.machine.tickers import TickStatistics
 from tester.run.endings import CannotStartError, StopLevel
 from tester.run.folder import Begin, Job, Work, earlier_of, make_folder, parts_time
-from tester.run.kind_lookup import recipe_part, served_kind
+from tester.run.kind_lookup import recipe_part
 from tester.run.latch import MANUAL_RUNS
 from tester.run.part_run import Unsampled
 from tester.run.preconditions import Prepared
@@ -147,7 +147,7 @@ class ServiceSession(Session):
     def tracked(self, work: Work) -> PlanTrack:
         """Return the object that counts a run's steps and describes them for clients."""
         parts = parts_time(work, self._expected)
-        return PlanTrack(work.plan.name, parts, served_kind(work.rig), earlier_of(work.point))
+        return PlanTrack(work.plan.name, parts, earlier_of(work.point))
 
     def _stop_rest(self, fast: bool) -> None:
         """Begin no further part."""

@@ -248,7 +248,7 @@ class Service:
                     return
                 session = kind.by_hand(rig, ports, attendant, record, left, history)
                 run, hand = session.run, session.executor
-                track = PlanTrack(hand.plan.name, [part_time(rig, hand.plan)], kind)
+                track = PlanTrack(hand.plan.name, [part_time(rig, hand.plan)])
                 track.begin_part(hand.plan)
                 with collector_at_rest():  # before the first tick: no long pause from here on
                     desk.attach(run, track, view, hand)

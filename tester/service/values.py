@@ -17,7 +17,6 @@ from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.engine import Engine
 from tester.machine.panel import News, RunPanel, Wanted
 from tester.machine.sampler import values_at
-from tester.machine.served import ServedKind
 from tester.machine.time_left import STANDSTILL, Earlier, PartTime, TimeLeft
 from tester.service.state_view import PlanStep, PlanView, StepState
 
@@ -148,14 +147,10 @@ BEFORE = 100
 class PlanTrack(TimeLeft):
     """A run's steps with their times, for display. Times are rig seconds."""
 
-    def __init__(self, name: str, parts: Sequence[PartTime], kind: ServedKind, earlier: Earlier | None = None) -> None:
-        """Begin before the first step.
-
-        ``name``: the plan's; ``kind``: the rig's kind, which describes the steps.
-        """
+    def __init__(self, name: str, parts: Sequence[PartTime], earlier: Earlier | None = None) -> None:
+        """Begin before the first step; ``name``: the plan's."""
         super().__init__(parts, earlier)
         self.name = name
-        self.kind = kind
         self._words = ListWords(step.setpoint for step in self.steps if isinstance(step, ConditionStep))
 
     def view(self) -> PlanView:
@@ -175,7 +170,7 @@ class PlanTrack(TimeLeft):
     def _title(self, step: Step | None) -> str:
         if step is None:
             return "to standstill"
-        return self._words.of(step.setpoint) if isinstance(step, ConditionStep) else self.kind.title(step)
+        return self._words.of(step.setpoint) if isinstance(step, ConditionStep) else step.title
 
     def _state(self, index: int) -> StepState:
         return "done" if index < self.position else "now" if index == self.position else "later"

@@ -12,7 +12,7 @@ from itertools import count, product
 from typing import ClassVar
 
 from tester.analysis.stability import REPEAT_WINDOWS
-from tester.base.axes import Setpoint, condition_words
+from tester.base.axes import Setpoint
 from tester.base.source import Problem, Tree
 from tester.base.units import Quantity, UnitError, show
 from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
@@ -35,6 +35,10 @@ class Mount(Step):
     piece: int
     compound: str
     note: str = ""
+
+    @property
+    def title(self) -> str:
+        return f"put on specimen {self.specimen}: {self.compound}" + (f" ({self.note})" if self.note else "")
 
 
 class PlainEstimator(Estimator):
@@ -166,14 +170,8 @@ class PlainPart(SpecimenPart):
 
     def words(self, step: Step, one: StepEstimate) -> str:
         if isinstance(step, ConditionStep):
-            return f"{self.title(step)}: {step.repeats_words} x {step.window.words}"
-        return self.title(step)
-
-    def title(self, step: Step) -> str:
-        """Return the work of a step, for an observer."""
-        if isinstance(step, Mount):
-            return f"put on specimen {step.specimen}: {step.compound}" + (f" ({step.note})" if step.note else "")
-        return condition_words(step.setpoint) if isinstance(step, ConditionStep) else step.kind
+            return f"{step.title}: {step.repeats_words} x {step.window.words}"
+        return step.title
 
     def heading(self, plan: Plan, step: Step) -> str:
         return f"specimen {step.specimen}, replicate {step.replicate}" if isinstance(step, Mount) else ""

@@ -15,7 +15,7 @@ from typing import ClassVar
 
 from tester.analysis.schemes import Scheme, scheme_of
 from tester.analysis.stability import Window
-from tester.base.axes import Axes, Setpoint
+from tester.base.axes import Axes, Setpoint, condition_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +27,11 @@ class Step:
     contact: ClassVar[bool] = False
     """Whether rubber is in contact for most of it: then samples are recorded at the full rate."""
     index: int
+
+    @property
+    def title(self) -> str:
+        """Return a one-line description of the step, for people."""
+        return self.kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +96,10 @@ class ConditionStep(Settings, Step):
     setpoint: Setpoint
 
     @property
+    def title(self) -> str:
+        return condition_words(self.setpoint)
+
+    @property
     def repeats_words(self) -> str:
         """Return the number of repeats that must count, and the precision if the recipe has one: 4 (until 2 %).
 
@@ -106,6 +115,10 @@ class PromptStep(Step):
 
     kind: ClassVar[str] = "prompt"
     text: str
+
+    @property
+    def title(self) -> str:
+        return self.text
 
 
 @dataclass(frozen=True, slots=True)

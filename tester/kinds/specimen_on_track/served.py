@@ -6,12 +6,11 @@ from typing import Final
 
 from tester.base.quantities import Quantities
 from tester.base.screen import MachineView
-from tester.inputs.recipe.plan import Plan, Step
+from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import NAME
 from tester.kinds.specimen_on_track.context import TrackAttendant
 from tester.kinds.specimen_on_track.manual import TrackHand
-from tester.kinds.specimen_on_track.procedures.steps import title
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.kinds.specimen_on_track.runs import RUNS
@@ -31,10 +30,6 @@ class SpecimenOnTrack(ServedKind):
 
     machine: MachineView = MACHINE
     quantities: Quantities = QUANTITIES
-
-    def title(self, step: Step) -> str:
-        """Return a description of a step, in a line."""
-        return title(step)
 
     def panel(self, engine: Engine) -> TrackPanel:
         """Return the view of a run for clients."""

@@ -58,11 +58,11 @@ class Standstill:
 class PutOn:
     """Brings the drives to standstill without power, asks a person to mount a specimen, then zeroes the sensors."""
 
-    def __init__(self, step: Mount, title: str) -> None:
-        """``title``: the question to the person."""
+    def __init__(self, step: Mount) -> None:
+        """The step's title is the question to the person."""
         self.mount = step
         self.stand = Standstill(enabled=False)
-        self.ask = Ask(title)
+        self.ask = Ask(step.title)
         self.answered = False
         self.zeros: dict[str, ZeroOfCell] = {}
         """The zeros of the sensors that are zeroed, by sensor name."""
@@ -194,14 +194,10 @@ class PlainProcedures(Procedures[PlainContext]):
         self.results = results
         self.speeds = speeds
 
-    def title(self, step: Step) -> str:
-        """Return a one-line description of a step."""
-        return self.part.title(step)
-
     def activity(self, step: Step, to_come: Sequence[Step], ctx: PlainContext) -> Activity[PlainContext]:
         """Return the activity of a step."""
         if isinstance(step, Mount):
-            return PutOn(step, self.part.title(step))
+            return PutOn(step)
         if isinstance(step, ConditionStep):
             return MeasureSteady(step, self.results, self.speeds, self.part.settle_s)
         raise TypeError(f"{step.kind}: no step of this machine")

@@ -9,7 +9,7 @@ from tester.base.axes import Axes
 from tester.base.quantities import Quantities
 from tester.base.screen import HandAxis, MachineView, PlotView, axis_views, trend_columns
 from tester.base.words import listed
-from tester.inputs.recipe.plan import Plan, Step
+from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.engine import Engine
@@ -91,10 +91,6 @@ class PlainServed(ServedKind):
             axes=axis_views(axes),
             moves=listed(drives.values()),
         )
-
-    def title(self, step: Step) -> str:
-        """Return a one-line description of a step."""
-        return self.runs.part.title(step)
 
     def panel(self, engine: Engine) -> PlainPanel:
         """Return what clients see of a run."""

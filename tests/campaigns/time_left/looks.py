@@ -14,7 +14,6 @@ from tester.machine.context import Progress
 from tester.machine.time_left import RunPosition
 from tester.run.endings import StopLevel
 from tester.run.folder import Work, earlier_of, parts_time
-from tester.run.kind_lookup import served_kind
 from tester.run.session import Session
 from tester.run.session_options import SessionOptions
 from tester.service.state_view import ProgressView
@@ -111,7 +110,7 @@ class Observed(Session):
 
     def tracked(self, work: Work) -> PlanTrack:
         """Return the count of its steps with the words of a screen."""
-        return PlanTrack(work.plan.name, parts_time(work), served_kind(work.rig), earlier_of(work.point))
+        return PlanTrack(work.plan.name, parts_time(work), earlier_of(work.point))
 
 
 def carry_out(recipe: str, rig: str, overrides: tuple[str, ...], seed: int, folder: Path) -> Looked:

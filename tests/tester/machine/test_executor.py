@@ -38,16 +38,12 @@ class LampProcedures(Procedures[LampContext]):
         self.first: dict[str, Unforeseen[LampContext]] = {}
         self.then: dict[str, Unforeseen[LampContext]] = {}
 
-    def title(self, step: Step) -> str:
-        assert isinstance(step, PromptStep)
-        return step.text
-
     def activity(self, step: Step, to_come: Sequence[Step], ctx: LampContext) -> Activity[LampContext]:
-        self.began.append(self.title(step))
-        return Scans(self.title(step))
+        self.began.append(step.title)
+        return Scans(step.title)
 
     def before(self, step: Step, ctx: LampContext) -> Unforeseen[LampContext] | None:
-        return self.first.pop(self.title(step), None)
+        return self.first.pop(step.title, None)
 
     def after(
         self, activity: Activity[LampContext], to_come: Sequence[Step], ctx: LampContext

@@ -92,7 +92,7 @@ def watched(rig: RigConfig, lines: dict[str, FarEnd], log: BusLog | None = None)
     ports = hardware_ports(rig, log)
     plan = plan_of(config=rig)
     run = build_run(rig, plan, ports, NoAttendant(), NullRecorder(), Prompts(automatic=True))
-    watch = RunWatch(run, PlanTrack(plan.name, [part_time(rig, plan)], SERVED), SERVED)
+    watch = RunWatch(run, PlanTrack(plan.name, [part_time(rig, plan)]), SERVED)
     watch.frames.watch(True)
     try:
         for t in (0.0, 0.02, 0.04):

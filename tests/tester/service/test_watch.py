@@ -15,7 +15,7 @@ from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 
 def test_a_soak_is_shown_with_how_long_it_has_been_in_band() -> None:
     stage = Stage(SHORT, QUIET)
-    watch = RunWatch(stage.run, PlanTrack(stage.plan.name, [part_time(rig_of(QUIET), stage.plan)], SERVED), SERVED)
+    watch = RunWatch(stage.run, PlanTrack(stage.plan.name, [part_time(rig_of(QUIET), stage.plan)]), SERVED)
     shown: list[SoakView] = []
     while not stage.ended and (not shown or shown[-1].in_band_s < 1.9):
         now = stage.next_s

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence as Steps
 from typing import Final
 
-from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds.specimen_on_track.context import MountedSpecimen, TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
@@ -100,10 +99,6 @@ class TrackProcedures(Procedures[TrackContext]):
         """``results``: where repeats go."""
         self.results = results
 
-    def title(self, step: Step) -> str:
-        """Return a description of a step, in a line."""
-        return title(step)
-
     def resumed(self, ctx: TrackContext) -> None:
         """Resume at rest, with the arm raised."""
         ctx.demand.track_m_s, ctx.demand.lowered = 0.0, False
@@ -135,20 +130,3 @@ class TrackProcedures(Procedures[TrackContext]):
         if isinstance(activity, MeasureTrackCondition) and activity.failed:
             return Unforeseen(failed=activity.failed)
         return None
-
-
-def title(step: Step) -> str:
-    """Return a description of a step, in a line."""
-    match step:
-        case MountSpecimen():
-            return f"install specimen {step.piece} ({step.compound})"
-        case Prepare():
-            return f"prepare {step.load_n:g} N, {step.interface}"
-        case Temper():
-            return f"temper to {step.temperature_c:g} degC"
-        case TrackCondition():
-            return condition_words(step.setpoint)
-        case PromptStep():
-            return step.text
-        case _:
-            return step.kind

@@ -28,6 +28,10 @@ class MountSpecimen(Mount):
     again: bool = False
     sliding_m: float = 0.0
 
+    @property
+    def title(self) -> str:
+        return f"install specimen {self.piece} ({self.compound})"
+
 
 @dataclass(frozen=True, slots=True)
 class Prepare(Step):
@@ -37,6 +41,10 @@ class Prepare(Step):
     load_n: float
     interface: str
     text: str
+
+    @property
+    def title(self) -> str:
+        return f"prepare {self.load_n:g} N, {self.interface}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +56,10 @@ class Temper(Step):
     within_k: float
     for_s: float
     at_most_s: float
+
+    @property
+    def title(self) -> str:
+        return f"temper to {self.temperature_c:g} degC"
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Final
 
 from tester.analysis.wear_rate import NO_CONDITION
-from tester.base.axes import condition_words
 from tester.inputs.recipe.plan import Plan, PromptStep, Step
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import Press
@@ -45,10 +44,6 @@ class WheelProcedures(Procedures[Context]):
         """The last condition with a person's look at the wheel before it."""
         self.measured_wheel = 0
         """The wheel of the last condition. A new wheel measures at least one condition, so that changing ends."""
-
-    def title(self, step: Step) -> str:
-        """Return a description of a step, in a line."""
-        return title(step)
 
     def number_after(self, last: int) -> None:
         """Give unplanned wheels numbers above ``last``."""
@@ -180,24 +175,3 @@ def _heat(step: Heat, to_come: Sequence[Step], ctx: Context) -> HeatUp:
             speed_m_s, load_n = sp.number("wheel_speed"), sp.number("load")
             return HeatUp(step, speed_m_s, load_n, follower.soak.within_k, loop.rolling_offset_k)
     return HeatUp(step, DEFAULT_SPEED_M_S, DEFAULT_LOAD_N, 1.0, loop.rolling_offset_k)
-
-
-def title(step: Step) -> str:
-    """Return a description of a step, in a line."""
-    match step:
-        case Install():
-            return f"{'mount again' if step.again else 'install'} wheel {step.wheel} ({step.compound})"
-        case PreGrind():
-            return f"pre-grind {step.duration_s / 60:g} min at {step.load_n:g} N"
-        case Rest():
-            return f"rest {step.at_least_s / 60:g} min"
-        case Heat():
-            return f"heat to {step.temperature_c:g} degC"
-        case WheelCondition():
-            return condition_words(step.setpoint)
-        case Cool():
-            return f"cool the hub to {step.hub_below_c:g} degC"
-        case PromptStep():
-            return step.text
-        case _:
-            return step.kind

@@ -32,6 +32,10 @@ class Install(Step):
     worn: Mounted | None = None
     again: bool = False
 
+    @property
+    def title(self) -> str:
+        return f"{'mount again' if self.again else 'install'} wheel {self.wheel} ({self.compound})"
+
 
 @dataclass(frozen=True, slots=True)
 class PreGrind(Step):
@@ -43,6 +47,10 @@ class PreGrind(Step):
     belt_speed_m_s: float
     load_n: float
     duration_s: float
+
+    @property
+    def title(self) -> str:
+        return f"pre-grind {self.duration_s / 60:g} min at {self.load_n:g} N"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +67,10 @@ class Rest(Step):
     within_k: float
     at_most_s: float
 
+    @property
+    def title(self) -> str:
+        return f"rest {self.at_least_s / 60:g} min"
+
 
 @dataclass(frozen=True, slots=True)
 class Heat(Step):
@@ -67,6 +79,10 @@ class Heat(Step):
     kind: ClassVar[str] = "heat"
     contact: ClassVar[bool] = True
     temperature_c: float
+
+    @property
+    def title(self) -> str:
+        return f"heat to {self.temperature_c:g} degC"
 
 
 @dataclass(frozen=True)
@@ -94,6 +110,10 @@ class Cool(Step):
 
     kind: ClassVar[str] = "cool"
     hub_below_c: float = 45.0
+
+    @property
+    def title(self) -> str:
+        return f"cool the hub to {self.hub_below_c:g} degC"
 
 
 WheelStep: TypeAlias = Install | PreGrind | Rest | Heat | WheelCondition | Cool | PromptStep

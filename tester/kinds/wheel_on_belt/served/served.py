@@ -7,13 +7,11 @@ from typing import Final
 from drivers.temperature_controller import JACKET_LEASE_S
 from tester.base.quantities import Quantities
 from tester.base.screen import MachineView
-from tester.inputs.recipe.plan import Step
 from tester.inputs.rig import Rig
 from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
-from tester.kinds.wheel_on_belt.procedures.steps import title
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.served import manual
 from tester.kinds.wheel_on_belt.served.left_on_rig import HeatHistory, WheelLeft, left_by
@@ -50,10 +48,6 @@ class WheelOnBelt(ServedKind):
 
     machine: MachineView = MACHINE
     quantities: Quantities = QUANTITIES
-
-    def title(self, step: Step) -> str:
-        """Return a description of a step, in a line."""
-        return title(step)
 
     def panel(self, engine: Engine) -> WheelPanel:
         """Return the view of a run for clients."""

@@ -11,7 +11,7 @@ from tester.inputs.recipe.plan import Plan, PromptStep
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.first_contact import OFF
-from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures, title
+from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition
 from tester.machine.executor import Executor
 from tests.tester.inputs.recipe.texts import rig
@@ -217,4 +217,4 @@ def test_a_belt_that_a_person_left_running_the_wrong_way_ends_the_run_before_the
     ],
 )
 def test_a_title_says_what_a_step_does(step: Install | PreGrind | Rest | Heat | Cool | PromptStep, text: str) -> None:
-    assert title(step) == text
+    assert step.title == text
