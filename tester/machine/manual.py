@@ -7,11 +7,14 @@ itself after a minute without a key press, and when the client that armed it is 
 from __future__ import annotations
 
 from math import isfinite
-from typing import Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final
 
 from tester.inputs.recipe.plan import Plan
 from tester.machine.context import AnyContext
 from tester.machine.executor import Executor, Procedures
+
+if TYPE_CHECKING:
+    from tester.machine.served import Hand
 
 NAME: Final = "manual mode"
 ARMED_S: Final = 60.0
@@ -20,32 +23,6 @@ STEPS_PER_S: Final = 5.0
 """More key presses a second are refused [A]: an auto-repeating key makes 30."""
 MOVING_S: Final = 2.0
 """After a step scans come at the sliding rate for this long, s [A]."""
-
-
-class Hand(Protocol):
-    """Moves a kind's axes for a person. Methods return "", or the reason for refusing; ``ctx`` is the kind's own."""
-
-    @property
-    def busy(self) -> str:
-        """Why no step is possible at present; "" if a step is possible."""
-        ...
-
-    @property
-    def tare_text(self) -> str:
-        """The newest zero of the load cell in words, "" before the first."""
-        ...
-
-    def demand(self, ctx: Any) -> None:
-        """Write the demand that results from the steps so far; called in every scan."""
-        ...
-
-    def step(self, ctx: Any, axis: str, sign: float) -> str:
-        """Take one step of an axis from the kind's table, up (+1) or down (-1)."""
-        ...
-
-    def tare(self, ctx: Any) -> str:
-        """Begin to zero the load cell."""
-        ...
 
 
 class ManualExecutor(Executor[Any]):
@@ -73,7 +50,7 @@ class ManualExecutor(Executor[Any]):
             return
         ctx.demand.enabled = True
         ctx.moving = ctx.now - self.moved_s < MOVING_S
-        self.hand.demand(ctx)
+        self.hand.follow(ctx)
 
     def expire(self, now: float) -> None:
         """End the mode after a minute without a request, even in a hold."""

@@ -136,7 +136,9 @@ SILENT_S: Final = 5.0
 
 
 class ZeroOfCell:
-    """Averages readings over a time. A kind's activity inherits from it and decides whether to take the zero."""
+    """Averages readings over a time. A kind's activity inherits from it; its ``step`` decides whether to take the
+    zero.
+    """
 
     def __init__(self, seconds: float, name: str = "load cell") -> None:
         """``seconds``: averaging time; ``name``: the sensor's name for people."""
@@ -148,6 +150,10 @@ class ZeroOfCell:
         self.count = 0
         self.failed = ""
         """Why the zero is not trustworthy; "" if it is."""
+
+    def step(self, ctx: Any) -> bool:
+        """Return True when the zero is taken, or ``failed`` is set."""
+        raise NotImplementedError
 
     def averaged(self, ctx: AnyContext, at_s: float, values: Collection[float], *, valid: bool) -> bool:
         """Add the reading taken at ``at_s``; return whether there are enough. Set ``failed`` if readings do not

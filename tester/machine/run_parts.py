@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tester.inputs.recipe.plan import Plan
+
 if TYPE_CHECKING:
     from tester.base.screen import Check
-    from tester.inputs.recipe.plan import Plan
     from tester.inputs.rig import Rig
     from tester.machine.prompts import Prompts
     from tester.machine.rig_ports import Ports
@@ -69,6 +70,8 @@ class KindRun:
     its methods.
     """
 
+    plan: type[Plan] = Plan
+    """The class of the kind's plans."""
     plant: str = ""
     """Name of the kind's simulated twin for ``sim.machines.find``, whose rig is its own attendant; "" if it has
     none.

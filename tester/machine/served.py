@@ -1,7 +1,6 @@
 """A kind's answers to a service: the view of a run, the facts from past runs, and manual mode.
 
-A service reads a run between two ticks and thereby changes nothing. This module holds types only;
-``tester.run.kind_lookup`` finds a rig's kind.
+A service reads a run between two ticks and thereby changes nothing. ``tester.run.kind_lookup`` finds a rig's kind.
 """
 
 from __future__ import annotations
@@ -9,15 +8,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
+from tester.machine.manual import NAME, ManualExecutor
+from tester.machine.prompts import Prompts
+
 if TYPE_CHECKING:
     from tester.base.quantities import Quantities
     from tester.base.screen import Check, MachineView
     from tester.inputs.rig import Rig
-    from tester.machine.engine import Engine
-    from tester.machine.manual import ManualExecutor
+    from tester.machine.motions import ZeroOfCell
     from tester.machine.panel import RunPanel
     from tester.machine.rig_ports import Ports
     from tester.machine.run import Run
+    from tester.machine.run_parts import KindRun
     from tester.store.recorder import Recorder
     from tester.store.run_reader import RunReader
 
@@ -43,6 +45,50 @@ class History(Protocol):
         left.
         """
         ...
+
+
+class Hand:
+    """Moves a kind's axes for a person. Methods return "", or the reason for refusing; ``ctx`` is the kind's own."""
+
+    def __init__(self) -> None:
+        """Begin with nothing requested."""
+        self.taring: ZeroOfCell | None = None
+        """The zero of the load cell that is being taken."""
+        self.tare_text = ""
+        """The newest zero of the load cell in words, "" before the first."""
+
+    @property
+    def busy(self) -> str:
+        """Why no step is possible at present; "" if a step is possible."""
+        return "the load cell is being tared" if self.taring is not None else ""
+
+    def follow(self, ctx: Any) -> None:
+        """Write the demand, and advance a tare under way; called in every scan."""
+        self.demand(ctx)
+        taring = self.taring
+        if taring is not None and taring.step(ctx):
+            self.taring = None
+            if taring.failed:
+                self.tare_text = f"not taken: {taring.failed}"
+            else:
+                self.tare_text = f"zero from {taring.count} readings: {self.zero(ctx)}"
+            ctx.journal.event(ctx.now, "tare", self.tare_text)
+
+    def demand(self, ctx: Any) -> None:
+        """Write the demand that results from the steps so far."""
+        raise NotImplementedError
+
+    def step(self, ctx: Any, axis: str, sign: float) -> str:
+        """Take one step of an axis from the kind's table, up (+1) or down (-1)."""
+        raise NotImplementedError
+
+    def tare(self, ctx: Any) -> str:
+        """Begin to zero the load cell."""
+        raise NotImplementedError
+
+    def zero(self, ctx: Any) -> str:
+        """Return the zero of the load cell in words, once it has been taken."""
+        raise NotImplementedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +118,10 @@ class ServedKind:
     """The tables that clients need."""
     quantities: Quantities
     """The table of channels."""
-
-    def panel(self, engine: Engine) -> RunPanel:
-        """Return what clients see of a run."""
-        raise NotImplementedError
+    runs: KindRun
+    """Builds the run that a person then moves by hand."""
+    panel: type[RunPanel]
+    """The class of what clients see of a run; it is called with the run's engine."""
 
     def alone(self, rig: Rig) -> str:
         """Return what the rig's devices do by themselves once the process that owns the rig is gone, in words."""
@@ -91,5 +137,14 @@ class ServedKind:
         """Build manual mode, bounded only by the rig; ``left``: the specimen on it, None if new.
 
         ``attendant``, ``history``: as in the kind's ``KindRun``.
+        """
+        run = self.runs.build(rig, self.runs.plan(NAME, (), (), 1), ports, attendant, record, Prompts(), None, history)
+        hand, mounted = self.hand(run, left)
+        executor = run.engine.executor = ManualExecutor(hand)
+        return ByHand(run, executor, mounted)
+
+    def hand(self, run: Run, left: Left | None) -> tuple[Hand, str]:
+        """Mount the specimen that manual mode assumes; return the hand that moves the axes, and the specimen in
+        words.
         """
         raise NotImplementedError

@@ -8,39 +8,32 @@ from typing import Final
 from tester.kinds.specimen_on_track.context import TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import TakeTrackTare, still_m_s
 from tester.kinds.specimen_on_track.rig import TrackConfig
+from tester.machine.served import Hand
 
 STEPS: Final = 10.0
 """Number of steps from standstill to the greatest speed."""
 CHAMBER_STEP_K: Final = 1.0
 
 
-class TrackHand:
+class TrackHand(Hand):
     """Turns a person's steps into demands."""
 
     def __init__(self, rig: TrackConfig) -> None:
         """Begin at rest, raised, with the chamber off."""
+        super().__init__()
         self.rig = rig
         self.track_m_s = 0.0
         self.lowered = False
         self.chamber_c = nan
-        self.taring: TakeTrackTare | None = None
-        self.tare_text = ""
-
-    @property
-    def busy(self) -> str:
-        """Reason why no step is possible at present; "" if a step is possible."""
-        return "the load cell is being tared" if self.taring is not None else ""
 
     def demand(self, ctx: TrackContext) -> None:
         """Write the demand of the steps so far."""
         demand = ctx.demand
         demand.track_m_s, demand.lowered, demand.chamber_c = self.track_m_s, self.lowered, self.chamber_c
-        taring = self.taring
-        if taring is not None and taring.step(ctx):
-            zero = f"zero from {taring.count} readings: {ctx.devices.cell.tare[0]:.2f} N"
-            self.tare_text = f"not taken: {taring.failed}" if taring.failed else zero
-            ctx.journal.event(ctx.now, "tare", self.tare_text)
-            self.taring = None
+
+    def zero(self, ctx: TrackContext) -> str:
+        """Return the zero of the force."""
+        return f"{ctx.devices.cell.tare[0]:.2f} N"
 
     def tare(self, ctx: TrackContext) -> str:
         """Begin a tare; return "", or the reason for refusing."""

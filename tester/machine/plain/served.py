@@ -9,18 +9,13 @@ from tester.base.axes import Axes
 from tester.base.quantities import Quantities
 from tester.base.screen import HandAxis, MachineView, PlotView, axis_views, trend_columns
 from tester.base.words import listed
-from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
-from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.engine import Engine
-from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.panel import RunPanel, drives_alone
-from tester.machine.plain.context import PlainAttendant, PlainContext
+from tester.machine.plain.context import PlainContext
 from tester.machine.plain.runs import PlainRuns
-from tester.machine.prompts import Prompts
-from tester.machine.rig_ports import Ports
-from tester.machine.served import ByHand, History, Left, ServedKind
-from tester.store.recorder import Recorder
+from tester.machine.run import Run
+from tester.machine.served import Hand, Left, ServedKind
 
 STEPS_TO_TOP: Final = 20
 """Manual steps from standstill to a drive's greatest speed [A]."""
@@ -35,14 +30,12 @@ class PlainPanel(RunPanel):
         return (mount.specimen, mount.compound) if mount is not None else (0, "")
 
 
-class SpeedHand:
+class SpeedHand(Hand):
     """Changes the speeds of drives in a person's steps."""
-
-    busy = ""
-    tare_text = ""
 
     def __init__(self, tops: Mapping[str, float]) -> None:
         """``tops``: the greatest speed of each drive, in the unit of its axis."""
+        super().__init__()
         self.tops = tops
         self.wanted = dict.fromkeys(tops, 0)
 
@@ -65,6 +58,8 @@ class SpeedHand:
 
 class PlainServed(ServedKind):
     """A plain kind's answers to a service."""
+
+    panel: type[RunPanel] = PlainPanel
 
     def __init__(
         self,
@@ -92,21 +87,13 @@ class PlainServed(ServedKind):
             moves=listed(drives.values()),
         )
 
-    def panel(self, engine: Engine) -> PlainPanel:
-        """Return what clients see of a run."""
-        return PlainPanel(engine)
-
     def alone(self, rig: Rig) -> str:
         """Return what the drives do without a program, in words."""
         return drives_alone(rig)
 
-    def by_hand(
-        self, rig: Rig, ports: Ports, attendant: PlainAttendant, record: Recorder, left: Left | None, history: History
-    ) -> ByHand:
-        """Build manual mode: a person's steps in place of a recipe."""
-        own = PlainRig.of(rig)
-        run = self.runs.build(own, Plan(NAME, (), (), 1), ports, attendant, record, Prompts())
-        attendant.install(1, self.compound)
-        executor = ManualExecutor(SpeedHand({name: axis.max_speed for name, axis in own.axes.items()}))
-        run.engine.executor = executor
-        return ByHand(run, executor, "the specimen is taken to be a new one")
+    def hand(self, run: Run, left: Left | None) -> tuple[SpeedHand, str]:
+        """Take the specimen to be a new one."""
+        ctx: PlainContext = run.engine.ctx
+        ctx.attendant.install(1, self.compound)
+        hand = SpeedHand({name: axis.max_speed for name, axis in ctx.rig.axes.items()})
+        return hand, "the specimen is taken to be a new one"

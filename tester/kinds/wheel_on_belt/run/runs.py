@@ -55,6 +55,7 @@ def _part_of(plan: Plan, steps: tuple[Step, ...], wheels: set[int]) -> Plan:
 class WheelRuns(KindRun):
     """Builds a run of this machine, and supplies its further parts."""
 
+    plan: type[Plan] = WheelPlan
     plant: str = "wheel_on_belt"
     procedures: ClassVar[type[WheelProcedures]] = WheelProcedures
     """Selects the activities for the steps of a plan; a laboratory's own kind may extend it."""

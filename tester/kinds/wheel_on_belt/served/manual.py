@@ -10,25 +10,16 @@ from math import ceil, isfinite
 from typing import Final
 
 from tester.base.screen import HandAxis
-from tester.kinds.wheel_on_belt.context import Attendant, Context
+from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.loops import UNLOADED_N as STANDING_LOAD_N
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, straight
 from tester.kinds.wheel_on_belt.image.process_image import Press
-from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
 from tester.kinds.wheel_on_belt.procedures.motions import TakeTare
 from tester.kinds.wheel_on_belt.recipe.limits import least_load_n
-from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
-from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
-from tester.machine.manual import NAME, ManualExecutor
-from tester.machine.prompts import Prompts
-from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
-from tester.machine.served import ByHand
-from tester.store.recorder import Recorder
-from tester.store.records import PieceInfo
+from tester.machine.served import Hand
 
 SPEED_STEP_M_S: Final = 0.05
 LOAD_STEP_N: Final = 10.0
@@ -61,22 +52,16 @@ class Asked:
     surface_c: float = float("nan")
 
 
-class WheelHand:
+class WheelHand(Hand):
     """Turns a person's steps into demands."""
 
     def __init__(self, bounds: Bounds) -> None:
         """Begin at rest and lifted. ``bounds``: for the person and control."""
+        super().__init__()
         self.wanted = Asked()
         self.bounds = bounds
-        self.taring: TakeTare | None = None
-        self.tare_text = ""
         self.reference_tare: list[float] = []
         self.old = (0.0, 0.0, 0.0, 0.0)
-
-    @property
-    def busy(self) -> str:
-        """Reason why no step is possible at present; "" if a step is possible."""
-        return "the load cell is being tared" if self.taring is not None else ""
 
     def demand(self, ctx: Context) -> None:
         """Write the demand for the requested state."""
@@ -86,8 +71,6 @@ class WheelHand:
         demand.load_n = wanted.load_n
         demand.positions.update(wanted.positions)
         demand.surface_c = wanted.surface_c
-        if self.taring is not None and self.taring.step(ctx):
-            self._tared(ctx, self.taring)
 
     def tare(self, ctx: Context) -> str:
         """Begin a tare; return "", or the reason for refusing."""
@@ -157,40 +140,22 @@ class WheelHand:
             wanted.surface_c = float("nan")
         return ""
 
-    def _tared(self, ctx: Context, tare: TakeTare) -> None:
-        """Report the change of the tare."""
-        if tare.failed:
-            self.tare_text = f"not taken: {tare.failed}"
-        else:
-            new = ctx.cell.tare
-            self.reference_tare = list(new)
-            shifts = ", ".join(
-                f"{name} {b:.2f} ({b - a:+.2f})"
-                for name, a, b in zip(("Fx", "Fy", "Fz", "Mz"), self.old, new, strict=True)
-            )
-            self.tare_text = f"zero from {tare.count} readings: {shifts}"
-        ctx.journal.event(ctx.now, "tare", self.tare_text)
-        self.taring = None
+    def zero(self, ctx: Context) -> str:
+        """Return the zeros of the forces and of the moment, and their changes, N and N m."""
+        new = ctx.cell.tare
+        self.reference_tare = list(new)
+        named = zip(("Fx", "Fy", "Fz", "Mz"), self.old, new, strict=True)
+        return ", ".join(f"{name} {b:.2f} ({b - a:+.2f})" for name, a, b in named)
 
 
-def by_hand(
-    rig: RigConfig, ports: Ports, attendant: Attendant, record: Recorder, left: WheelLeft | None, heat: KnownRatio
-) -> ByHand:
-    """Return manual mode on a rig; ``left``: the mounted wheel, None for a new wheel."""
-    run = build_run(rig, WheelPlan(NAME, (), (), 1), ports, attendant, record, Prompts(), heat=heat)
-    executor = take_over(run, left.wheel if left is not None else None)
-    return ByHand(run, executor, taken_for(left, run.engine.ctx.wheel.cold_mm))
+def take_over(run: Run, left: WheelLeft | None = None) -> tuple[WheelHand, str]:
+    """Let a person command the run instead of its recipe; ``left``: the mounted wheel, None for a new wheel.
 
-
-def take_over(run: Run, worn: PieceInfo | None = None) -> ManualExecutor:
-    """Let a person command the run instead of its recipe; ``worn``: the wheel, None for a new wheel.
-
-    A simulated rig gets this wheel.
+    A simulated rig gets this wheel. Return the hand, and the assumed wheel in words.
     """
     ctx, control = run.engine.ctx, run.engine.control
     control.bounds = rig_bounds(ctx.rig)
-    executor = ManualExecutor(WheelHand(control.bounds))
-    run.engine.executor = executor
+    worn = left.wheel if left is not None else None
     if worn is None:
         ctx.attendant.install(1, 1, "1#", new_specimen=True)
     else:
@@ -198,7 +163,7 @@ def take_over(run: Run, worn: PieceInfo | None = None) -> ManualExecutor:
         ctx.wheel.installed_mm = worn.installed_diameter_mm
         ctx.wheel.loss_mm = worn.installed_diameter_mm - worn.diameter_mm
         ctx.wheel.sliding_m = worn.sliding_m
-    return executor
+    return WheelHand(control.bounds), taken_for(left, ctx.wheel.cold_mm)
 
 
 def taken_for(left: WheelLeft | None, diameter_mm: float) -> str:

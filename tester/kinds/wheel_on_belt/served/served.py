@@ -9,18 +9,16 @@ from tester.base.quantities import Quantities
 from tester.base.screen import MachineView
 from tester.inputs.rig import Rig
 from tester.inputs.rig.profiles import profile_of
-from tester.kinds.wheel_on_belt.context import Attendant
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.served import manual
-from tester.kinds.wheel_on_belt.served.left_on_rig import HeatHistory, WheelLeft, left_by
+from tester.kinds.wheel_on_belt.run.runs import RUNS
+from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft, left_by
+from tester.kinds.wheel_on_belt.served.manual import WheelHand, take_over
 from tester.kinds.wheel_on_belt.served.screen import MACHINE, WheelPanel
-from tester.machine.engine import Engine
-from tester.machine.panel import drives_alone
-from tester.machine.rig_ports import Ports
-from tester.machine.served import ByHand, History, Left, ServedKind
-from tester.store.recorder import Recorder
+from tester.machine.panel import RunPanel, drives_alone
+from tester.machine.run import Run
+from tester.machine.run_parts import KindRun
+from tester.machine.served import Left, ServedKind
 from tester.store.run_reader import RunReader
 
 PRESS = "The press stops where it is: where no spring lifts it, its load stays on the wheel."
@@ -48,10 +46,8 @@ class WheelOnBelt(ServedKind):
 
     machine: MachineView = MACHINE
     quantities: Quantities = QUANTITIES
-
-    def panel(self, engine: Engine) -> WheelPanel:
-        """Return the view of a run for clients."""
-        return WheelPanel(engine)
+    runs: KindRun = RUNS
+    panel: type[RunPanel] = WheelPanel
 
     def alone(self, rig: Rig) -> str:
         """Return the behaviour of drives and heating without a master."""
@@ -61,13 +57,9 @@ class WheelOnBelt(ServedKind):
         """Return the wheel that a run left on its rig."""
         return left_by(reader, name)
 
-    def by_hand(
-        self, rig: Rig, ports: Ports, attendant: Attendant, record: Recorder, left: Left | None, history: History
-    ) -> ByHand:
-        """Let a person command the run instead of a recipe."""
-        heat = history.ratio if isinstance(history, HeatHistory) else NO_HISTORY
-        mounted = left if isinstance(left, WheelLeft) else None
-        return manual.by_hand(RigConfig.of(rig), ports, attendant, record, mounted, heat)
+    def hand(self, run: Run, left: Left | None) -> tuple[WheelHand, str]:
+        """Take the wheel that the newest run left, or a new one."""
+        return take_over(run, left if isinstance(left, WheelLeft) else None)
 
 
 SERVED: Final = WheelOnBelt()
