@@ -10,7 +10,6 @@ from tester.base.quantities import Quantities
 from tester.base.screen import HandAxis, MachineView, PlotView, axis_views, trend_columns
 from tester.base.words import listed
 from tester.inputs.rig import Rig
-from tester.machine.engine import Engine
 from tester.machine.panel import RunPanel, drives_alone
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.runs import PlainRuns
