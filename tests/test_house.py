@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.campaigns.house import Figure, code_lines, figures, functions, repeated
+from tests.campaigns.house import Figure, code_lines, figures, functions, in_circles, repeated
 
 SOURCE = '''"""What a module holds."""
 
@@ -48,7 +48,17 @@ def test_a_name_repeats_unless_one_kind_mirrors_another(paths: tuple[str, ...], 
 def test_long_files_and_functions_are_counted_and_small_ones_but_for_the_page_of_a_folder() -> None:
     long = "def far() -> None:\n" + "    print()\n" * 400
     counted = figures({Path("sim/far.py"): long, Path("sim/near.py"): SOURCE, Path("sim/__init__.py"): ""})
-    assert [figure.count for figure in counted] == [406, 414, 3, 1, 0, 1, 1]
+    assert [figure.count for figure in counted] == [406, 414, 3, 1, 0, 0, 1, 1]
+
+
+def test_a_circle_of_imports_is_found_behind_a_function_and_for_types() -> None:
+    sources = {
+        Path("sim/wires.py"): "if TYPE_CHECKING:\n    from sim.rig import Rig",
+        Path("sim/rig.py"): "from sim import wires, noise",
+        Path("sim/noise.py"): "def late():\n    import sim.wires",
+        Path("sim/__init__.py"): "from sim.rig import Rig",
+    }
+    assert in_circles(sources) == [Path("sim/noise.py"), Path("sim/rig.py"), Path("sim/wires.py")]
 
 
 @pytest.mark.parametrize(("limit", "misses"), [(None, False), (3, False), (2, True)])

@@ -18,7 +18,7 @@ import io
 import sys
 import tokenize
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -103,12 +103,37 @@ def repeated(paths: Iterable[Path]) -> dict[str, list[Path]]:
     return {name: sorted(files[name]) for name in sorted(places) if len(places[name]) > 1}
 
 
+def in_circles(sources: Mapping[Path, str]) -> list[Path]:
+    """Return the modules that import each other in a circle, in functions and for types too, and those between two."""
+    paths = {".".join(path.with_suffix("").parts).removesuffix(".__init__"): path for path in sources}
+    above = {name: set(_imported(sources[path], paths)) - {name} for name, path in paths.items()}
+    below = {name: {importer for importer in above if name in above[importer]} for name in above}
+    # A module with no import left, or with no importer left, is in no circle.
+    while free := {name for name in above if not above[name] or not below[name]}:
+        above = {name: names - free for name, names in above.items() if name not in free}
+        below = {name: names - free for name, names in below.items() if name not in free}
+    return sorted(paths[name] for name in above)
+
+
+def _imported(source: str, known: Container[str]) -> Iterator[str]:
+    """Yield the known modules that a module imports; a package only where a name comes from its ``__init__``."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in known)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                name = f"{node.module}.{alias.name}"
+                if name in known or node.module in known:
+                    yield name if name in known else node.module
+
+
 def figures(sources: Mapping[Path, str]) -> tuple[Figure, ...]:
     """Return every figure of modules by their paths below the root."""
     lines = {path: len(source.splitlines()) for path, source in sources.items()}
     modules = sorted(path for path in sources if path.name != "__init__.py")
     small = [path for path in modules if lines[path] <= SMALL_LINES]
     names = repeated(modules)
+    circles = in_circles(sources)
     long_files = [path for path in sorted(lines) if lines[path] > FILE_LINES]
     long_functions = [
         f"{path}: {name} has {length}"
@@ -122,6 +147,7 @@ def figures(sources: Mapping[Path, str]) -> tuple[Figure, ...]:
         Figure("files", len(sources), None),
         Figure(f"files of at most {SMALL_LINES} lines", len(small), SMALL_FILES, _with_lines(small, lines)),
         Figure("file names that repeat and mirror no kind", len(names), REPEATED_NAMES, tuple(_in_words(names))),
+        Figure("files in circles of imports", len(circles), 0, tuple(path.as_posix() for path in circles)),
         Figure(f"files above {FILE_LINES} lines", len(long_files), 0, _with_lines(long_files, lines)),
         Figure(f"functions above {FUNCTION_LINES} lines", len(long_functions), 0, tuple(long_functions)),
     )
