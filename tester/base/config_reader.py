@@ -68,10 +68,11 @@ def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
 
     from tester.base.validation import problems_of
 
+    model = _model(kind)
     try:
         return cast("Config", TypeAdapter[object](_built(kind)).validate_python(tree.data))
     except ValidationError as error:
-        raise InvalidSource(problems_of(error, tree, _model(kind), missing)) from error
+        raise InvalidSource(problems_of(error, tree, model, missing)) from error
 
 
 def as_tree(config: DataclassInstance) -> dict[str, object]:

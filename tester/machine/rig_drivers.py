@@ -13,8 +13,7 @@ from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import ControllerKind, TemperatureController
 from tester.inputs.rig import DeviceConfig, Rig
-from tester.inputs.rig.cells import transmitters_of
-from tester.inputs.rig.further_sensors import further_sensors, title_of
+from tester.inputs.rig.further_sensors import further_sensors, title_of, transmitters_of
 from tester.inputs.rig.profiles import profile_of
 from tester.machine.modbus_health import FieldDevice
 from tester.machine.rig_ports import Ports

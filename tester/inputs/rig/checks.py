@@ -10,9 +10,8 @@ from drivers.drive_settings import plan
 from drivers.profiles import ProfileError
 from drivers.profiles.model import DeviceProfile
 from tester.base.source import Location, Problem, Tree
-from tester.inputs.rig.cells import problems_of_cells
-from tester.inputs.rig.config import DeviceConfig, Rig
-from tester.inputs.rig.further_sensors import channels_of, further_sensors, parts_of
+from tester.inputs.rig.config import DeviceConfig, OwnDevice, Rig
+from tester.inputs.rig.further_sensors import further_sensors, parts_of
 from tester.inputs.rig.profiles import profile_of
 
 MAX_BUS_LOAD = 0.5
@@ -30,9 +29,11 @@ _Found = Iterator[tuple[Location, str]]
 def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
     """Return the contradictions, including the kind's own, with positions."""
     profiles, unread = _read(rig)
-    faults = [*_packaged(rig), *_nodes(rig), *_drives(rig), *_bus_load(rig), *_lines(rig), *_missing(rig), *unread]
-    faults += [*_profiles(rig, profiles), *_channels(rig, profiles), *problems_of_cells(rig, profiles)]
-    faults += [*_simulation(rig), *rig.problems()]
+    sensors = further_sensors(rig)
+    parts = {name: parts_of(rig, name) for name, own in rig.own.items() if own.joined}
+    faults = [*unread, *_packaged(rig), *_nodes(rig), *_bus_load(rig), *_lines(rig), *_simulation(rig)]
+    faults += [*_profiles(rig, profiles), *_channels(rig, sensors, profiles), *_own(rig, parts, profiles)]
+    faults += [*_drives(rig), *rig.problems()]
     return [tree.problem(location, message) for location, message in faults]
 
 
@@ -96,12 +97,6 @@ def _lines(rig: Rig) -> _Found:
             yield ("lines", name, "baud"), "expected a baud rate above 0"
 
 
-def _missing(rig: Rig) -> _Found:
-    for name, own in rig.own.items():
-        if name not in rig.devices and not own.optional and not (own.joined and parts_of(rig, name)):
-            yield ("devices",), f"{name} is missing"
-
-
 def _read(rig: Rig) -> tuple[dict[str, DeviceProfile], list[tuple[Location, str]]]:
     """Return the profile of each device, and a fault for each that has none."""
     profiles: dict[str, DeviceProfile] = {}
@@ -151,14 +146,15 @@ def _parameters(name: str, device: DeviceConfig, profile: DeviceProfile, *, own:
             yield ("devices", name), f"{key} is missing"
 
 
-def _channels(rig: Rig, profiles: Mapping[str, DeviceProfile]) -> _Found:
+def _channels(rig: Rig, sensors: Mapping[str, DeviceConfig], profiles: Mapping[str, DeviceProfile]) -> _Found:
     """Check that every further channel has a unique name that can become a column, and that interlocks find theirs."""
     taken: dict[str, str] = {}
-    sensors = further_sensors(rig)
-    measured = {name: channels_of(device, profiles[name]) for name, device in sensors.items() if name in profiles}
-    for name in measured:
-        yield from _known(name, sensors[name], profiles[name])
-    places = [(("devices", name), channel) for name, channels in measured.items() for channel in channels]
+    places: list[tuple[tuple[str, ...], str]] = []
+    for name, device in sensors.items():
+        if name in profiles:
+            yield from _known(name, device, profiles[name])
+            channels = dict.fromkeys(device.channels.get(key, key) for key in profiles[name].channels)
+            places += [(("devices", name), channel) for channel in channels]
     places += [(("can", "nodes", name), channel) for name, node in rig.can.nodes.items() for channel in node.channels]
     for place, channel in places:
         remedy = ": rename it by `channels`" if place[0] == "devices" else ""  # a node's channels have their names here
@@ -197,6 +193,58 @@ def _is_own(rig: Rig, channel: str) -> bool:
         channel in (quantity.name, quantity.screen.key if quantity.screen is not None else "")
         for quantity in rig.quantities
     )
+
+
+def _own(
+    rig: Rig, parts: Mapping[str, Mapping[str, DeviceConfig]], profiles: Mapping[str, DeviceProfile]
+) -> _Found:
+    """Yield the faults of the machine's own devices; ``parts``: the transmitters of each that may have several."""
+    for name, part in rig.devices.items():
+        place = ("devices", name, "part_of")
+        if part.part_of and part.part_of not in parts:
+            expected = f"expected {' or '.join(parts)}" if parts else "this kind of machine has no such device"
+            yield place, f"{part.part_of} is no device that may have several transmitters ({expected})"
+        elif part.part_of in rig.devices:
+            whole = part.part_of
+            yield place, f"devices has {whole} itself, too: a load cell is one device, or its transmitters are devices"
+    for name, own in rig.own.items():
+        transmitters = parts.get(name, {})
+        if name not in rig.devices and not own.optional and not transmitters:
+            yield ("devices",), f"{name} is missing"
+        if own.channels:
+            yield from _measures(rig, name, own, transmitters, profiles)
+
+
+def _measures(
+    rig: Rig, name: str, own: OwnDevice, parts: Mapping[str, DeviceConfig], profiles: Mapping[str, DeviceProfile]
+) -> _Found:
+    """Yield the channels that no transmitter measures, and those that two do."""
+    single = rig.devices.get(name)
+    asked = {name: single} if single is not None else parts
+    if not asked.keys() <= profiles.keys():
+        return  # reported elsewhere
+    by_channel: dict[str, str] = {}
+    for key, device in asked.items():
+        profile = profiles[key]
+        for channel in profile.channels:
+            channel_name = device.channels.get(channel, channel)
+            if channel_name in by_channel:
+                yield (
+                    ("devices", key),
+                    f"measures {channel_name}, as {by_channel[channel_name]} does: rename it by `channels`",
+                )
+            by_channel.setdefault(channel_name, key)
+        for channel in device.channels:
+            if channel not in profile.channels:
+                place = ("devices", key, "channels", channel)
+                yield place, f"no such channel (the profile has {', '.join(profile.channels)})"
+    missing = [channel for channel in own.channels if channel not in by_channel]
+    if missing and asked:
+        needed = f"a {own.title} of this machine measures {', '.join(own.channels)}"
+        more = f"; further transmitters: `part_of: {name}`" if own.joined else ""
+        has = ", ".join(f"{key} has {channel}" for channel, key in by_channel.items())
+        for channel in missing:
+            yield ("devices", next(iter(asked))), f"nothing measures {channel} ({needed}; {has}{more})"
 
 
 def _simulation(rig: Rig) -> _Found:

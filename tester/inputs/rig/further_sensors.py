@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import ceil, isfinite, log10
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from drivers.canopen.node_config import NodeChannel
-from drivers.profiles.model import DeviceProfile, Signal
+from drivers.profiles import ProfileError
+from drivers.profiles.model import Signal
 from tester.base.config_reader import SUFFIXES
 from tester.base.quantities import FURTHER, Channel, Figure, Quantities, Screen
+from tester.base.source import Location
 from tester.inputs.rig.config import DeviceConfig, Rig
 from tester.inputs.rig.profiles import profile_of
+
+if TYPE_CHECKING:
+    from drivers.joined_cell import Transmitter
+    from drivers.modbus import ModbusLink
 
 DECIMALS: Final = 3
 """Most decimals of a further channel on screens."""
@@ -103,6 +109,39 @@ def quantities_on(rig: Rig) -> Quantities:
     )
 
 
-def channels_of(device: DeviceConfig, profile: DeviceProfile) -> Mapping[str, str]:
-    """Return the units of a sensor's channels by their recorded names."""
-    return {device.channels.get(name, name): profile.signal(name).unit for name in profile.channels}
+def transmitters_of(rig: Rig, links: Mapping[str, ModbusLink]) -> dict[str, Transmitter]:
+    """Return the drivers of a load cell's transmitters by their keys; none where it is one device.
+
+    Raises ProfileError, and ValueError for a profile of no transmitter.
+    """
+    from drivers.joined_cell import Transmitter
+
+    return {
+        key: Transmitter(
+            title_of(rig, key), profile_of(part.profile), part.unit_id, links[part.line], part.channels, part.parameters
+        )
+        for key, part in parts_of(rig, "load_cell").items()
+    }
+
+
+def skew_problem(rig: Rig, channels: tuple[str, ...], most_skew_s: float) -> Iterator[tuple[Location, str]]:
+    """Yield why the transmitters of a load cell cannot be read close enough together at their lines' usual times."""
+    parts = parts_of(rig, "load_cell")
+    if not parts or any(line.baud <= 0 for line in rig.lines.values()):
+        return
+    from drivers.joined_cell import JoinedCell  # only such a rig pays for the wire's library
+    from drivers.modbus import ModbusLink
+
+    links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
+    try:
+        cell = JoinedCell(list(transmitters_of(rig, links).values()), channels, most_skew_s)
+    except (ProfileError, ValueError, KeyError):
+        return  # reported elsewhere
+    if cell.usual_skew_s <= most_skew_s:
+        return
+    apart = f"are read {1e3 * cell.usual_skew_s:.0f} ms apart at the usual times of their lines"
+    limit = f"interlocks.cell_skew is {1e3 * most_skew_s:g} ms"
+    yield (
+        ("devices", next(iter(parts))),
+        (f"the load cell's transmitters {apart}, and {limit}: raise the baud, or give each a line of its own"),
+    )

@@ -52,7 +52,8 @@ def packaged_tree(kind: type[Rig], like: str = "") -> Tree:
 def new_tree(kind: type[Rig], like: str = "") -> Tree:
     """Return a packaged file as data that the caller may change."""
     name = packaged_name(kind, like)
-    return load_tree(packaged_text(kind, like), kind.packaged[name].replace(":", "/"))
+    text = packaged_text(kind, like)
+    return load_tree(text, kind.packaged[name].replace(":", "/"))
 
 
 def lacking(kind: type[Rig], tree: Tree) -> tuple[Place, ...]:
@@ -137,6 +138,31 @@ def _alike(parts: list[str], place: Place) -> bool:
 def _by_hand(kind: type[Rig], place: Place, section: Mapping[str, Value]) -> bool:
     """Return whether a section is that of an axis without a drive."""
     return place[0] == "axes" and place[-1] in kind.manual and section.get("manual") is True
+
+
+def resolve(kind: type[Rig], tree: Tree) -> None:
+    """Write the file's common values into every axis: its name and the heartbeats; ``manual`` becomes None."""
+    if not isinstance(tree.data, dict):
+        return  # the reader reports it
+    axes, can = tree.data.get("axes"), tree.data.get("can")
+    if not isinstance(axes, dict) or not isinstance(can, dict):
+        return
+    nodes = can.get("nodes")
+    for name, node in nodes.items() if isinstance(nodes, dict) else ():
+        if isinstance(node, dict):
+            node.setdefault("name", name)
+            node.setdefault("heartbeat", can.get("drive_heartbeat", ""))
+    for name, axis in axes.items():
+        if not isinstance(axis, dict):
+            continue
+        # Set by a person: the axis has no drive.
+        if name in kind.manual and axis.get("manual") is True and len(axis) == 1:
+            axes[name] = None
+            continue
+        axis.setdefault("name", name)
+        for key, source in (("heartbeat", "drive_heartbeat"), ("consumer_heartbeat", "consumer_heartbeat")):
+            if source in can:
+                axis.setdefault(key, can[source])
 
 
 HEADER = """\

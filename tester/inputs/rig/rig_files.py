@@ -13,7 +13,7 @@ from tester.base.config_reader import read
 from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
 from tester.inputs.rig.checks import problems_of
 from tester.inputs.rig.config import Rig
-from tester.inputs.rig.packaged import complete, new_tree
+from tester.inputs.rig.packaged import complete, new_tree, resolve
 from tester.inputs.rig.profiles import extension_drive, extension_law
 from tester.inputs.rig.risks import Risk, beyond, counts_as_simulated, loosened
 
@@ -34,13 +34,15 @@ def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_r
     """
     texts = tuple(overrides)
     if not texts:
-        return _accepted(checked(kind, tree), None, tree, accept_risk)
+        rig = checked(kind, tree)
+        return _accepted(rig, None, tree, accept_risk)
     stated = checked(kind, deepcopy(tree))  # faults of the file itself come first, under its own name
     problems = [problem for number, text in enumerate(texts) for problem in _override(tree, text, number)]
     if problems:
         raise InvalidSource(problems)
     try:
-        return _accepted(checked(kind, tree), stated, tree, accept_risk)
+        rig = checked(kind, tree)
+        return _accepted(rig, stated, tree, accept_risk)
     except InvalidSource as error:
         raise InvalidSource([_attributed(problem, texts) for problem in error.problems]) from error
 
@@ -55,7 +57,8 @@ def risks_of(rig: Rig) -> tuple[Risk, ...]:
 
 @cache
 def _packaged(kind: type[OneRig], like: str) -> OneRig:
-    return checked(kind, new_tree(kind, like))
+    tree = new_tree(kind, like)
+    return checked(kind, tree)
 
 
 def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> OneRig:
@@ -88,7 +91,7 @@ def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> On
 def checked(kind: type[OneRig], tree: Tree) -> OneRig:
     """Return a tree as a rig with consistent sections, risks or not; changes the tree. Raises InvalidSource."""
     unstated = complete(kind, tree)
-    _resolve(kind, tree)
+    resolve(kind, tree)
     unstated_keys = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated]
     try:
         rig = read(kind, tree, MISSING).settled()
@@ -128,31 +131,6 @@ def _override(tree: Tree, text: str, number: int) -> list[Problem]:
             return [_problem(text, f"{'.'.join(here)} is a value, it has no keys below it")]
         section = inner
     return []
-
-
-def _resolve(kind: type[Rig], tree: Tree) -> None:
-    """Write the file's common values into every axis: its name and the heartbeats; ``manual`` becomes None."""
-    if not isinstance(tree.data, dict):
-        return  # the reader reports it
-    axes, can = tree.data.get("axes"), tree.data.get("can")
-    if not isinstance(axes, dict) or not isinstance(can, dict):
-        return
-    nodes = can.get("nodes")
-    for name, node in nodes.items() if isinstance(nodes, dict) else ():
-        if isinstance(node, dict):
-            node.setdefault("name", name)
-            node.setdefault("heartbeat", can.get("drive_heartbeat", ""))
-    for name, axis in axes.items():
-        if not isinstance(axis, dict):
-            continue
-        # Set by a person: the axis has no drive.
-        if name in kind.manual and axis.get("manual") is True and len(axis) == 1:
-            axes[name] = None
-            continue
-        axis.setdefault("name", name)
-        for key, source in (("heartbeat", "drive_heartbeat"), ("consumer_heartbeat", "consumer_heartbeat")):
-            if source in can:
-                axis.setdefault(key, can[source])
 
 
 def _attributed(problem: Problem, overrides: Sequence[str]) -> Problem:

@@ -13,8 +13,8 @@ from sim.physics.parameters import SimParameters
 from tester.base.quantities import Quantities
 from tester.base.source import Location
 from tester.inputs.rig.ceilings import Ceiling
-from tester.inputs.rig.cells import skew_problem
 from tester.inputs.rig.config import HEAT_OFF, OwnDevice, Rig
+from tester.inputs.rig.further_sensors import skew_problem
 from tester.inputs.rig.parameter import Parameter
 from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt import KIND
