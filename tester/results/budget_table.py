@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from typing import Final
@@ -13,7 +13,6 @@ from tester.analysis.uncertainty import Budget, Contribution
 from tester.results.columns import Column, Output, Table, axis_column
 from tester.results.conditions_table import ConditionRow, conditions_table, recipe_rows
 from tester.results.run_results import RunResults
-from tester.store.records import ConditionInfo
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +37,7 @@ def budget_table(results: RunResults) -> Table[TermRow]:
     """Return a row for each term of each condition's budgets, including those of the mean over replicates."""
     conditions = conditions_table(results)
     which = tuple(_of_condition(conditions[key]) for key in _WHICH)
-    axes = (axis_column(axis, _info) for axis in results.axes)
+    axes: Iterator[Column[TermRow]] = (axis_column(axis, lambda row: row.of.info) for axis in results.axes)
     rows = (TermRow(row, term) for row in conditions.rows for term in terms_of(row.result))
     return Table((*which, *axes, *_columns(results.worn)), tuple(rows))
 
@@ -81,10 +80,6 @@ _SUMS: Final = (
 )
 _WHICH: Final = ("level", "condition", "specimen", "replicate", "grid", "compound", "note")
 _BOTH: Final = frozenset({Output.SHOW, Output.REPORT})
-
-
-def _info(row: TermRow) -> ConditionInfo:
-    return row.of.info
 
 
 def _of_condition(column: Column[ConditionRow]) -> Column[TermRow]:

@@ -13,7 +13,7 @@ from tester.base.axes import AxisValue
 from tester.results.columns import Column, Output, Table, axis_column
 from tester.results.run_results import RunResults
 from tester.results.table_rows import TableRow
-from tester.store.records import ConditionInfo, StoredRun
+from tester.store.records import StoredRun
 
 Held: TypeAlias = tuple[str, tuple[AxisValue, ...], int]
 """Key of a comparison: compound, values of the axes as shown to people, number of the measurement at these (from 1)."""
@@ -82,12 +82,8 @@ def pairs(first: RunResults, second: RunResults, compounds: tuple[str, str] | No
 def comparison(first: RunResults, second: RunResults, compounds: tuple[str, str] | None = None) -> Table[Pair]:
     """Return the table of ``pairs``: coefficients, their difference, its standard uncertainty u, z and the coverage
     factor k (95 %)."""
-    axes = [axis_column(axis, _info) for axis in first.axes]
+    axes: Iterator[Column[Pair]] = (axis_column(axis, lambda pair: pair.either.info) for axis in first.axes)
     return Table((*_WHICH, *axes, *_FOUND), tuple(pairs(first, second, compounds)))
-
-
-def _info(pair: Pair) -> ConditionInfo:
-    return pair.either.info
 
 
 def _mu(row: TableRow | None) -> float:

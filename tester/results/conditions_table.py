@@ -15,11 +15,10 @@ from typing import Final
 from tester.analysis.counts import Counts
 from tester.analysis.flags import flags_in
 from tester.analysis.repeats import ConditionResult
-from tester.analysis.results import NAN, mark_of
+from tester.analysis.results import NAN, SoakCheck, mark_of
 from tester.analysis.wear_rate import ConditionWear
 from tester.base.axes import Axis
-from tester.base.quantities import Means
-from tester.results.columns import Column, Output, Table, Value, mean_column, setting_columns
+from tester.results.columns import Column, Output, Table, mean_column, setting_columns
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured, TableRow
 from tester.store.records import ConditionInfo
@@ -47,6 +46,11 @@ class ConditionRow:
     def counts(self) -> Counts:
         """Return how many repeats, pairs or replicates were requested, made and valid."""
         return self.result.counts
+
+    @property
+    def soak(self) -> SoakCheck | None:
+        """Return the thermometer's check after the soak; None for replicates, and without a check."""
+        return self.measured and self.measured.soak
 
     @property
     def whole(self) -> bool:
@@ -84,10 +88,10 @@ def columns_of(results: RunResults) -> tuple[Column[ConditionRow], ...]:
     further = {channel.name for channel in results.quantities.further}
     return (
         *_WHICH,
-        *setting_columns(results.axes, _info, _replicate),
+        *setting_columns(results.axes, lambda row: row.info, lambda row: row.measured and row.info.replicate),
         *_fixed(results.worn),
         *(
-            mean_column(channel, _means, _FURTHER if channel.name in further else frozenset())
+            mean_column(channel, lambda row: row.result.measured, _FURTHER if channel.name in further else frozenset())
             for channel in results.quantities.averaged
         ),
         _REMARKS,
@@ -115,58 +119,30 @@ def _rows(results: RunResults) -> Iterator[ConditionRow]:
             yield ConditionRow(row, row.result, None, None, watches)
 
 
-def _info(row: ConditionRow) -> ConditionInfo:
-    return row.info
-
-
-def _replicate(row: ConditionRow) -> Value:
-    return row.info.replicate if row.measured is not None else None
-
-
-def _means(row: ConditionRow) -> Means:
-    return row.result.measured
-
-
 def _percent(u: float, row: ConditionRow) -> float:
     mu = abs(row.result.mu)
     return 100.0 * u / mu if mu else NAN
 
 
-def _worn(row: ConditionRow, name: str) -> Value:
-    return getattr(row.wear, name) if row.wear is not None else None
-
-
-def _rate(row: ConditionRow, name: str) -> Value:
-    return getattr(row.wear.rate, name) if row.wear is not None else None
-
-
-def _held(row: ConditionRow, name: str) -> Value:
-    return getattr(row.measured.condition, name) if row.measured is not None else None
-
-
-def _soaked(row: ConditionRow, name: str) -> Value:
-    """Return a figure of the thermometer's check after the soak; None for replicates, and without a check."""
-    soak = row.measured.soak if row.measured is not None else None
-    return getattr(soak, name) if soak is not None else None
-
-
 _PEOPLE = frozenset({Output.END, Output.SHOW, Output.COVER, Output.REPORT, Output.SCREEN})
 _FULL = frozenset({Output.SHOW, Output.REPORT})
+_REPEATS = frozenset({Output.REPEATS})
+_SWEEP = frozenset({Output.SWEEP})
 _FURTHER = frozenset({Output.SHOW, Output.REPORT, Output.SCREEN})
 """Outputs that show the means of further sensors."""
 
 _WHICH: tuple[Column[ConditionRow], ...] = (
     Column("level", "level", lambda row: COMBINED if row.measured is None else CONDITION),
     Column("condition", "no.", lambda row: row.info.condition if row.measured is not None else None,
-           views=frozenset({Output.REPEATS})),
+           views=_REPEATS),
 )  # fmt: skip
 
 _FOUND: tuple[Column[ConditionRow], ...] = (
-    Column("status", "status", lambda row: row.result.status.value, views=frozenset({Output.SWEEP})),
-    Column("reason", "reason", lambda row: row.result.reason, views=frozenset({Output.SWEEP})),
-    Column("flags", "flags", lambda row: tuple(flags_in(row.result.flags)), views=frozenset({Output.SWEEP})),
-    Column("mark", "mark", lambda row: row.mark, views=frozenset({Output.SWEEP})),
-    Column("mu", "mu", lambda row: row.result.mu, "", 3, _PEOPLE | {Output.SWEEP}, lambda row: row.mark),
+    Column("status", "status", lambda row: row.result.status.value, views=_SWEEP),
+    Column("reason", "reason", lambda row: row.result.reason, views=_SWEEP),
+    Column("flags", "flags", lambda row: tuple(flags_in(row.result.flags)), views=_SWEEP),
+    Column("mark", "mark", lambda row: row.mark, views=_SWEEP),
+    Column("mu", "mu", lambda row: row.result.mu, "", 3, _PEOPLE | _SWEEP, lambda row: row.mark),
     Column("mu_longitudinal", "mu along", lambda row: row.result.longitudinal, "", 3),
     Column("mu_lateral", "mu across", lambda row: row.result.lateral, "", 3),
     Column("mu_as_measured", "mu as measured", lambda row: row.result.mu_resultant, "", 3, _FULL),
@@ -177,9 +153,7 @@ _FOUND: tuple[Column[ConditionRow], ...] = (
 def _uncertainties(worn: str) -> tuple[Column[ConditionRow], ...]:
     """Return U and its companions, of the mounted piece and of the compound."""
     return (
-        Column(
-            "u_standard", f"u this {worn}", lambda row: row.result.budget.standard, "", 3, frozenset({Output.SWEEP})
-        ),
+        Column("u_standard", f"u this {worn}", lambda row: row.result.budget.standard, "", 3, _SWEEP),
         Column("u_expanded", f"U this {worn}", lambda row: row.result.budget.expanded, "", 3, _PEOPLE),
         Column("u_expanded_percent", f"U this {worn}", lambda row: _percent(row.result.budget.expanded, row), "%", 1),
         Column("coverage_factor", "k", lambda row: row.result.budget.coverage, "", 2),
@@ -198,36 +172,33 @@ _MORE: tuple[Column[ConditionRow], ...] = (
     Column("interval_95", "t interval", lambda row: row.result.interval, "", 4),
     Column("u_type_a", "u of repeats", lambda row: row.result.type_a, "", 4),
     Column("valid_of", "valid", lambda row: row.counts.words, views=_PEOPLE, stored=False),
-    Column("counted", "counted", lambda row: row.counts.of, views=frozenset({Output.REPEATS})),
-    Column("asked", "asked for", lambda row: row.counts.asked, "", 0, frozenset({Output.REPEATS})),
-    Column("made", "made", lambda row: row.counts.made, "", 0, frozenset({Output.REPEATS})),
+    Column("counted", "counted", lambda row: row.counts.of, views=_REPEATS),
+    Column("asked", "asked for", lambda row: row.counts.asked, "", 0, _REPEATS),
+    Column("made", "made", lambda row: row.counts.made, "", 0, _REPEATS),
     Column("valid", "valid", lambda row: row.counts.valid, "", 0, frozenset({Output.REPEATS, Output.SWEEP})),
-    Column("left_out", "left out", lambda row: row.counts.left_out, "", 0, frozenset({Output.REPEATS})),
-    Column("make_ups", "make-ups", lambda row: row.counts.made_up, "", 0, frozenset({Output.REPEATS})),
-    Column("drift_percent", "drift", lambda row: row.result.drift_percent, "%", 2, frozenset({Output.REPEATS})),
-    Column("drift_bound_percent", "drift bound", lambda row: row.result.drift_bound_percent, "%", 2,
-           frozenset({Output.REPEATS})),
-    Column("trend_percent", "trend", lambda row: row.result.trend_percent, "%", 2, frozenset({Output.REPEATS})),
-    Column("change_percent", "change at once", lambda row: row.result.change_percent, "%", 2,
-           frozenset({Output.REPEATS})),
-    Column("swing_percent", "swing", lambda row: row.result.swing_percent, "%", 1, frozenset({Output.REPEATS})),
-    Column("swing_hz", "swing at", lambda row: row.result.swing_hz, "Hz", 1, frozenset({Output.REPEATS})),
-    Column("thermometer_off_k", "thermometer off", lambda row: _soaked(row, "off_k"), "K", 1,
-           frozenset({Output.REPEATS})),
-    Column("thermometer_allowed_k", "allowed", lambda row: _soaked(row, "allowed_k"), "K", 1,
-           frozenset({Output.REPEATS})),
-    Column("warming_k_s", "warming", lambda row: _held(row, "warming_k_s"), "K/s", 2),
-    Column("holdable_band_k", "band that can be held", lambda row: _held(row, "holdable_band_k"), "K", 2),
+    Column("left_out", "left out", lambda row: row.counts.left_out, "", 0, _REPEATS),
+    Column("make_ups", "make-ups", lambda row: row.counts.made_up, "", 0, _REPEATS),
+    Column("drift_percent", "drift", lambda row: row.result.drift_percent, "%", 2, _REPEATS),
+    Column("drift_bound_percent", "drift bound", lambda row: row.result.drift_bound_percent, "%", 2, _REPEATS),
+    Column("trend_percent", "trend", lambda row: row.result.trend_percent, "%", 2, _REPEATS),
+    Column("change_percent", "change at once", lambda row: row.result.change_percent, "%", 2, _REPEATS),
+    Column("swing_percent", "swing", lambda row: row.result.swing_percent, "%", 1, _REPEATS),
+    Column("swing_hz", "swing at", lambda row: row.result.swing_hz, "Hz", 1, _REPEATS),
+    Column("thermometer_off_k", "thermometer off", lambda row: row.soak and row.soak.off_k, "K", 1, _REPEATS),
+    Column("thermometer_allowed_k", "allowed", lambda row: row.soak and row.soak.allowed_k, "K", 1, _REPEATS),
+    Column("warming_k_s", "warming", lambda row: row.measured and row.measured.condition.warming_k_s, "K/s", 2),
+    Column("holdable_band_k", "band that can be held",
+           lambda row: row.measured and row.measured.condition.holdable_band_k, "K", 2),
 )  # fmt: skip
 
 _WEAR: tuple[Column[ConditionRow], ...] = (
-    Column("diameter_before_mm", "diameter before", lambda row: _worn(row, "before_mm"), "mm", 3),
-    Column("diameter_after_mm", "diameter after", lambda row: _worn(row, "after_mm"), "mm", 3),
-    Column("u_worn_mm", "u of the difference", lambda row: _worn(row, "u_mm"), "mm", 4),
-    Column("wear_mm3_n_m", "wear", lambda row: _rate(row, "rate"), "mm3/(N m)", 4),
-    Column("wear_u_expanded", "U wear", lambda row: _rate(row, "expanded"), "mm3/(N m)", 4),
+    Column("diameter_before_mm", "diameter before", lambda row: row.wear and row.wear.before_mm, "mm", 3),
+    Column("diameter_after_mm", "diameter after", lambda row: row.wear and row.wear.after_mm, "mm", 3),
+    Column("u_worn_mm", "u of the difference", lambda row: row.wear and row.wear.u_mm, "mm", 4),
+    Column("wear_mm3_n_m", "wear", lambda row: row.wear and row.wear.rate.rate, "mm3/(N m)", 4),
+    Column("wear_u_expanded", "U wear", lambda row: row.wear and row.wear.rate.expanded, "mm3/(N m)", 4),
 )
 
 _REMARKS: Column[ConditionRow] = Column(
-    "remarks", "flags", lambda row: row.remarks, views=_PEOPLE | {Output.REPEATS}, stored=False
+    "remarks", "flags", lambda row: row.remarks, views=_PEOPLE | _REPEATS, stored=False
 )

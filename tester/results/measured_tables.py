@@ -13,12 +13,11 @@ from tester.analysis.directions import is_reversed
 from tester.analysis.flags import flags_in
 from tester.analysis.results import RepeatResult
 from tester.analysis.wear_rate import WearCheck, WearRate
-from tester.base.quantities import Means
 from tester.base.words import duration
 from tester.results.columns import Column, Output, Table, mean_column, piece_key, setting_columns
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured
-from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat
+from tester.store.records import PieceInfo, StoredRepeat
 
 AS_ASKED: Final = "as asked"
 REVERSED: Final = "reversed"
@@ -52,19 +51,16 @@ class CommittedRepeat:
 def repeats_table(results: RunResults) -> Table[CommittedRepeat]:
     """Return the table of all committed repeats, condition by condition."""
     which = (*_WHICH, Column[CommittedRepeat](piece_key(results.worn), results.worn, lambda row: row.repeat.piece))
-    settings = setting_columns(results.axes, _info, lambda row: row.measured.info.replicate)
-    means = (mean_column(quantity, _means) for quantity in results.quantities.averaged)
     ways = (_DIRECTION,) if results.both_directions else ()
+    columns: tuple[Column[CommittedRepeat], ...] = (
+        *which,
+        *setting_columns(results.axes, lambda row: row.measured.info, lambda row: row.measured.info.replicate),
+        *_FOUND,
+        *(mean_column(quantity, lambda row: row.result.means) for quantity in results.quantities.averaged),
+        *ways,
+    )
     rows = (CommittedRepeat(condition, repeat) for condition in results.conditions() for repeat in condition.repeats)
-    return Table[CommittedRepeat]((*which, *settings, *_FOUND, *means, *ways), tuple(rows))
-
-
-def _info(row: CommittedRepeat) -> ConditionInfo:
-    return row.measured.info
-
-
-def _means(row: CommittedRepeat) -> Means:
-    return row.result.means
+    return Table(columns, tuple(rows))
 
 
 _SHOWN: Final = frozenset({Output.REPORT, Output.SCREEN})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from itertools import islice
 from math import isfinite
-from typing import BinaryIO, Protocol, cast
+from typing import Any, BinaryIO
 
 from tester.base.plugins import MissingExtraError, needs
 from tester.base.quantities import Channel
@@ -19,34 +19,13 @@ _BLOCKS_PER_GROUP = 128
 _Columns = dict[str, list[float | None]]
 
 
-class _ParquetModules(Protocol):
-    """The used part of pyarrow, which has no type information."""
-
-    def schema(self, fields: list[tuple[str, object]]) -> object: ...
-    def table(self, data: dict[str, list[float | None] | list[str]], schema: object) -> object: ...
-    def int64(self) -> object: ...
-    def float64(self) -> object: ...
-    def string(self) -> object: ...
-
-
-class _ParquetWriter(Protocol):
-    def __enter__(self) -> _ParquetWriter: ...
-    def __exit__(self, *error: object) -> None: ...
-    def write_table(self, table: object) -> None: ...
-
-
-class _Parquet(Protocol):
-    def ParquetWriter(self, where: BinaryIO, schema: object) -> _ParquetWriter: ...  # noqa: N802
-
-
 def write_parquet(reader: RunReader, file: BinaryIO) -> None:
     """Write every recorded sample to ``file``: float64 columns named as in samples.csv, ids as int64.
 
     Condition, repeat and attempt are null for samples outside repeats. A run with an accepted risk has a further column
     that names it, as in its other tables. Raises StoreError, OSError, and MissingExtraError without pyarrow.
     """
-    pa = cast(_ParquetModules, _module("pyarrow"))
-    pq = cast(_Parquet, _module("pyarrow.parquet"))
+    pa, pq = _module("pyarrow"), _module("pyarrow.parquet")
     owners = {repeat.key: repeat for repeat in reader.repeats(attempts=True)}
     whole, real = pa.int64(), pa.float64()
     channels = reader.quantities().recorded
@@ -83,8 +62,8 @@ def _whole(value: float) -> int | None:
     return int(value) if isfinite(value) else None
 
 
-def _module(name: str) -> object:
-    """Return pyarrow or a module of it; raises MissingExtraError where it is not installed."""
+def _module(name: str) -> Any:
+    """Return pyarrow or a module of it, which have no types; raises MissingExtraError where it is not installed."""
     try:
         return import_module(name)
     except ModuleNotFoundError as error:

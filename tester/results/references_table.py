@@ -11,7 +11,6 @@ from tester.analysis.reference import ControlChart, ControlPoint, CounterfaceDri
 from tester.results.columns import Column, Output, Table, Value, axis_column, piece_key
 from tester.results.run_results import RunResults
 from tester.results.table_rows import TableRow
-from tester.store.records import ConditionInfo
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +45,7 @@ def references_table(results: RunResults) -> Table[ReferenceRow]:
     the counterface is the same in every row.
     """
     piece = Column[ReferenceRow](piece_key(results.worn), results.worn, lambda row: row.reference.piece or None)
-    axes = (axis_column(axis, _info) for axis in results.axes)
+    axes: Iterator[Column[ReferenceRow]] = (axis_column(axis, lambda row: row.row.info) for axis in results.axes)
     return Table[ReferenceRow]((*_WHICH, piece, _COMPOUND, *axes, *_FOUND), tuple(_rows(results)))
 
 
@@ -62,10 +61,6 @@ def _rows(results: RunResults) -> Iterator[ReferenceRow]:
         )
 
 
-def _info(row: ReferenceRow) -> ConditionInfo:
-    return row.row.info
-
-
 _SHOWN: Final = frozenset({Output.REPORT})
 
 _WHICH: tuple[Column[ReferenceRow], ...] = (
@@ -79,22 +74,15 @@ _FOUND: tuple[Column[ReferenceRow], ...] = (
     Column("counterface_travel_m", "travel of the counterface", lambda row: row.reference.counterface_m, "m", 0),
     Column("piece_sliding_m", "slid", lambda row: row.reference.piece_m, "m", 0),
     Column("mu", "mu", lambda row: row.reference.mu, "", 3, _SHOWN),
-    Column(
-        "repeatability_expanded",
-        "repeatability",
-        lambda row: None if row.point is None else row.point.expanded,
-        "",
-        3,
-        _SHOWN,
-    ),
-    Column("centre", "centre", lambda row: None if row.chart is None else row.chart.centre, "", 3),
-    Column("limit_low", "lower limit", lambda row: None if row.chart is None else row.chart.low, "", 3, _SHOWN),
-    Column("limit_high", "upper limit", lambda row: None if row.chart is None else row.chart.high, "", 3, _SHOWN),
+    Column("repeatability_expanded", "repeatability", lambda row: row.point and row.point.expanded, "", 3, _SHOWN),
+    Column("centre", "centre", lambda row: row.chart and row.chart.centre, "", 3),
+    Column("limit_low", "lower limit", lambda row: row.chart and row.chart.low, "", 3, _SHOWN),
+    Column("limit_high", "upper limit", lambda row: row.chart and row.chart.high, "", 3, _SHOWN),
     Column("within", "inside", lambda row: row.within),
     Column("verdict", "verdict", lambda row: row.verdict, views=_SHOWN, stored=False),
     Column("change_percent", "change", lambda row: row.change(0), "%", 1),
     Column("change_low_percent", "change at least", lambda row: row.change(1), "%", 1),
     Column("change_high_percent", "change at most", lambda row: row.change(2), "%", 1),
-    Column("change_over_m", "over", lambda row: None if row.drift is None else row.drift.over_m, "m", 0),
-    Column("told_apart", "told apart", lambda row: None if row.drift is None else row.drift.apart),
+    Column("change_over_m", "over", lambda row: row.drift and row.drift.over_m, "m", 0),
+    Column("told_apart", "told apart", lambda row: row.drift and row.drift.apart),
 )

@@ -44,7 +44,7 @@ def settings_table(results: RunResults) -> Table[SettingRow]:
     chi2 and its limit are the setting's, the same in its rows.
     """
     piece = Column[SettingRow](piece_key(results.worn), results.worn, lambda row: row.measurement.piece or None)
-    axes = (axis_column(axis, _info) for axis in results.axes)
+    axes: Iterator[Column[SettingRow]] = (axis_column(axis, lambda row: row.info) for axis in results.axes)
     return Table[SettingRow]((*_WHICH, *axes, piece, *_FOUND), tuple(_rows(results)))
 
 
@@ -54,10 +54,6 @@ def _rows(results: RunResults) -> Iterator[SettingRow]:
         for measurement in setting.measurements:
             off = Difference() if measurement is setting.first else difference_of(setting.first, measurement)
             yield SettingRow(infos[measurement.condition], setting, measurement, off)
-
-
-def _info(row: SettingRow) -> ConditionInfo:
-    return row.info
 
 
 def _agreed(row: SettingRow, name: str) -> Value:
