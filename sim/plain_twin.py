@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
-from sim.nodes.cia402_slave import Cia402Slave
+from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.sensor_slave import PlantQuantity, SensorSlave
 from sim.rig import RigSpec, SimRig
 from sim.wires.can_wire import CanWire
@@ -48,12 +48,17 @@ class PlainTwin(SimRig):
         Raises UnknownQuantityError for a quantity that the plant does not have.
         """
         self.plant = plant
-        self._plant_s = 0.0
-        can = can_wire(spec.bitrate)
-        axes = {name: Cia402Slave(axis, can, serial_number=axis.node_id) for name, axis in spec.axes.items()}
-        wired = {name: _sensor(spec, name, plant, channels) for name, channels in shows.items() if name in spec.devices}
-        devices = {name.replace("_", " "): slave for name, slave in wired.items()}
-        super().__init__(spec, can, axes, wired, devices, plant)
+        self._shows = shows
+        super().__init__(spec, plant, can_wire)
+
+    def own_devices(self, spec: RigSpec) -> dict[str, ModbusSlave]:
+        sensors: dict[str, ModbusSlave] = {}
+        for name, channels in self._shows.items():
+            device = spec.devices.get(name)
+            if device is not None:
+                shown = {channel: PlantQuantity(self.plant, quantity) for channel, quantity in channels.items()}
+                sensors[name] = SensorSlave(device.profile, device.unit_id, shown)
+        return sensors
 
     @property
     def ambient_c(self) -> float:
@@ -62,7 +67,7 @@ class PlainTwin(SimRig):
 
     def follow(self, t1: float, still: bool) -> None:
         """Advance the plant with its drives to ``t1`` s."""
-        elapsed, self._plant_s = t1 - self._plant_s, t1
+        elapsed, self.plant_s = t1 - self.plant_s, t1
         self.plant.advance(elapsed, {name: drive.axis.value for name, drive in self.axes.items()})
 
     def install(self, specimen: int, compound: str) -> None:
@@ -73,9 +78,3 @@ class PlainTwin(SimRig):
         """Restart the random streams and the sensors' dither for a repeat."""
         self.plant.begin_repeat(condition, repeat, attempt)
         self.restart_dither()
-
-
-def _sensor(spec: RigSpec, name: str, plant: PlainPlant, channels: Mapping[str, str]) -> SensorSlave:
-    device = spec.devices[name]
-    shown = {channel: PlantQuantity(plant, quantity) for channel, quantity in channels.items()}
-    return SensorSlave(device.profile, device.unit_id, shown)

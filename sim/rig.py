@@ -73,36 +73,37 @@ class SimRig:
 
     ``can`` and ``lines`` are the ports that a program opens. ``axes`` and ``devices`` have names for people as keys,
     ``sensors`` (beyond the machine's own) those of the wiring. ``now_s``: time to which everything has been advanced,
-    s.
+    s; ``plant_s``: time of the plant, which a kind advances.
     """
 
-    def __init__(
-        self,
-        spec: RigSpec,
-        can: CanWire,
-        axes: dict[str, Cia402Slave],
-        wired: Mapping[str, ModbusSlave],
-        devices: Mapping[str, ModbusSlave],
-        plant: object,
-    ) -> None:
-        """Switch everything on at time 0.
+    def __init__(self, spec: RigSpec, plant: object, can_wire: type[CanWire]) -> None:
+        """Switch everything on at time 0; ``can_wire``: the class of the bus, another one for faults.
 
-        ``wired``: the machine's own devices by their keys in the wiring. ``plant`` has the quantities of further
-        sensors; raises UnknownQuantityError for a quantity that it does not have.
+        ``plant`` has the quantities of further sensors; raises UnknownQuantityError for a quantity that it does not
+        have.
         """
-        self.can = can
-        self.axes = axes
-        self.devices = dict(devices)
+        self.can = can_wire(spec.bitrate)
+        self.axes = {name: self.drive(name, config) for name, config in spec.axes.items()}
+        wired = self.own_devices(spec)
+        self.devices = {name.replace("_", " "): slave for name, slave in wired.items()}
         self.sensors = further_sensors(spec, wired, plant)
-        self.nodes = [SimulatedSensorNode(config, can) for config in spec.nodes]
+        self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
         every = {**wired, **self.sensors}
         self.lines = lines_of(spec, every)
-        self.now_s = 0.0
-        self._drives = tuple(axes.values())
+        self.now_s = self.plant_s = 0.0
+        self._drives = tuple(self.axes.values())
         self._timed = tuple(slave for slave in every.values() if slave.due_s < inf)
         self._dithered = tuple(
             slave for slave in every.values() if isinstance(slave, SensorSlave)
         )
+
+    def drive(self, name: str, config: AxisConfig) -> Cia402Slave:
+        """Return the drive of an axis; by default it turns without a load."""
+        return Cia402Slave(config, self.can, serial_number=config.node_id)
+
+    def own_devices(self, spec: RigSpec) -> dict[str, ModbusSlave]:
+        """Return the machine's own devices by their keys in the wiring."""
+        raise NotImplementedError
 
     @property
     def ambient_c(self) -> float:

@@ -26,10 +26,8 @@ TRACK_LEVER_M: Final = 0.05
 """Torque at the track's drive per force at the specimen, m [A]."""
 _METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
 """Metres in the track's unit of length."""
-WORDS: Final = {
-    "load_cell": "load cell", "chamber": "chamber", "pyrometer": "pyrometer", "thermometer": "thermometer",
-}  # fmt: skip
-"""Names of the devices for people, by the keys in the wiring."""
+OWN: Final = ("load_cell", "chamber", "pyrometer", "thermometer")
+"""Keys of the machine's own devices in the wiring; all but the load cell may be missing."""
 
 
 class AmbientAir:
@@ -63,12 +61,9 @@ class TrackRig(SimRig):
         self._raised_mm = parameters.contact.lift_travel
         self.hand_mm = self._raised_mm
         """Position of an arm without a drive, mm."""
-        can = can_wire(spec.bitrate)
-        axes = {name: self._drive(name, config, can) for name, config in spec.axes.items()}
-        wired = {name: self._device(name, spec.devices[name]) for name in WORDS if name in spec.devices}
-        super().__init__(spec, can, axes, wired, {WORDS[name]: slave for name, slave in wired.items()}, self.plant)
-        self.cell = wired["load_cell"]
-        chamber = wired.get("chamber")
+        super().__init__(spec, self.plant, can_wire)
+        self.cell = self.devices["load cell"]
+        chamber = self.devices.get("chamber")
         self.chamber = chamber if isinstance(chamber, ControllerSlave) else None
         self._track = self.axes["track"]
         self._lift = self.axes.get("lift")
@@ -80,11 +75,9 @@ class TrackRig(SimRig):
         self.beyond_switch = False
         self.hit_stop = False
         """Whether the track has hit a stop of its travel."""
-        self._plant_s = 0.0
 
-    def _drive(self, name: str, config: AxisConfig, can: CanWire) -> Cia402Slave:
-        p = self.plant.parameters
-        serial = config.node_id
+    def drive(self, name: str, config: AxisConfig) -> Cia402Slave:
+        p, can, serial = self.plant.parameters, self.can, config.node_id
         if name == "track" and p.motion == "linear":
             low, high = 0.0, p.travel * 1e-3 / _METRES[config.unit]
             axis = VelocityAxis(config.acceleration, config.deceleration, TRACK_LAG_S, 0.5 * high, low, high)
@@ -93,6 +86,9 @@ class TrackRig(SimRig):
             arm = PositionAxis(config.max_speed, config.acceleration, config.deceleration, position=self._raised_mm)
             return Cia402Slave(config, can, arm, serial_number=serial, home_position=self._raised_mm)
         return Cia402Slave(config, can, serial_number=serial, lag_s=TRACK_LAG_S)
+
+    def own_devices(self, spec: RigSpec) -> dict[str, ModbusSlave]:
+        return {name: self._device(name, spec.devices[name]) for name in OWN if name in spec.devices}
 
     def _device(self, name: str, device: DeviceSpec) -> ModbusSlave:
         profile, unit_id = device.profile, device.unit_id
@@ -125,8 +121,7 @@ class TrackRig(SimRig):
 
     def follow(self, t1: float, still: bool) -> None:
         """Advance the plant with its drives to ``t1`` s, and load the track's drive."""
-        elapsed = t1 - self._plant_s
-        self._plant_s = t1
+        elapsed, self.plant_s = t1 - self.plant_s, t1
         chamber = self.chamber
         self.plant.advance(elapsed, self.track_m_s, self.lift_mm, chamber.output if chamber is not None else 0.0)
         torque_nm = -self.plant.force_n * TRACK_LEVER_M if self._track.energised else 0.0
@@ -160,8 +155,8 @@ class TrackRig(SimRig):
 
     # -- actions of the attendant ---------------------------------------------------------------------------------
 
-    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
-        """Put specimen ``specimen`` of a rubber on the arm; ``wheel`` and ``new_specimen`` have no effect here."""
+    def install(self, specimen: int, compound: str) -> None:
+        """Put specimen ``specimen`` of a rubber on the arm."""
         self.plant.install(specimen, compound)
 
     def put_on(self, weights_n: float) -> None:

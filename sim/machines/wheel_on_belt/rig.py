@@ -58,24 +58,12 @@ class WheelRig(SimRig):
     ) -> None:
         """Switch everything on at time 0; ``can_wire``: the class of the bus, another one for faults."""
         self.plant = Plant(parameters, seed)
-        can = can_wire(spec.bitrate)
         self._spring_mm_s = PRESS_SPRING_MM_S if parameters.press_on_power_loss == "retract" else 0.0
-        axes = {name: self._drive(name, config, can) for name, config in spec.axes.items()}
-        ir, jacket = (spec.devices[name] for name in ("ir_thermometer", "jacket"))
-        self.cells = {
-            name: CellSlave(one.profile, one.unit_id, self.plant, one.channels)
-            for name, one in spec.devices.items()
-            if "load_cell" in (name, one.part_of)
-        }
-        """The load cell's transmitters: one, or several."""
+        super().__init__(spec, self.plant, can_wire)
         self.cell = _measuring(self.cells, "fz")
         """The transmitter of the normal force."""
-        self.ir = IrSlave(ir.profile, ir.unit_id, self.plant, sensor_c=parameters.ambient)
-        self.jacket = ControllerSlave(jacket.profile, jacket.unit_id, self.plant)
-        devices: dict[str, ModbusSlave] = {"load cell": self.cell, "thermometer": self.ir, "jacket": self.jacket}
-        devices |= {f"load cell {force}": _measuring(self.cells, force) for force in FORCES}
-        wired: dict[str, ModbusSlave] = {**self.cells, "ir_thermometer": self.ir, "jacket": self.jacket}
-        super().__init__(spec, can, axes, wired, devices, self.plant)
+        self.devices = {"load cell": self.cell, "thermometer": self.ir, "jacket": self.jacket}
+        self.devices |= {f"load cell {force}": _measuring(self.cells, force) for force in FORCES}
         drives = parameters.drives
         self.wheel_shaft, self.belt_shaft, efficiency = shafts(drives, parameters.noise, seed)
         self._screw = PressScrew(drives, efficiency, drives.press_spring if self._spring_mm_s else 0.0)
@@ -93,15 +81,26 @@ class WheelRig(SimRig):
         """Press or positioned axes that move the wrong way round: the motor's direction was never set."""
         self._turned_rad = self._travelled_m = self._seen_s = 0.0
         """Travel of the wheel's shaft and of the belt's surface, and the time of both: what marks on them show."""
-        self._plant_s = 0.0
         self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
         self._sideslip = self.axes.get("sideslip")
 
-    def _drive(self, name: str, config: AxisConfig, can: CanWire) -> Cia402Slave:
+    def own_devices(self, spec: RigSpec) -> dict[str, ModbusSlave]:
+        ir, jacket = (spec.devices[name] for name in ("ir_thermometer", "jacket"))
+        self.cells = {
+            name: CellSlave(device.profile, device.unit_id, self.plant, device.channels)
+            for name, device in spec.devices.items()
+            if "load_cell" in (name, device.part_of)
+        }
+        """The load cell's transmitters: one, or several."""
+        self.ir = IrSlave(ir.profile, ir.unit_id, self.plant, sensor_c=self.ambient_c)
+        self.jacket = ControllerSlave(jacket.profile, jacket.unit_id, self.plant)
+        return {**self.cells, "ir_thermometer": self.ir, "jacket": self.jacket}
+
+    def drive(self, name: str, config: AxisConfig) -> Cia402Slave:
         if name != "press":
-            return Cia402Slave(config, can, serial_number=config.node_id)
+            return super().drive(name, config)
         screw = VelocityAxis(config.acceleration, config.deceleration, lag_s=PRESS_LAG_S, low=0.0, high=PRESS_TRAVEL_MM)
-        return Cia402Slave(config, can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
+        return Cia402Slave(config, self.can, screw, serial_number=config.node_id, unpowered_velocity=self._spring_mm_s)
 
     # -- interface to the wires -----------------------------------------------------------------------------------
 
@@ -120,10 +119,10 @@ class WheelRig(SimRig):
             self._turned_rad += self.wheel_rad_s * dt
             self._travelled_m += self.belt_m_s * dt
         self._seen_s = t1
-        elapsed = t1 - self._plant_s
+        elapsed = t1 - self.plant_s
         if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
             return  # only temperatures change, and slowly
-        self._plant_s = t1
+        self.plant_s = t1
         wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
         if plant.force_z_n > 0.0 or self._stalled:
             self._bear(self._press)
@@ -241,7 +240,7 @@ class WheelRig(SimRig):
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""
-        self._plant_s = self.now_s
+        self.plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, new_specimen)
 
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
@@ -250,7 +249,7 @@ class WheelRig(SimRig):
 
     def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
         """Mount a wheel again that was on before: diameter in mm, sliding distance in m; the rig stays warm."""
-        self._plant_s = self.now_s
+        self.plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, False, diameter_mm, sliding_m)
 
     def belt_travelled(self, travel_m: float) -> None:

@@ -13,6 +13,7 @@ from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, T
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.context import BaseContext
+from tester.machine.plain.context import PlainAttendant
 from tester.machine.prompts import Prompts
 from tester.store.recorder import Recorder
 
@@ -23,12 +24,8 @@ SAMPLES = 40.0
 """A stretch is recorded with about this many samples, or with every scan where it is shorter [A]."""
 
 
-class TrackAttendant(Protocol):
-    """A person's work at the rig. A simulated rig does it itself; on a real rig the calls do nothing."""
-
-    def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
-        """Put a specimen of ``compound`` on the arm."""
-        ...
+class TrackAttendant(PlainAttendant, Protocol):
+    """A person's work at the rig, beside mounting a specimen."""
 
     def put_on(self, weights_n: float) -> None:
         """Hang weights on the arm, N."""
@@ -44,10 +41,6 @@ class TrackAttendant(Protocol):
 
     def lower_arm(self) -> None:
         """Lower an arm that has no drive."""
-        ...
-
-    def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
-        """Mark the start of a repeat (keys of the simulator's random streams)."""
         ...
 
 

@@ -63,7 +63,7 @@ class TrackRuns(KindRun):
 
     def mount(self, attendant: TrackAttendant, compound: str) -> None:
         """Mount a new specimen; "" is SBR."""
-        attendant.install(1, 1, compound or "SBR", new_specimen=True)
+        attendant.install(1, compound or "SBR")
 
     def history(self, runs: Path, rig: Rig) -> NoHistory:
         """Return a note that every run begins with its own specimen and zero."""

@@ -37,7 +37,7 @@ class SpecimenOnTrack(ServedKind):
         """Take whatever is on the arm; a simulated rig gets a new specimen."""
         ctx: TrackContext = run.engine.ctx
         ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm
-        ctx.attendant.install(1, 1, next(iter(ctx.rig.sim.rubbers), ""), new_specimen=True)
+        ctx.attendant.install(1, next(iter(ctx.rig.sim.rubbers), ""))
         return TrackHand(ctx.rig), "whatever is on the arm"
 
 

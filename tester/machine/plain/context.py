@@ -20,7 +20,9 @@ SPEED_SHARE: Final = 0.02
 
 
 class PlainAttendant(Protocol):
-    """A person's work at the rig. A simulated rig does it itself; on a real rig the calls do nothing."""
+    """A person's work at the rig. A simulated rig does it itself; on a real rig the calls do nothing. A kind adds its
+    own.
+    """
 
     def install(self, specimen: int, compound: str) -> None:
         """Mount a new specimen."""

@@ -37,7 +37,7 @@ class InstallSpecimen(AskBesideTrack):
         if not super().step(ctx):
             return False
         one = self.install
-        ctx.attendant.install(one.specimen, one.piece, one.compound, new_specimen=not one.again)
+        ctx.attendant.install(one.specimen, one.compound)
         ctx.attendant.raise_arm()
         if ctx.rig.axes.lift is None:
             ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm

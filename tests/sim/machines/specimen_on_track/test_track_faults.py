@@ -31,7 +31,7 @@ class Nobody:
 
 def made(variant: str = "grosch") -> TrackRig:
     rig = TrackRig(wiring(variant), parameters(variant, noise=0.0, scatter=0.0), 1, FaultyCanWire)
-    rig.install(0, 0, "SBR", new_specimen=True)
+    rig.install(0, "SBR")
     rig.put_on(20.0)
     rig.advance(0.5)
     return rig

@@ -20,7 +20,7 @@ def made(variant: str = "grosch", **changes: object) -> TrackRig:
         wiring(variant), parameters(variant, noise=0.0, scatter=0.0, **changes), 1
     )
     assert isinstance(rig, TrackRig)
-    rig.install(0, 0, "SBR", new_specimen=True)
+    rig.install(0, "SBR")
     rig.put_on(20.0)
     rig.advance(0.5)
     return rig
