@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import nan
-from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeAlias, TypeVar
 
 from tester.inputs.rig import Rig
 from tester.machine.image import BaseDemand, BaseReadings
 from tester.machine.prompts import Prompts
 from tester.store.recorder import Recorder
+from tester.store.records import PieceInfo
+
+if TYPE_CHECKING:
+    from tester.inputs.recipe.plain_recipe import Mount  # the recipe's schema, which a run does not need
 
 
 @dataclass(slots=True)
@@ -28,6 +32,16 @@ class Progress:
     revolutions: float = 0.0
     revolutions_wanted: float = 0.0
     burst: int = 0
+
+
+@dataclass(slots=True)
+class MountedSpecimen:
+    """The specimen on the machine; ``number`` counts the mounted pieces from 1, 0 if there is none."""
+
+    number: int = 0
+    specimen: int = 0
+    compound: str = ""
+    sliding_m: float = 0.0
 
 
 RigT_co = TypeVar("RigT_co", bound=Rig, covariant=True)
@@ -72,6 +86,7 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         self.gate = 0
         """Mask of the closed gates; 0 if this scan counts."""
         self.progress = Progress()
+        self.mounted = MountedSpecimen()
 
     def before_reading(self) -> None:
         """Write to the image what the devices need before they fill it."""
@@ -90,9 +105,16 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         """Return whether contact is demanded or measured; every scan is then recorded."""
         return False
 
+    def mount(self, step: Mount) -> None:
+        """Note the new specimen that a person has just put on, and record it."""
+        self.mounted = MountedSpecimen(step.piece, step.specimen, step.compound)
+        self.journal.piece_mounted(
+            PieceInfo(step.piece, step.specimen, step.replicate, step.compound, self.now, nan, nan, updated_s=self.now)
+        )
+
     def piece(self) -> tuple[int, float, float]:
         """Return the specimen's number (0 if none), diameter in mm (NaN if it has none) and sliding distance in m."""
-        return 0, nan, 0.0
+        return self.mounted.number, nan, self.mounted.sliding_m
 
     def record_piece(self, recorder: Recorder, now_s: float) -> None:
         """Record the state of the specimen at ``now_s``, if there is one."""

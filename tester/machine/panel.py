@@ -81,7 +81,8 @@ class RunPanel:
 
     def mounted(self) -> tuple[int, str]:
         """Return number and compound of the specimen on the rig; (0, "") if there is none."""
-        raise NotImplementedError
+        mounted = self.engine.ctx.mounted
+        return mounted.specimen, mounted.compound
 
 
 def soak_view(

@@ -45,18 +45,6 @@ class TrackAttendant(PlainAttendant, Protocol):
 
 
 @dataclass(slots=True)
-class MountedSpecimen:
-    """The specimen on the arm, the weights on it, and the interface between it and the track."""
-
-    number: int = 0
-    specimen: int = 0
-    compound: str = ""
-    sliding_m: float = 0.0
-    weights_n: float = 0.0
-    interface: str = "dry"
-
-
-@dataclass(slots=True)
 class TrackTarget:
     """The target values of the gates; the measuring activity writes them."""
 
@@ -90,28 +78,26 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         self.attendant = attendant
         self.devices = devices
         self.quantities = quantities
-        self.on = MountedSpecimen()
+        self.weights_n = 0.0
+        """Weights on the arm, N."""
         self.target = TrackTarget()
         self.recorded_s = float("-inf")
         self._way_m = 0.0
         self._from_m = 0.0
         self._way = 0.0
 
-    def piece(self) -> tuple[int, float, float]:
-        return self.on.number, nan, self.on.sliding_m
-
     def after_reading(self) -> None:
         """Derive values from the readings: friction against the motion, distance slid, load, stretches."""
-        r, demand, on = self.readings, self.demand, self.on
+        r, demand = self.readings, self.demand
         way = 1.0 if demand.track_m_s > 0.0 else -1.0 if demand.track_m_s < 0.0 else 0.0
-        r.load_n = on.weights_n if r.lowered else 0.0
+        r.load_n = self.weights_n if r.lowered else 0.0
         r.friction_n = way * r.force_n if way else r.force_n
         r.sliding_m_s = way * r.track_m_s if way else r.track_m_s
         if way != self._way or not r.lowered:
             self._way, self._from_m = way, r.way_m
         demand.sliding_m = way * (r.way_m - self._from_m)
         if r.lowered:
-            on.sliding_m += abs(r.way_m - self._way_m)
+            self.mounted.sliding_m += abs(r.way_m - self._way_m)
         self._way_m = r.way_m
         stretch_m = self.target.stretch_m
         r.stretch = r.way_m / stretch_m if stretch_m > 0.0 else 0.0

@@ -54,7 +54,7 @@ class TrackPanel(RunPanel):
         found = {
             "track": Wanted(mm_s, abs(0.01 * ctx.rig.gates.speed_percent * mm_s)),
             "lift": Wanted(out.lift_mm),
-            "load": Wanted(ctx.on.weights_n if ctx.demand.lowered else 0.0),
+            "load": Wanted(ctx.weights_n if ctx.demand.lowered else 0.0),
             "air": Wanted(out.chamber_c if out.chamber else None),
         }
         if ctx.burst > 0:
@@ -74,11 +74,6 @@ class TrackPanel(RunPanel):
 
     def checks(self) -> tuple[Check, ...]:
         """Return the connected rig's own checks before a start."""
-        on = self.engine.ctx.on
-        specimen = f"{on.compound}, {1e3 * on.sliding_m:.1f} mm slid" if on.number else "none on"
+        mounted = self.engine.ctx.mounted
+        specimen = f"{mounted.compound}, {1e3 * mounted.sliding_m:.1f} mm slid" if mounted.number else "none on"
         return (*super().checks(), Check("specimen", None, specimen))
-
-    def mounted(self) -> tuple[int, str]:
-        """Return number and compound of the specimen on the arm."""
-        on = self.engine.ctx.on
-        return on.specimen, on.compound

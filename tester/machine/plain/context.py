@@ -8,7 +8,6 @@ from typing import ClassVar, Final, Protocol
 
 from drivers.sensor import Sensor
 from tester.base.quantities import Quantities
-from tester.inputs.recipe.plain_recipe import Mount
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.context import BaseContext
 from tester.machine.plain.image import PlainDemand, PlainReadings
@@ -53,10 +52,9 @@ class PlainContext(BaseContext[PlainRig, PlainReadings, PlainDemand]):
         self.attendant = attendant
         self.quantities = quantities
         self.sensors = sensors
-        self.mounted: Mount | None = None
 
     def piece(self) -> tuple[int, float, float]:
-        return (self.mounted.piece if self.mounted is not None else 0), nan, self.readings.slid_m
+        return self.mounted.number, nan, self.readings.slid_m
 
     def at_speed(self) -> bool:
         """Return whether every drive is at its demanded speed."""

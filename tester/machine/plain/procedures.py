@@ -21,7 +21,6 @@ from tester.machine.motions import Ask, ZeroOfCell
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.image import PlainReadings
 from tester.machine.result_keeping import StoredResults
-from tester.store.records import PieceInfo
 
 MOVE_AT_MOST_S: Final = 15.0
 """Longest time for drives to reach their speed, or standstill, s [A]."""
@@ -81,12 +80,9 @@ class PutOn:
         return self._zero(ctx)
 
     def _put_on(self, ctx: PlainContext) -> None:
-        one = self.mount
-        ctx.attendant.install(one.specimen, one.compound)
-        ctx.mounted, ctx.readings.slid_m = one, 0.0
-        ctx.journal.piece_mounted(
-            PieceInfo(one.piece, one.specimen, one.replicate, one.compound, ctx.now, nan, nan, updated_s=ctx.now)
-        )
+        ctx.attendant.install(self.mount.specimen, self.mount.compound)
+        ctx.mount(self.mount)
+        ctx.readings.slid_m = 0.0
         zeroed = (name for name, sensor in ctx.sensors.items() if sensor.profile.tare)
         self.zeros = {name: ZeroOfCell(ZERO_S, name.replace("_", " ")) for name in zeroed}
 

@@ -20,15 +20,6 @@ STEPS_TO_TOP: Final = 20
 """Manual steps from standstill to a drive's greatest speed [A]."""
 
 
-class PlainPanel(RunPanel):
-    """The view of one run on a plain machine."""
-
-    def mounted(self) -> tuple[int, str]:
-        """Return number and compound of the mounted specimen."""
-        mount = self.engine.ctx.mounted
-        return (mount.specimen, mount.compound) if mount is not None else (0, "")
-
-
 class SpeedHand(Hand):
     """Changes the speeds of drives in a person's steps."""
 
@@ -58,7 +49,7 @@ class SpeedHand(Hand):
 class PlainServed(ServedKind):
     """A plain kind's answers to a service."""
 
-    panel: type[RunPanel] = PlainPanel
+    panel: type[RunPanel] = RunPanel
 
     def __init__(
         self,

@@ -6,14 +6,14 @@ from collections.abc import Sequence as Steps
 from typing import Final
 
 from tester.inputs.recipe.plan import PromptStep, Step
-from tester.kinds.specimen_on_track.context import MountedSpecimen, TrackContext
+from tester.kinds.specimen_on_track.context import TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
 from tester.kinds.specimen_on_track.procedures.slide import MeasureTrackCondition
 from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.machine.activity import Activity
+from tester.machine.context import MountedSpecimen
 from tester.machine.executor import Procedures, Unforeseen
 from tester.machine.result_keeping import StoredResults
-from tester.store.records import PieceInfo
 
 SHOW_S: Final = 1.0
 """Period at which the progress of a wait is shown, s."""
@@ -41,12 +41,11 @@ class InstallSpecimen(AskBesideTrack):
         ctx.attendant.raise_arm()
         if ctx.rig.axes.lift is None:
             ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm
-        ctx.on = MountedSpecimen(one.piece, one.specimen, one.compound, one.sliding_m)
-        if not one.again:
-            nan = float("nan")
-            record = PieceInfo(one.piece, one.specimen, one.replicate, one.compound, ctx.now, nan, nan,
-                               updated_s=ctx.now)  # fmt: skip
-            ctx.journal.piece_mounted(record)
+        ctx.weights_n = 0.0
+        if one.again:
+            ctx.mounted = MountedSpecimen(one.piece, one.specimen, one.compound, one.sliding_m)
+        else:
+            ctx.mount(one)
         return True
 
 
@@ -65,7 +64,7 @@ class PrepareTrack(AskBesideTrack):
         one = self.prepare
         ctx.attendant.put_on(one.load_n)
         ctx.attendant.prepare(one.interface)
-        ctx.on.weights_n, ctx.on.interface = one.load_n, one.interface
+        ctx.weights_n = one.load_n
         return True
 
 
