@@ -16,6 +16,7 @@ from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.prompts import Prompts
+from tester.machine.run_parts import RunSetup
 from tester.machine.tickers import next_tick
 from tester.run.folder import Job, beginning_of, work_of
 from tester.run.simulated import simulated_ports
@@ -62,7 +63,7 @@ class LiveRun:
         self.writer = RunWriter(folder / "run.db", QUANTITIES, clock=clock.monotonic, utc=clock.utc_now, lossless=True)
         beginning_of(work.parts[0], Job(folder, seed), work)(self.writer)
         ports, self.world, attendant = simulated_ports(rig, seed, None)
-        self.run = build_run(rig, plan, ports, attendant, self.writer, Prompts(automatic=True))
+        self.run = build_run(RunSetup(rig, plan, ports, attendant, self.writer, Prompts(automatic=True)))
         self.engine = self.run.engine
         self.now = 0.0
         self.ticks = 0

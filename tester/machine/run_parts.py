@@ -38,6 +38,25 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True)
+class RunSetup:
+    """What a run is built from."""
+
+    rig: Rig
+    plan: Plan
+    """The work to do."""
+    ports: Ports
+    attendant: Any
+    """It receives the kind's requests to a person; a simulated rig carries them out itself. The kind defines its
+    methods."""
+    recorder: Recorder
+    prompts: Prompts
+    point: ResumePoint | None = None
+    """Where an interrupted run resumes."""
+    history: History | None = None
+    """Facts from earlier runs; None if there are none."""
+
+
+@dataclass(frozen=True, slots=True)
 class NoHistory:
     """The ``History`` of a kind that uses nothing from earlier runs."""
 
@@ -64,11 +83,7 @@ def _nothing(*_: object, **__: object) -> None:
 
 
 class KindRun:
-    """A kind's part in running recipes. A kind implements ``build`` and ``mount``.
-
-    An ``attendant`` receives the kind's requests to a person; a simulated rig carries them out itself. The kind defines
-    its methods.
-    """
+    """A kind's part in running recipes. A kind implements ``build`` and ``mount``."""
 
     plan: type[Plan] = Plan
     """The class of the kind's plans."""
@@ -83,22 +98,8 @@ class KindRun:
         """
         return (Part(1, plan),)
 
-    def build(
-        self,
-        rig: Rig,
-        plan: Plan,
-        ports: Ports,
-        attendant: Any,
-        recorder: Recorder,
-        prompts: Prompts,
-        point: ResumePoint | None = None,
-        history: History | None = None,
-    ) -> Run:
-        """Return a run, ready to be ticked.
-
-        ``plan``: the work to do; ``point``: where an interrupted run resumes; ``history``: facts from earlier runs,
-        None if there are none.
-        """
+    def build(self, setup: RunSetup) -> Run:
+        """Return a run, ready to be ticked."""
         raise NotImplementedError
 
     def mount(self, attendant: Any, compound: str) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.prompts import Prompts
+from tester.machine.run_parts import RunSetup
 
 if TYPE_CHECKING:
     from tester.base.quantities import Quantities
@@ -138,7 +139,8 @@ class ServedKind:
 
         ``attendant``, ``history``: as in the kind's ``KindRun``.
         """
-        run = self.runs.build(rig, self.runs.plan(NAME, (), (), 1), ports, attendant, record, Prompts(), None, history)
+        plan = self.runs.plan(NAME, (), (), 1)
+        run = self.runs.build(RunSetup(rig, plan, ports, attendant, record, Prompts(), history=history))
         hand, mounted = self.hand(run, left)
         executor = run.engine.executor = ManualExecutor(hand)
         return ByHand(run, executor, mounted)

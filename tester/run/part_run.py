@@ -15,7 +15,7 @@ from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Outcome, Run
-from tester.machine.run_parts import Part
+from tester.machine.run_parts import Part, RunSetup
 from tester.machine.tickers import Ticked, TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
 from tester.machine.time_left import TimeLeft
 from tester.run.bus_log import BusLog
@@ -176,8 +176,8 @@ def _execute(
         truth = truth_of(world, rig.plant) if world is not None else None
         if truth is not None:
             attendant = Witnessed(attendant, truth, part.plan, writer)
-        build = run_parts(rig).build
-        run = build(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
+        setup = RunSetup(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
+        run = run_parts(rig).build(setup)
         run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be part of a larger plan
         watch.track.begin_part(part.plan)
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)

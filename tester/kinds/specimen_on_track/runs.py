@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Final
 
 from tester.base.screen import Check
-from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds.specimen_on_track.axes import NAME, held_by
@@ -19,15 +18,10 @@ from tester.kinds.specimen_on_track.procedures.arming import TrackArming
 from tester.kinds.specimen_on_track.procedures.steps import TrackProcedures
 from tester.kinds.specimen_on_track.process import TrackDemand
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.prompts import Prompts
 from tester.machine.result_keeping import StoredResults
-from tester.machine.rig_ports import Ports
 from tester.machine.run import Run, run_of
-from tester.machine.run_parts import KindRun, NoHistory
-from tester.machine.served import History
-from tester.store.recorder import Recorder
+from tester.machine.run_parts import KindRun, NoHistory, RunSetup
 from tester.store.records import Calibration
-from tester.store.resumable import ResumePoint
 
 
 class TrackRuns(KindRun):
@@ -35,31 +29,21 @@ class TrackRuns(KindRun):
 
     plant: str = NAME
 
-    def build(
-        self,
-        rig: Rig,
-        plan: Plan,
-        ports: Ports,
-        attendant: TrackAttendant,
-        recorder: Recorder,
-        prompts: Prompts,
-        point: ResumePoint | None = None,
-        history: History | None = None,
-    ) -> Run:
+    def build(self, setup: RunSetup) -> Run:
         """Return a run that is ready to be ticked."""
-        own = TrackConfig.of(rig)
-        devices = TrackDevices(own, ports)
-        speeds = [held_by(step.setpoint).track_m_s for step in plan.conditions()]
+        own = TrackConfig.of(setup.rig)
+        devices = TrackDevices(own, setup.ports)
+        speeds = [held_by(step.setpoint).track_m_s for step in setup.plan.conditions()]
         # A linear track is brought to its place at half its greatest speed, whatever the recipe asks for.
         most_m_s = (
             max([0.5 * own.limits.track_speed_m_s if own.linear else 0.0, *speeds], default=0.0) if speeds else inf
         )
         control = TrackControl(own, most_m_s)
         quantities = quantities_on(own)
-        ctx = TrackContext(own, TrackDemand(), prompts, recorder, attendant, devices, quantities)
-        procedures = TrackProcedures(StoredResults[TrackContext](recorder, point=point))
+        ctx = TrackContext(own, TrackDemand(), setup.prompts, setup.recorder, setup.attendant, devices, quantities)
+        procedures = TrackProcedures(StoredResults[TrackContext](setup.recorder, point=setup.point))
         arming = TrackArming(devices, own)
-        return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
+        return run_of(setup.plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: TrackAttendant, compound: str) -> None:
         """Mount a new specimen; "" is SBR."""

@@ -9,7 +9,6 @@ from math import nan
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.plain_recipe import Mount, PlainPart
 from tester.inputs.recipe.plan import Plan
-from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.connect import Arming
@@ -19,15 +18,10 @@ from tester.machine.plain.control import PlainControl
 from tester.machine.plain.devices import PlainDevices
 from tester.machine.plain.image import PlainReadings
 from tester.machine.plain.procedures import PlainProcedures
-from tester.machine.prompts import Prompts
 from tester.machine.proof import WatchdogProof
 from tester.machine.result_keeping import StoredResults
-from tester.machine.rig_ports import Ports
 from tester.machine.run import Run, run_of
-from tester.machine.run_parts import KindRun, Part
-from tester.machine.served import History
-from tester.store.recorder import Recorder
-from tester.store.resumable import ResumePoint
+from tester.machine.run_parts import KindRun, Part, RunSetup
 
 
 class PlainArming(Arming[PlainDevices, PlainRig]):
@@ -61,27 +55,18 @@ class PlainRuns(KindRun):
             parts.append(Part(number, replace(plan, steps=plan.steps[begin:end]), number))
         return tuple(parts)
 
-    def build(
-        self,
-        rig: Rig,
-        plan: Plan,
-        ports: Ports,
-        attendant: PlainAttendant,
-        recorder: Recorder,
-        prompts: Prompts,
-        point: ResumePoint | None = None,
-        history: History | None = None,
-    ) -> Run:
+    def build(self, setup: RunSetup) -> Run:
         """Return a run that is ready to be ticked."""
-        own, quantities = PlainRig.of(rig), quantities_on(rig)
-        devices = PlainDevices(own, ports)
+        own, quantities = PlainRig.of(setup.rig), quantities_on(setup.rig)
+        devices = PlainDevices(own, setup.ports)
         readings = self.readings(own)
         readings.channels = [nan] * len(quantities.further)
         control = PlainControl(own, self.table, readings)
-        ctx = PlainContext(own, readings, prompts, recorder, attendant, quantities, devices.own)
-        procedures = PlainProcedures(self.part, StoredResults[PlainContext](recorder, point=point), self.speeds)
+        ctx = PlainContext(own, readings, setup.prompts, setup.recorder, setup.attendant, quantities, devices.own)
+        results = StoredResults[PlainContext](setup.recorder, point=setup.point)
+        procedures = PlainProcedures(self.part, results, self.speeds)
         arming = PlainArming(devices, own)
-        return run_of(plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
+        return run_of(setup.plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: PlainAttendant, compound: str) -> None:
         """Mount a new specimen."""

@@ -24,6 +24,7 @@ from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.run.past_runs import KIND as HEATING
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
+from tester.machine.run_parts import RunSetup
 from tester.machine.tickers import next_tick
 from tester.run.fault_injection import RIG_STEP_S, FaultyRun
 from tester.run.simulated import simulated_ports
@@ -116,7 +117,7 @@ class Stage:
         assert isinstance(rig, WheelRig)
         self.rig: Any = rig
         prompts = Prompts(automatic=True)
-        self.run: Run = build_run(config, self.plan, ports, attendant, self.ledger, prompts, heat=heat)
+        self.run: Run = build_run(RunSetup(config, self.plan, ports, attendant, self.ledger, prompts), heat)
         held = [step.setpoint for step in self.plan.conditions()]
         planned = max((one.number("slip_velocity") * one.number("load") for one in held), default=0.0)
         self.observer: Any = HarmObserver(rig, planned)

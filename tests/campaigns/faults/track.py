@@ -19,6 +19,7 @@ from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.kinds.specimen_on_track.runs import RUNS
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
+from tester.machine.run_parts import RunSetup
 from tester.run.simulated import simulated_ports
 from tests.campaigns.faults.first_up import First
 from tests.campaigns.faults.recipes import TRACKS
@@ -71,7 +72,9 @@ class TrackStage(Stage):
         self.ledger = self.tares = TrackLedger()
         assert isinstance(world, TrackRig)
         self.rig = world
-        self.run: Run = RUNS.build(config, self.plan, ports, attendant, self.ledger, Prompts(automatic=True))
+        self.run: Run = RUNS.build(
+            RunSetup(config, self.plan, ports, attendant, self.ledger, Prompts(automatic=True))
+        )
         self.observer = TrackHarmObserver(world)
         self.invariants = TrackInvariants()
         self.begin(config)

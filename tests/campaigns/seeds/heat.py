@@ -19,6 +19,7 @@ from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.run.past_runs import KIND, known_from, ratios_of
 from tester.machine.prompts import Prompts
+from tester.machine.run_parts import RunSetup
 from tester.machine.tickers import run_simulated
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
@@ -102,7 +103,7 @@ def live(name: str, seed: int) -> Life:
         heard = Heard()
         known = known_from(ratios, rig)
         plan = expand(load_recipe(text, PART, "heat.yaml").recipe, rig)
-        run = build_run(rig, plan, ports, attendant, heard, Prompts(automatic=True), heat=known)
+        run = build_run(RunSetup(rig, plan, ports, attendant, heard, Prompts(automatic=True)), known)
         run_simulated(run, world, lapse=None, poll=lambda _now_s: None)
         trips += (f"run {number}: {trip}" for trip in heard.trips)
         if not heard.trips:

@@ -16,6 +16,7 @@ from drivers.ports import FrameByFrame
 from drivers.transports.tcp_line import open_tcp_line
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.prompts import Prompts
+from tester.machine.run_parts import RunSetup
 from tester.machine.tickers import run_simulated
 from tester.run.bus_log import BusLog, CanLog, LineLog
 from tester.run.simulated import simulated_ports
@@ -33,7 +34,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     config = rig(*QUIET)
     log = BusLog(folder, config)
     ports, world, attendant = simulated_ports(config, 0, log)
-    run = build_run(config, plan_of(), ports, attendant, NullRecorder(), Prompts(automatic=True))
+    run = build_run(RunSetup(config, plan_of(), ports, attendant, NullRecorder(), Prompts(automatic=True)))
     run_simulated(run, world, lapse=None, poll=lambda _: None)
     log.close()
     return folder

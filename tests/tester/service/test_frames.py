@@ -25,7 +25,7 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.served.served import SERVED
 from tester.machine.prompts import Prompts
-from tester.machine.run_parts import NoAttendant
+from tester.machine.run_parts import NoAttendant, RunSetup
 from tester.run.bus_log import BusLog
 from tester.run.folder import part_time
 from tester.run.rig_wires import hardware_ports
@@ -91,7 +91,7 @@ def watched(rig: RigConfig, lines: dict[str, FarEnd], log: BusLog | None = None)
     """Return the frames that the service shows of a run's first transactions on both lines."""
     ports = hardware_ports(rig, log)
     plan = plan_of(config=rig)
-    run = build_run(rig, plan, ports, NoAttendant(), NullRecorder(), Prompts(automatic=True))
+    run = build_run(RunSetup(rig, plan, ports, NoAttendant(), NullRecorder(), Prompts(automatic=True)))
     watch = RunWatch(run, PlanTrack(plan.name, [part_time(rig, plan)]), SERVED)
     watch.frames.watch(True)
     try:

@@ -20,6 +20,7 @@ from tester.machine.activity import Activity
 from tester.machine.commission.commission_step import Dialogue, Waits
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
+from tester.machine.run_parts import RunSetup
 from tester.machine.state import Mode
 from tester.store.recorder import NullRecorder
 
@@ -30,7 +31,8 @@ class ArmedSeat:
     def __init__(self, rig: Rig, ports: Ports, hands: Any) -> None:
         """Send nothing; the simulated rig gets a new wheel."""
         self.rig = believed = RigConfig.of(rig)
-        self.run = build_run(believed, WheelPlan(COMMISSIONING, (), (), 1), ports, hands, NullRecorder(), Prompts())
+        plan = WheelPlan(COMMISSIONING, (), (), 1)
+        self.run = build_run(RunSetup(believed, plan, ports, hands, NullRecorder(), Prompts()))
         self.executor = MovesExecutor()
         engine = self.run.engine
         engine.executor = self.executor

@@ -9,7 +9,7 @@ from tester.analysis.left_out import combining_of
 from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N
-from tester.kinds.wheel_on_belt.context import Attendant, Context
+from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.control.step import WheelControl
 from tester.kinds.wheel_on_belt.image.axes import held_by, straight
@@ -23,11 +23,10 @@ from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, PreGrind, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-from tester.machine.prompts import Prompts
 from tester.machine.rig_drivers import RigDrivers, load_cell_of
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Run, run_of
-from tester.store.recorder import Recorder
+from tester.machine.run_parts import RunSetup
 from tester.store.resumable import ResumePoint
 
 
@@ -103,22 +102,15 @@ def build_devices(rig: RigConfig, ports: Ports) -> Devices:
 
 
 def build_run(
-    rig: RigConfig,
-    plan: Plan,
-    ports: Ports,
-    attendant: Attendant,
-    recorder: Recorder,
-    prompts: Prompts,
-    point: ResumePoint | None = None,
-    heat: KnownRatio = NO_HISTORY,
-    procedures: type[WheelProcedures] = WheelProcedures,
+    setup: RunSetup, heat: KnownRatio = NO_HISTORY, procedures: type[WheelProcedures] = WheelProcedures
 ) -> Run:
     """Return a run that is ready to be ticked.
 
-    ``point``: where it resumes, with the remaining plan; ``heat``: facts from earlier runs on this rig about its heat
-    balance (``heatings``); ``procedures``: selects the activities of its steps.
+    ``heat``: facts from earlier runs on this rig about its heat balance (``heatings``); ``procedures``: selects the
+    activities of its steps.
     """
-    devices = build_devices(rig, ports)
+    rig, plan, point = RigConfig.of(setup.rig), setup.plan, setup.point
+    devices = build_devices(rig, setup.ports)
     control = WheelControl(rig, plan_bounds(plan, rig))
     control.view.know_heat(heat)
     diameter_mm, quantities, cell = rig.geometry.wheel_diameter_mm, quantities_on(rig), devices.cell
@@ -129,8 +121,8 @@ def build_run(
         joined=cell if isinstance(cell, JoinedCell) else None,
         cell_old_s=rig.interlocks.stale_cell_s,
     )
-    ctx = Context(rig, readings, prompts, recorder, attendant, cell, control.view, quantities)
-    results = WheelResults(recorder, combining_of(plan.metadata))
+    ctx = Context(rig, readings, setup.prompts, setup.recorder, setup.attendant, cell, control.view, quantities)
+    results = WheelResults(setup.recorder, combining_of(plan.metadata))
     serving = procedures(plan, results, hardware=not rig.simulated)
     if point is not None:
         take_up(serving, results, point)

@@ -18,14 +18,10 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.run.past_runs import known_heat
 from tester.kinds.wheel_on_belt.served.left_on_rig import HeatHistory
-from tester.machine.prompts import Prompts
-from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
-from tester.machine.run_parts import KindRun, Part
-from tester.machine.served import History
+from tester.machine.run_parts import KindRun, Part, RunSetup
 from tester.store.recorder import Recorder
 from tester.store.records import Calibration
-from tester.store.resumable import ResumePoint
 
 
 def split(plan: Plan) -> tuple[Part, ...]:
@@ -64,20 +60,10 @@ class WheelRuns(KindRun):
         """Return a part for each specimen and replicate."""
         return split(plan)
 
-    def build(
-        self,
-        rig: Rig,
-        plan: Plan,
-        ports: Ports,
-        attendant: Attendant,
-        recorder: Recorder,
-        prompts: Prompts,
-        point: ResumePoint | None = None,
-        history: History | None = None,
-    ) -> Run:
+    def build(self, setup: RunSetup) -> Run:
         """Return a run that is ready to be ticked."""
-        heat = history.ratio if isinstance(history, HeatHistory) else NO_HISTORY
-        return build_run(RigConfig.of(rig), plan, ports, attendant, recorder, prompts, point, heat, self.procedures)
+        heat = setup.history.ratio if isinstance(setup.history, HeatHistory) else NO_HISTORY
+        return build_run(setup, heat, self.procedures)
 
     def mount(self, attendant: Attendant, compound: str) -> None:
         """Mount a new wheel; "" is compound 1#."""

@@ -15,6 +15,7 @@ from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.kinds.specimen_on_track.runs import RUNS
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
+from tester.machine.run_parts import RunSetup
 from tester.machine.tickers import next_tick
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
@@ -87,7 +88,7 @@ class TrackBench:
         self.world = world
         self.kept = Kept()
         self.prompts = Prompts(automatic=True)
-        self.run: Run = RUNS.build(self.config, self.plan, ports, attendant, self.kept, self.prompts)
+        self.run: Run = RUNS.build(RunSetup(self.config, self.plan, ports, attendant, self.kept, self.prompts))
         self.now = 0.0
 
     def tick(self) -> None:

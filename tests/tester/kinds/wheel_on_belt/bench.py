@@ -24,7 +24,7 @@ from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.activity import Activity
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
-from tester.machine.run_parts import NoAttendant
+from tester.machine.run_parts import NoAttendant, RunSetup
 from tester.machine.sampler import Sampler
 from tester.machine.tickers import next_tick
 from tester.run.simulated import simulated_ports
@@ -259,7 +259,9 @@ class Simulation:
         self.notes = Notes()
         assert isinstance(world, WheelRig)
         self.world = world
-        self.run: Run = build_run(config, self.plan, ports, attendant, self.notes, Prompts(automatic=True))
+        self.run: Run = build_run(
+            RunSetup(config, self.plan, ports, attendant, self.notes, Prompts(automatic=True))
+        )
         self.now = 0.0
         self.ticks: list[float] = []
         self.truth: list[tuple[float, float]] = []

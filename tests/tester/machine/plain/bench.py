@@ -30,6 +30,7 @@ from tester.machine.plain.runs import PlainRuns
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Run
+from tester.machine.run_parts import RunSetup
 from tester.run.simulated import spec_of
 from tester.store.recorder import NullRecorder
 from tests.tester.inputs.recipe.texts import load_recipe
@@ -169,9 +170,9 @@ class Bench:
         assert isinstance(twin, PlainTwin) and isinstance(twin.plant, BenchPlant)
         self.twin, self.plant = twin, twin.plant
         self.prompts = Prompts(automatic=True)
-        self.run: Run = BenchRuns().build(
+        self.run: Run = BenchRuns().build(RunSetup(
             self.rig, plan or bench_plan(), Ports(twin.can, dict(twin.lines)), twin, NullRecorder(), self.prompts
-        )
+        ))  # fmt: skip
         self.now = 0.0
 
     @property

@@ -8,6 +8,7 @@ from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.prompts import Prompts
+from tester.machine.run_parts import RunSetup
 from tester.machine.state import Mode
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
@@ -73,7 +74,7 @@ def test_what_earlier_runs_have_shown_tightens_the_heat_balance() -> None:
     config = rig()
     ports, _, attendant = simulated_ports(config, 0, None)
     prompts = Prompts(automatic=True)
-    run = build_run(config, plan_of(), ports, attendant, NullRecorder(), prompts, heat=KnownRatio(3, 1.0))
+    run = build_run(RunSetup(config, plan_of(), ports, attendant, NullRecorder(), prompts), KnownRatio(3, 1.0))
     heat = run.engine.ctx.heat
     assert heat is not None and heat.share == pytest.approx(0.12)
     (known,) = run.engine.ctx.known()
