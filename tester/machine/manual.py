@@ -7,14 +7,12 @@ itself after a minute without a key press, and when the client that armed it is 
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from tester.inputs.recipe.plan import Plan
 from tester.machine.context import AnyContext
 from tester.machine.executor import Executor, Procedures
-
-if TYPE_CHECKING:
-    from tester.machine.served import Hand
+from tester.machine.hand import Hand
 
 NAME: Final = "manual mode"
 ARMED_S: Final = 60.0

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from tester.inputs.recipe.plan import Plan
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from tester.machine.prompts import Prompts
     from tester.machine.rig_ports import Ports
     from tester.machine.run import Run
-    from tester.machine.served import History, Left
     from tester.store.recorder import Recorder
     from tester.store.records import Calibration
     from tester.store.resumable import ResumePoint
@@ -35,6 +34,29 @@ class Part:
     plan: Plan
     last_mounted: int = 0
     """The highest specimen number used before this part mounts a specimen that the plan did not foresee."""
+
+
+class Left(Protocol):
+    """The specimen that a run left on its rig."""
+
+    @property
+    def known(self) -> bool:
+        """Whether the run mounted something."""
+        ...
+
+    def usable(self, rig: Rig) -> bool:
+        """Return whether the specimen may still be used on a rig. If not, it is treated as changed."""
+        ...
+
+
+class History(Protocol):
+    """Facts about a rig from the runs in a folder: plain data, which can be hashed and pickled."""
+
+    def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
+        """Return the kind's part of the pre-flight list before the rig is connected. ``left``: what the newest run
+        left.
+        """
+        ...
 
 
 @dataclass(frozen=True, slots=True)

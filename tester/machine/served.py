@@ -6,7 +6,7 @@ A service reads a run between two ticks and thereby changes nothing. ``tester.ru
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.prompts import Prompts
@@ -14,82 +14,15 @@ from tester.machine.run_parts import RunSetup
 
 if TYPE_CHECKING:
     from tester.base.quantities import Quantities
-    from tester.base.screen import Check, MachineView
+    from tester.base.screen import MachineView
     from tester.inputs.rig import Rig
-    from tester.machine.motions import ZeroOfCell
+    from tester.machine.hand import Hand
     from tester.machine.panel import RunPanel
     from tester.machine.rig_ports import Ports
     from tester.machine.run import Run
-    from tester.machine.run_parts import KindRun
+    from tester.machine.run_parts import History, KindRun, Left
     from tester.store.recorder import Recorder
     from tester.store.run_reader import RunReader
-
-
-class Left(Protocol):
-    """The specimen that a run left on its rig."""
-
-    @property
-    def known(self) -> bool:
-        """Whether the run mounted something."""
-        ...
-
-    def usable(self, rig: Rig) -> bool:
-        """Return whether the specimen may still be used on a rig. If not, it is treated as changed."""
-        ...
-
-
-class History(Protocol):
-    """Facts about a rig from the runs in a folder: plain data, which can be hashed and pickled."""
-
-    def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
-        """Return the kind's part of the pre-flight list before the rig is connected. ``left``: what the newest run
-        left.
-        """
-        ...
-
-
-class Hand:
-    """Moves a kind's axes for a person. Methods return "", or the reason for refusing; ``ctx`` is the kind's own."""
-
-    def __init__(self) -> None:
-        """Begin with nothing requested."""
-        self.taring: ZeroOfCell | None = None
-        """The zero of the load cell that is being taken."""
-        self.tare_text = ""
-        """The newest zero of the load cell in words, "" before the first."""
-
-    @property
-    def busy(self) -> str:
-        """Why no step is possible at present; "" if a step is possible."""
-        return "the load cell is being tared" if self.taring is not None else ""
-
-    def follow(self, ctx: Any) -> None:
-        """Write the demand, and advance a tare under way; called in every scan."""
-        self.demand(ctx)
-        taring = self.taring
-        if taring is not None and taring.step(ctx):
-            self.taring = None
-            if taring.failed:
-                self.tare_text = f"not taken: {taring.failed}"
-            else:
-                self.tare_text = f"zero from {taring.count} readings: {self.zero(ctx)}"
-            ctx.journal.event(ctx.now, "tare", self.tare_text)
-
-    def demand(self, ctx: Any) -> None:
-        """Write the demand that results from the steps so far."""
-        raise NotImplementedError
-
-    def step(self, ctx: Any, axis: str, sign: float) -> str:
-        """Take one step of an axis from the kind's table, up (+1) or down (-1)."""
-        raise NotImplementedError
-
-    def tare(self, ctx: Any) -> str:
-        """Begin to zero the load cell."""
-        raise NotImplementedError
-
-    def zero(self, ctx: Any) -> str:
-        """Return the zero of the load cell in words, once it has been taken."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, slots=True)

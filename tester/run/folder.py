@@ -14,8 +14,7 @@ from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.time_estimate import Estimate
 from tester.inputs.rig import Rig
 from tester.machine.result_keeping import condition_records
-from tester.machine.run_parts import Part
-from tester.machine.served import History
+from tester.machine.run_parts import History, Part
 from tester.machine.time_left import Earlier, PartTime
 from tester.run.endings import CannotStartError
 from tester.run.kind_lookup import checked_recipe, load_rig_text, recipe_part, run_parts

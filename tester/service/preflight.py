@@ -16,7 +16,8 @@ from pathlib import Path
 
 from tester.base.screen import Check
 from tester.inputs.rig import CalibrationConfig, Rig
-from tester.machine.served import History, Left, ServedKind
+from tester.machine.run_parts import History, Left
+from tester.machine.served import ServedKind
 from tester.results.run_results import results_of
 from tester.run.latch import made_on
 from tester.service.disk_watch import disk_check

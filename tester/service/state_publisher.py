@@ -13,7 +13,8 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.machine.manual import ManualExecutor
 from tester.machine.run import Outcome, Run
-from tester.machine.served import History, ServedKind
+from tester.machine.run_parts import History
+from tester.machine.served import ServedKind
 from tester.run.kind_lookup import served_kind
 from tester.run.latch import acknowledge, open_trips
 from tester.service.address import with_peer

@@ -8,7 +8,7 @@ from typing import Final
 from tester.kinds.specimen_on_track.context import TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import TakeTrackTare, still_m_s
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.served import Hand
+from tester.machine.hand import Hand
 
 STEPS: Final = 10.0
 """Number of steps from standstill to the greatest speed."""

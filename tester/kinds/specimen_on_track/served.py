@@ -15,8 +15,8 @@ from tester.kinds.specimen_on_track.runs import RUNS
 from tester.kinds.specimen_on_track.screen import MACHINE, TrackPanel
 from tester.machine.panel import RunPanel, drives_alone
 from tester.machine.run import Run
-from tester.machine.run_parts import KindRun
-from tester.machine.served import Left, ServedKind
+from tester.machine.run_parts import KindRun, Left
+from tester.machine.served import ServedKind
 
 
 class SpecimenOnTrack(ServedKind):

@@ -10,11 +10,13 @@ from tester.base.quantities import Quantities
 from tester.base.screen import HandAxis, MachineView, PlotView, axis_views, trend_columns
 from tester.base.words import listed
 from tester.inputs.rig import Rig
+from tester.machine.hand import Hand
 from tester.machine.panel import RunPanel, drives_alone
 from tester.machine.plain.context import PlainContext
 from tester.machine.plain.runs import PlainRuns
 from tester.machine.run import Run
-from tester.machine.served import Hand, Left, ServedKind
+from tester.machine.run_parts import Left
+from tester.machine.served import ServedKind
 
 STEPS_TO_TOP: Final = 20
 """Manual steps from standstill to a drive's greatest speed [A]."""

@@ -18,8 +18,8 @@ from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.motions import TakeTare
 from tester.kinds.wheel_on_belt.recipe.limits import least_load_n
 from tester.kinds.wheel_on_belt.served.left_on_rig import WheelLeft
+from tester.machine.hand import Hand
 from tester.machine.run import Run
-from tester.machine.served import Hand
 
 SPEED_STEP_M_S: Final = 0.05
 LOAD_STEP_N: Final = 10.0

@@ -17,8 +17,8 @@ from tester.kinds.wheel_on_belt.served.manual import WheelHand, take_over
 from tester.kinds.wheel_on_belt.served.screen import MACHINE, WheelPanel
 from tester.machine.panel import RunPanel, drives_alone
 from tester.machine.run import Run
-from tester.machine.run_parts import KindRun
-from tester.machine.served import Left, ServedKind
+from tester.machine.run_parts import KindRun, Left
+from tester.machine.served import ServedKind
 from tester.store.run_reader import RunReader
 
 PRESS = "The press stops where it is: where no spring lifts it, its load stays on the wheel."
