@@ -39,14 +39,14 @@ LOST: Final[Mapping[Key, str]] = {
     (o.MAX_MOTOR_SPEED, 0): "the drive limits its speed by its own setting only; the PC limits what it asks for",
     (o.SOFTWARE_LIMIT, 1): "the drive has no least position; the PC limits what it asks for",
     (o.SOFTWARE_LIMIT, 2): "the drive has no greatest position; the PC limits what it asks for",
-    (o.POSITION_WINDOW, 0): "within which window a position counts as reached is the drive's own",
-    (o.VELOCITY_THRESHOLD, 0): "below which speed the axis stands is the drive's own",
-    (o.VELOCITY_THRESHOLD_TIME, 0): "for how long it has to be slow is the drive's own",
+    (o.POSITION_WINDOW, 0): "the drive's own setting decides within which window a position counts as reached",
+    (o.VELOCITY_THRESHOLD, 0): "the drive's own setting decides below which speed the axis is at rest",
+    (o.VELOCITY_THRESHOLD_TIME, 0): "the drive's own setting decides for how long it has to be slow",
     (o.TPDO_COMMUNICATION + 1, 3): "a statusword that chatters is not held back on the bus",
-    _MASK: "the drive sets every output as 0x60FE:01 says",
+    _MASK: "the drive sets every output by 0x60FE:01",
     _INPUTS_TIMER: "the digital inputs come with every SYNC instead",
     (o.HOME_OFFSET, 0): "the home switch is at position 0",
-    (o.RATED_TORQUE, 0): "the drive does not say its rated torque: the rig file's is believed",
+    (o.RATED_TORQUE, 0): "the drive does not report its rated torque: the rig file's counts",
 }
 """Objects that a profile may call missing, and the loss without each; "" = nothing. Any other missing object is
 refused, unless ``_Planner`` has a replacement for it."""
@@ -170,7 +170,7 @@ class _Planner:
         elif key in LOST:
             self._lose(key, LOST[key])
         elif key not in (_DEADLINE, (o.MAX_TORQUE, 0)):      # see _watches, _torque
-            self._refuse(key, "nothing stands in for it")
+            self._refuse(key, "nothing replaces it")
 
     def _lose(self, key: Key, lost: str) -> None:
         if lost:
@@ -205,7 +205,7 @@ class _Planner:
         if not self.lacks(*key) or key in self.profile.substitutes:
             return
         if self.config.screw is not None:
-            self._refuse(key, "nothing stands in for it, and the torque limit caps the force of this axis")
+            self._refuse(key, "nothing replaces it, and the torque limit caps the force of this axis")
         else:
             self._lose(key, "the drive limits its torque by its own setting only")
 
@@ -214,7 +214,7 @@ class _Planner:
             self.made.without.append("no statusword bit 9: that a person has taken the drive into local control at its "
                                      "keypad is not seen")
         if self.config.speed_zero and not self.profile.standstill:
-            self.made.without.append("no statusword bit 12 in profile velocity: that the axis stands is seen with the "
+            self.made.without.append("no statusword bit 12 in profile velocity: standstill is seen with the "
                                      "next SYNC, not at once")
 
     def _pdos(self) -> Iterator[PdoSetting]:

@@ -54,7 +54,7 @@ class Screw:
         return max(0.0, (torque_nm - self.drag_most_nm) * self.efficiency_least / self._m - self.spring_n)
 
     def held_n(self, torque_nm: float) -> float:
-        """Return the greatest force on a press that stands or is driven back, at a torque that the drive shows, N."""
+        """Return the greatest force on a press at rest or driven back, at a torque that the drive shows, N."""
         return max(0.0, (torque_nm + self.drag_most_nm) * self.held_n_per_nm - self.spring_n)
 
     @property

@@ -244,7 +244,7 @@ def _start(drive: ServoAxis) -> Step:
     yield SendNmt(NmtCommand.START)
     started = yield Until(AwaitedCondition.OPERATIONAL, START_TIMEOUT_S)
     if not started:
-        last = f"the heartbeat says {state_name(drive.nmt_state)}" if drive.nmt_state >= 0 else "no heartbeat"
+        last = f"the heartbeat reports {state_name(drive.nmt_state)}" if drive.nmt_state >= 0 else "no heartbeat"
         raise SetupRefusedError(f"not OPERATIONAL within {START_TIMEOUT_S:g} s of NMT start: {last}")
     statusword = yield from _await(_is_off, START_TIMEOUT_S)
     raw = yield from read_number(o.POSITION_ACTUAL if config.feedback == "position" else o.VELOCITY_ACTUAL)

@@ -20,7 +20,7 @@ JACKET_LEASE_S: Final = 2.0
 CHAMBER_RENEW_S: Final = 2.0
 """Period of rewriting the chamber's command registers, s [A]."""
 CHAMBER_LEASE_S: Final = 30.0
-"""Time without a setpoint after which the chamber stands by, s [A]: its air changes by 1.5 K in that time."""
+"""Time without a setpoint after which the chamber goes to standby, s [A]: its air changes by 1.5 K in that time."""
 ControllerKind = Literal["jacket", "chamber"]
 UNHEARD: Final = "our setpoint does not reach it, its lease has run out"
 STATUS_AGE_S: Final = 2.0
@@ -45,7 +45,7 @@ _COMMANDED: Final[Mapping[ControllerKind, _Commanding]] = {
 
 
 class TemperatureController(Device):
-    """Commands and reads a controller. It stands by until ``enable(True)``.
+    """Commands and reads a controller. It is in standby until ``enable(True)``.
 
     ``measured_c`` (NaN while the sensor is broken) and ``setpoint_c`` (the working setpoint, read back) are in degC,
     ``output_percent`` is below 0 for cooling. ``sensor_break`` and ``out_of_range`` are status bits; ``lease_expired``:

@@ -42,7 +42,7 @@ _OPTIONS: dict[Key, tuple[int, ...]] = {
 
 
 def _nobody(name: str) -> str:
-    raise ValueError("nobody else is asked")
+    raise ValueError("no other package is asked")
 
 
 _look_up: LookUp = _nobody

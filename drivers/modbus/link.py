@@ -332,7 +332,7 @@ class ModbusLink(LineType):
         """Count unexpected bytes, after a time-out as a late reply; wait again until the line is silent."""
         if self.socket:
             if not self._doubt:
-                self._doubt = "bytes that nobody asked for"
+                self._doubt = "bytes without a request"
                 self.garbage += 1
                 self.wants_s = -inf
             return

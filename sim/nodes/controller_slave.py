@@ -21,7 +21,7 @@ JACKET_HOTTEST_C: Final = 155.0
 LIMIT_RESET_C: Final = 145.0
 CHAMBER_HOTTEST_C: Final = 105.0
 CHAMBER_COLDEST_C: Final = -55.0
-"""The chamber's own limiter: outside these temperatures it stands by [A]."""
+"""The chamber's own limiter: outside these temperatures it goes to standby [A]."""
 _SHOWN: Final = ("pv", "output", "setpoint", "status")
 _PV_MOST: Final = LIMITS["i16"][1]
 """Content of the temperature register when the sensor is broken."""

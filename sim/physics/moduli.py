@@ -154,7 +154,7 @@ class TabulatedModulus:
         """
         ordered = sorted(_checked(rows, poisson), key=lambda row: -row.temperature_c)
         if not (math.isfinite(decade_k) and decade_k > 0.0):
-            raise ValueError(f"a decade of frequency stands for more than 0 K, not {decade_k!r}")
+            raise ValueError(f"a decade of frequency corresponds to more than 0 K, not {decade_k!r}")
         if len({row.frequency_hz for row in ordered}) > 1:
             raise ValueError("a sweep of temperature has one frequency; a table of several is a grid")
         log_f0 = math.log10(ordered[0].frequency_hz)

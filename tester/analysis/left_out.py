@@ -49,7 +49,7 @@ Combining = Literal["mean", "paper"]
 COMBINE: Final = "combine"
 """Key of a run's metadata that stores the recipe's choice."""
 CLOSEST_OF: Final = 3
-"""Number of repeats of which the closest two are taken; any other number is averaged in full."""
+"""With this number of repeats the closest two are averaged, with any other number all of them."""
 CLOSEST_STANDARD: Final = 0.798
 """Standard deviation of the mean of the closest two of three normal values, relative to that of a single value (400,000
 draws); for the mean of all three it is 0.577."""

@@ -115,7 +115,7 @@ class Setpoint(NamedTuple):
 class Axes:
     """A kind's table of axes, in the order of their words.
 
-    ``blocks`` is the axis by which conditions are measured in blocks, ascending, because it changes slowest; in a
+    ``blocks`` is the slowest axis: conditions are measured in blocks of one value of it, ascending; in a
     recipe's rows it is innermost. Tables with the same names in the same order are equal: a record's and its kind's.
     """
 

@@ -83,7 +83,7 @@ class ExclusiveUse:
 
         lock = FileLock(
             path,
-            mode=0o666 if lasting else 0o644,  # a lock for the whole machine must be open to all users, whoever made it
+            mode=0o666 if lasting else 0o644,  # a lock for the whole machine must be open to all users
             thread_local=False,
             fallback_to_soft=False,  # a file that merely exists would outlive a killed process
             preserve_lock_file=lasting,

@@ -125,7 +125,7 @@ class Plugins:
         if self.allowed is not None and name not in self.allowed:
             may = ", ".join(sorted(self.allowed)) or "none"
             raise PluginError(
-                f'extension "{name}" is not allowed here (allowed: {may}): whoever starts the service allows it, with'
+                f'extension "{name}" is not allowed here (allowed: {may}): allow it when the service starts, with'
                 f" tester serve --allow {name}, or {ALLOW_VARIABLE}"
             )
 

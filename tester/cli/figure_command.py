@@ -62,8 +62,8 @@ def figure(
     speed: float,
 ) -> None:
     """Draw the results of each RUN: coefficient over every axis that was varied, as a surface, the run in order of
-    time, and the repeats; of speeds and temperatures where friction heats nothing the master curve (tester master says
-    more of it); several runs also together, in a folder of its own.
+    time, and the repeats; of speeds and temperatures where friction heats nothing the master curve (tester master
+    prints its details); several runs also together, in a folder of its own.
 
     Bars are the expanded uncertainty U (95 %). The names of the files are printed, a line each.
 

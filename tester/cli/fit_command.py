@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Conditions(NamedTuple):
-    """The conditions of all sources of a command, and of which kind of rig they are."""
+    """The conditions of all sources of a command, and their kind of rig."""
 
     kind: Kind
     points: list[FitPoint]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def _of_a_repeat(command: Decorated) -> Decorated:
     """Add the arguments and options that both commands have."""
     command = click.option("--operator", default=None, metavar="NAME", help="Who decides so.  [default: user]")(command)
-    command = click.option("--reason", required=True, metavar="TEXT", help="Why; goes on record.")(command)
+    command = click.option("--reason", required=True, metavar="TEXT", help="Why; the record keeps it.")(command)
     command = click.argument("repeat", metavar="CONDITION/REPEAT")(command)
     return click.argument("run")(command)
 

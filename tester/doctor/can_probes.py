@@ -33,7 +33,7 @@ def bus(e: Examination) -> Iterator[Finding]:
     can, bitrate = e.can, e.rig.can.bitrate
     if can.answers_at:
         yield fault(
-            BUS, f"nodes answer at a bit rate of {can.answers_at} bit/s, the rig file says {bitrate}",
+            BUS, f"nodes answer at a bit rate of {can.answers_at} bit/s, the rig file has {bitrate}",
             f"set can.bitrate to {can.answers_at}, or the drives to {bitrate}",
         )  # fmt: skip
         return
@@ -141,7 +141,7 @@ def _identity(e: Examination, name: str, config: AxisConfig, serials: Mapping[in
         )  # fmt: skip
         return
     wrong = [
-        f"{describe(o.IDENTITY, sub)} is 0x{actual:08X}, the rig file says 0x{expected:08X}"
+        f"{describe(o.IDENTITY, sub)} is 0x{actual:08X}, the rig file has 0x{expected:08X}"
         for sub, actual, expected in ((1, vendor, config.vendor_id), (2, product, config.product_code),
                                      (4, serial, config.serial_number)) if expected and actual != expected
     ]  # fmt: skip
@@ -196,7 +196,7 @@ def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]
     actual_nm = (rated or 0) * config.drive.units.rated_torque_nm * config.gear
     if rated and abs(rated - expected) > max(RATED_TORQUE_SHARE * expected, 1.0):
         yield fault(
-            name, f"0x6076 rated torque is {actual_nm:.4g} N m, the rig file says {config.rated_torque_nm:g} N m",
+            name, f"0x6076 rated torque is {actual_nm:.4g} N m, the rig file has {config.rated_torque_nm:g} N m",
             f"every torque would be shown and limited by a factor of {rated / expected:.3g} wrong: correct"
             f" axes.{name}.rated_torque, or the drive's motor data",
         )  # fmt: skip
@@ -230,7 +230,7 @@ def heartbeats(e: Examination) -> Iterator[Finding]:
         if abs(measured_s - period_s) > BEAT_OFF * period_s or longest_s > MISSED * period_s:
             yield warning(
                 name, f"heartbeat every {1e3 * measured_s:.0f} ms, at most {1e3 * longest_s:.0f} ms apart;"
-                f" 0x1017 says {asked_ms} ms", "the bus load, and the drive's CAN set-up",
+                f" 0x1017 holds {asked_ms} ms", "the bus load, and the drive's CAN set-up",
             )  # fmt: skip
         else:
             yield ok(name, f"heartbeat every {1e3 * measured_s:.0f} ms")

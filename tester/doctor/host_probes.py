@@ -113,7 +113,7 @@ def can_adapter(e: Examination) -> Iterator[Finding]:
     bitrate = details.get("bittiming", {}).get("bitrate")
     if bitrate is not None and bitrate != can.bitrate:
         yield fault(
-            "CAN adapter", f"{can.channel} runs at a bit rate of {bitrate} bit/s, the rig file says {can.bitrate}",
+            "CAN adapter", f"{can.channel} runs at a bit rate of {bitrate} bit/s, the rig file has {can.bitrate}",
             f"sudo ip link set {can.channel} down; {up}",
         )  # fmt: skip
     elif bitrate is not None:

@@ -111,7 +111,7 @@ def _silent(e: Examination, line_name: str, line: LineSurvey, key: str, name: st
     if others:
         return fault(
             name, f"nothing answers at unit id {number} of line {line_name}; line {others[0]} has a unit {number}",
-            f"the device is on another line than the rig file says: change devices.{key}.line, or the plugs",
+            f"the device is on another line than in the rig file: change devices.{key}.line, or the plugs",
         )  # fmt: skip
     return fault(name, f"nothing answers at unit id {number} of line {line_name}", "its supply, its plug, its unit id")
 

@@ -144,7 +144,7 @@ def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQ
 
 
 def _marks(unit: UnitSurvey, number: int) -> Iterator[tuple[RegisterQuestion, int | None]]:
-    """Yield questions by which to recognise a type of device at another unit number, each with the expected value."""
+    """Yield questions that identify a type of device at another unit number, each with the expected value."""
     identity = unit.profile.identity
     if identity is not None:
         yield RegisterQuestion(number, identity.function, identity.address, 1), identity.value

@@ -38,7 +38,7 @@ class Mark(NamedTuple):
 
 
 def series_of(label: str, marks: Iterable[Mark], look: Look, style: int) -> Series:
-    """Return the series of marks, all of which have a bar, a width or a name if the first does."""
+    """Return the series of marks; all have a bar, a width or a name if the first does."""
     x, y, bars, widths, names = zip(*marks, strict=True)
     return Series(
         label, x, y, look, style,

@@ -54,7 +54,7 @@ class ReportHead:
 
 @dataclass(frozen=True, slots=True)
 class ReportRow:
-    """Cells of a row, the first of which names it."""
+    """Cells of a row; the first names it."""
 
     cells: Sequence[str]
     tone: Tone = ""

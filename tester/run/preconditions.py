@@ -46,7 +46,7 @@ def hold_run(use: ExclusiveUse, folder: Path) -> None:
 
 
 def buses_of(rig: Rig) -> list[str]:
-    """Return the names of a rig's buses, each of which only one process may use."""
+    """Return the names of a rig's buses; only one process may use each."""
     if rig.can.interface == "sim":
         return []
     lines = [f"line {line.port}" for line in rig.lines.values()]

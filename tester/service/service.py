@@ -61,7 +61,7 @@ SILENT_S = 1.0
 MANUAL_LAPSE = 1.0
 """Speed of a simulated rig in manual mode: real time."""
 REFUSED = (CannotStartError, InvalidSource, UnknownRecipe, StoreError, OSError, sqlite3.Error)
-"""Errors because of which a run does not begin."""
+"""Errors that prevent the start of a run."""
 
 
 @dataclass(frozen=True, slots=True)

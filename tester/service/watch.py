@@ -97,7 +97,7 @@ class RunWatch:
     def __init__(self, run: Run, track: PlanTrack, kind: ServedKind) -> None:
         """Prepare everything that does not change.
 
-        ``track``: of the whole plan, of which this run may be a part; ``kind``: the rig's.
+        ``track``: of the whole plan (this run may be a part of it); ``kind``: the rig's.
         """
         self.run = run
         self.kind = kind

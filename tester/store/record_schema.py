@@ -41,7 +41,7 @@ from tester.store.records import (
 from tester.store.sql import create
 
 APPLICATION_ID = 0x46525431
-"""``FRT1``: SQLite's application_id of a run's database, by which ``file`` and this program recognise it."""
+"""``FRT1``: SQLite's application_id of a run's database; ``file`` and this program recognise it by this id."""
 
 _ID = "id INTEGER PRIMARY KEY"
 _POSITION = "position INTEGER PRIMARY KEY"
@@ -67,7 +67,7 @@ _RUN = (
 worked on it), the changes between sessions with their reasons, and the history of the calibration. ``material``: files
 of the compounds and surfaces that the recipe names. ``role`` is compound, surface, or data for a file to which one of
 these refers; ``file`` is the path of the copy in the run's folder; ``text`` holds a short text, and is NULL for any
-other file, of which only the hash is recorded; ``doubts`` has a line for each doubt.
+other file, where only the hash is recorded; ``doubts`` has a line for each doubt.
 """
 
 _CHANNELS = (

@@ -319,7 +319,7 @@ class Recorder:
         return self._trips
 
     def trip_acknowledged(self, trip: int, t_s: float, by: str = "") -> None:
-        """Store that a trip was acknowledged during the run, and by which person."""
+        """Store that a trip was acknowledged during the run, and by whom."""
         acknowledged = {"acknowledged_s": t_s, "acknowledged_utc": self._utc(), "acknowledged_by": by}
         self._write(self._change("trip", acknowledged, id=trip), urgent=True)
 

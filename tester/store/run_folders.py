@@ -25,7 +25,7 @@ MANIFEST = "manifest.json"
 NAMED = 4
 """Greatest number of runs named in a message."""
 LATEST = "latest"
-"""Word that stands for the newest run in place of a name."""
+"""Word for the newest run in place of a name."""
 _STAMPED = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}(?=-)")
 """Pattern of the beginning of a run folder's name."""
 

@@ -156,7 +156,7 @@ def text_sha256(text: str) -> str:
 
 
 def calibration_sha256(calibration: Iterable[Calibration]) -> str:
-    """Return the SHA-256 by which two calibrations are compared."""
+    """Return the SHA-256 for comparing two calibrations."""
     return text_sha256("".join(f"{c.device}\t{c.quantity}\t{c.value}\t{c.unit}\n" for c in calibration))
 
 

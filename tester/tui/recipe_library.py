@@ -41,7 +41,7 @@ class ListedRecipe:
 
     @property
     def reference(self) -> str:
-        """Return the name by which the service knows the recipe."""
+        """Return the service's name of the recipe."""
         return self.name if self.shipped else str(self.path)
 
     @property

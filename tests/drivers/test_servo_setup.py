@@ -236,7 +236,7 @@ def test_a_mode_the_drive_does_not_confirm_is_refused() -> None:
 def test_a_drive_that_does_not_start_is_refused() -> None:
     bench = BenchDrive()
     bench.starts = False
-    assert "not OPERATIONAL within 1 s of NMT start: the heartbeat says PRE-OPERATIONAL" in refusal(bench)
+    assert "not OPERATIONAL within 1 s of NMT start: the heartbeat reports PRE-OPERATIONAL" in refusal(bench)
 
 
 def test_a_drive_that_does_not_switch_off_is_refused() -> None:

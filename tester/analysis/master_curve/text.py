@@ -48,7 +48,7 @@ def summary_lines(master: Master) -> Iterator[str]:
     yield f"Ts {_ts_words(master)}; reference {master.reference_c:g} degC"
     if master.glass_c is not None:
         expected_c = master.glass_c + GLASS_TO_REFERENCE_K
-        yield f"the compound's file says Tg {master.glass_c:g} degC: Ts = Tg + 50 K is {expected_c:g} degC"
+        yield f"the compound's file states Tg {master.glass_c:g} degC: Ts = Tg + 50 K is {expected_c:g} degC"
     c = master.collapse
     yield (
         f"scatter about the curve {100.0 * c.scatter_rms:.2f} % of mu ({c.scatter_mu:.4f} in mu), a cubic spline with"
@@ -100,7 +100,7 @@ def _pair_lines(master: Master) -> Iterator[str]:
         )
     thin = [f"{pair.colder_c:g} and {pair.warmer_c:g} degC" for pair in master.pairs if pair.thin]
     if thin:
-        yield f"thin overlap, where a shift says little: {', '.join(thin)}"
+        yield f"thin overlap, where a shift shows little: {', '.join(thin)}"
 
 
 def plain(master: Master) -> dict[str, Json]:

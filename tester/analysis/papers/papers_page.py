@@ -24,7 +24,7 @@ shows more; RUN is a run of your own. `docs/paper.md` explains what the items of
 Rows of the first paper's tables that cannot be read, contradict others or were inferred are evidence for nothing
 here. A law that agrees with figures which it was made from shows that the formulas are right, not that rubber follows
 them. Of the second and third paper no measurement is printed as a number; compounds and surfaces are this program's own
-unless the item says otherwise.
+unless the item states otherwise.
 """
 
 

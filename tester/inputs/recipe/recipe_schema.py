@@ -213,7 +213,7 @@ def _unpickled(make: Callable[..., type[BaseModel]], of: tuple[object, ...], sta
 
 
 class Made(Section, frozen=True):
-    """A section of which the class is made at run time, over a kind's axes."""
+    """A section whose class is made at run time, over a kind's axes."""
 
     axes: ClassVar[Axes]
     """Axes of the kind of rig."""

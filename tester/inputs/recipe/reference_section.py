@@ -30,5 +30,5 @@ class ReferenceSection(Section, frozen=True):
 
 
 def reference_metadata(section: ReferenceSection | None) -> Mapping[str, str]:
-    """Return the metadata of a run's references, by which a reader recognises them."""
+    """Return the metadata that identify a run's references for a reader."""
     return {} if section is None else {EVERY: str(section.every)}

@@ -87,7 +87,7 @@ class DeviceConfig:
     simulated: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
     """Simulated values of channels: a quantity of the plant by name, or a number in the channel's unit."""
     part_of: str = field(default="", metadata=LEFT_OUT)
-    """The machine's own device of which this is a part: a load cell of several transmitters."""
+    """The machine's own device that contains this one: a load cell of several transmitters."""
     heat_off: str = field(default="", metadata=LEFT_OUT)
     """Safeguard of a controller that heats and has no lease: it removes the heat when the PC is silent
     (``HEAT_OFF``)."""

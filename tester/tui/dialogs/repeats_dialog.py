@@ -45,7 +45,7 @@ class ExcludeDialog(Dialog):
             yield line(f"Left out by {clean(self.repeat.by_hand)}. It enters the mean again, if it is valid.")
         else:
             yield line("It leaves the mean, and the tables are written again. Nothing is deleted.")
-        yield field("Reason (needed)", entry("reason", hint="goes on record", limit=2000))
+        yield field("Reason (needed)", entry("reason", hint="is recorded", limit=2000))
         yield field("Who", entry("who", user()))
 
     def on_input_submitted(self, event: Input.Submitted) -> None:

@@ -191,7 +191,7 @@ class BusPage(View, can_focus=True):
         panel.redraw()
 
     def action_filter(self) -> None:
-        """Ask for the text by which to filter the frames."""
+        """Ask for the text that filters the frames."""
         entry = self.query_one("#filter", Input)
         entry.add_class("-open")
         entry.focus()

@@ -111,7 +111,7 @@ against one setpoint; a point's sign is its compound, + is several. What differs
 that setpoint is a faint dot.
 
 Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there
-        leaves a repeat out, or takes it in again, with a reason that goes on record. Nothing is ever deleted.
+        leaves a repeat out, or takes it in again, with a reason that is recorded. Nothing is ever deleted.
 p       plot against the next axis; axes with a single value are shown above the table instead.
 e       export a table to a file.
 g       look for runs again.

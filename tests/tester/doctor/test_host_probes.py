@@ -80,7 +80,7 @@ def test_a_port_without_a_latency_timer_says_nothing() -> None:
 def test_a_can_interface_at_another_bit_rate_is_a_fault() -> None:
     computer = FakeComputer(outputs={"ip": ip_link(125_000)})
     assert bad(found(host_probes.can_adapter, computer)) == [
-        "fault   CAN adapter: can0 runs at a bit rate of 125000 bit/s, the rig file says 500000"
+        "fault   CAN adapter: can0 runs at a bit rate of 125000 bit/s, the rig file has 500000"
     ]
 
 

@@ -76,7 +76,7 @@ class MoveArm(Move):
 
 
 class WithoutPower(Move):
-    """Wait until the track stands and no drive applies torque."""
+    """Wait until the track is at rest and no drive applies torque."""
 
     limit_s = 10.0  # [A]
     name = "coming to a stand for a person to go near"
