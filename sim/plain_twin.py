@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Protocol
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
 
+from sim.faults.common import plain_language
+from sim.faults.kinds import FaultKind
+from sim.faults.language import FaultLanguage
+from sim.machines import SimulatedMachine
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.sensor_slave import PlantQuantity, SensorSlave
-from sim.rig import RigSpec, SimRig
+from sim.rig import RigSpec, SimRig, title_of
 from sim.wires.can_wire import CanWire
 
 
@@ -78,3 +82,26 @@ class PlainTwin(SimRig):
         """Restart the random streams and the sensors' dither for a repeat."""
         self.plant.begin_repeat(condition, repeat, attempt)
         self.restart_dither()
+
+
+def plain_machine(
+    plant: Callable[[Any, int], PlainPlant],
+    shows: Mapping[str, Mapping[str, str]],
+    faults: tuple[FaultKind, ...],
+    log_columns: tuple[str, ...],
+    log_row: Callable[..., tuple[float, ...]],
+    log_decimals: tuple[int, ...],
+) -> SimulatedMachine:
+    """Return a plain machine's simulation: its twin, and the language of the faults of its parts.
+
+    ``plant``: makes the plant from the section ``sim`` and a seed; ``shows``: as for ``PlainTwin``; ``faults``: those
+    beside the faults of any drive, sensor, bus and computer; the others: as for ``SimulatedMachine``.
+    """
+
+    def world(spec: RigSpec, parameters: Any, seed: int, can_wire: type[CanWire] = CanWire) -> PlainTwin:
+        return PlainTwin(spec, plant(parameters, seed), shows, can_wire)
+
+    def language(spec: RigSpec) -> FaultLanguage:
+        return plain_language(spec.axes, [title_of(name) for name in shows if name in spec.devices], *faults)
+
+    return SimulatedMachine(world, language, log_columns, log_row, log_decimals)

@@ -85,7 +85,7 @@ class SimRig:
         self.can = can_wire(spec.bitrate)
         self.axes = {name: self.drive(name, config) for name, config in spec.axes.items()}
         wired = self.own_devices(spec)
-        self.devices = {name.replace("_", " "): slave for name, slave in wired.items()}
+        self.devices = {title_of(name): slave for name, slave in wired.items()}
         self.sensors = further_sensors(spec, wired, plant)
         self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
         every = {**wired, **self.sensors}
@@ -158,6 +158,11 @@ class SimRig:
             if device.due_s <= t1:
                 device.advance(t0, t1)
         self.follow(t1, still)
+
+
+def title_of(device: str) -> str:
+    """Return a device's name for people from its key in the wiring."""
+    return device.replace("_", " ")
 
 
 def further_sensors(spec: RigSpec, own: Container[str], plant: object) -> dict[str, SensorSlave]:

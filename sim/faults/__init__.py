@@ -7,9 +7,8 @@ only effects that have to be renewed cost something while they last.
 
 from __future__ import annotations
 
-from sim.faults.kinds import Parametric
 from sim.faults.language import FaultLanguage, FaultTextError, Injection
 from sim.faults.scene import Scene
 from sim.faults.script import FaultScript
 
-__all__ = ["FaultLanguage", "FaultScript", "FaultTextError", "Injection", "Parametric", "Scene"]
+__all__ = ["FaultLanguage", "FaultScript", "FaultTextError", "Injection", "Scene"]

@@ -180,10 +180,10 @@ def node_cut(scene: Scene, on: bool, now: float, axis: str) -> None:
 
 
 @switched
-def frames_lost(scene: Scene, on: bool, now: float, axis: str, *bases: int) -> None:
-    """Frames to or from one drive are lost: those with the identifiers base + node."""
+def frames_lost(scene: Scene, on: bool, now: float, axis: str, base: int) -> None:
+    """Frames to or from one drive are lost: those with the identifier base + node."""
     wire = wire_of(scene)
-    lost = {base + scene.rig.axes[axis].node_id for base in bases}
+    lost = {base + scene.rig.axes[axis].node_id}
     wire.lost = wire.lost | lost if on else wire.lost - lost
     wire.note_faults()
 

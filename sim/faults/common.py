@@ -1,110 +1,121 @@
-"""Rows of the fault catalogue for every machine on these wires: faults of drives, bus, devices and computer.
+"""Faults that any machine on these wires can have: of a drive, of a Modbus device, of the bus, of the computer.
 
-Each machine passes the members of its own enumeration of the times at which a fault can be noticed: ``always``,
-``connecting``, ``drives`` (once every drive is configured), ``enabled`` (while the drives are on). Budgets are those of
-docs/safety.md, with one scan at the slow rate added.
+``DRIVE`` and its like are rows without the name of a part. A machine's catalogue lists its parts and takes the rows for
+each of them (``rows_of``, ``device_rows``). Budgets are those of docs/safety.md, with one scan at the slow rate added.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from enum import Enum
 from functools import partial
 from typing import Final
 
 from drivers.canopen import objects as o
 from sim.faults import cabinet, can, drives, modbus
-from sim.faults.kinds import Expected, FaultKind
+from sim.faults.kinds import Expected, Exposure, FaultKind
 from sim.faults.language import FaultLanguage
-from sim.wires.modbus_wire import Kind
 
 OVERCURRENT: Final = 0x2310
 SCAN_S: Final = 0.05
 """Period of the slow scan, s: the greatest delay until a scan notices a fault."""
-_TRIP: Final = Expected.TRIP
+NOISY_S: Final = 2.0 + 3.0 + 1.0
+"""Time to judge a noisy line, s: it counts failures over 2 s, may fail for 3 s, and asks a slow device each 1 s [A]."""
 
+ALWAYS, DRIVES, CONNECTING, ENABLED, MOVING = Exposure
+TRIP, STOP, HOLD, RIDE, MAY, DEVICES = Expected
 
-def drive_rows(axis: str, drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield the faults that any drive can have."""
-    for what, make, budget_s in (
-        ("fault", partial(drives.drive_fault, axis, OVERCURRENT), 0.02),
-        ("heartbeat lost", partial(drives.heartbeat_lost, axis), 0.2),
-        ("off the bus", partial(can.node_cut, axis), 0.2),
-        ("without supply", partial(drives.unpowered, axis), 0.2),
-    ):
-        yield FaultKind(f"{axis} drive {what}", make, drives_on, _TRIP, budget_s + SCAN_S)
-    yield FaultKind(f"{axis} drive reboots", partial(drives.reboot, axis), drives_on, _TRIP, 0.25 + SCAN_S,
-                    lasts_s=1.0, note="its boot-up message comes after 0.2 s")
-    yield FaultKind(f"{axis} drive data lost", partial(can.frames_lost, axis, o.TPDO1_BASE), enabled, _TRIP,
-                    0.15 + SCAN_S)
-
-
-def left_operation_rows(axis: str, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield the ways in which a drive leaves operation without a fault."""
-    yield FaultKind(f"{axis} drive in local mode", partial(drives.local, axis), enabled, _TRIP, 0.1 + SCAN_S)
-    yield FaultKind(f"{axis} drive torque off", partial(drives.torque_off, axis), enabled, _TRIP, 0.1 + SCAN_S)
-
-
-def connecting_rows(axis: str, connecting: Enum) -> Iterator[FaultKind]:
-    """Yield the faults that the next connection finds."""
-    yield FaultKind(f"{axis} drive of another make", partial(drives.wrong_identity, axis), connecting, _TRIP, 3.0)
-    yield FaultKind(f"{axis} drive SDO abort", partial(drives.sdo_spoiled, axis, "abort"), connecting, _TRIP, 3.0)
-
-
-_SPOILED: Final[tuple[tuple[str, Kind], ...]] = (
-    ("silent", "silence"), ("CRC errors", "corrupt"), ("replies cut short", "truncate"),
+DRIVE: Final = (
+    FaultKind("drive fault", partial(drives.drive_fault, code=OVERCURRENT), DRIVES, TRIP, 0.02 + SCAN_S),
+    FaultKind("drive heartbeat lost", drives.heartbeat_lost, DRIVES, TRIP, 0.2 + SCAN_S),
+    FaultKind("drive off the bus", can.node_cut, DRIVES, TRIP, 0.2 + SCAN_S),
+    FaultKind("drive without supply", drives.unpowered, DRIVES, TRIP, 0.2 + SCAN_S),
+    FaultKind("drive reboots", drives.reboot, DRIVES, TRIP, 0.25 + SCAN_S, lasts_s=1.0,
+              note="its boot-up message comes after 0.2 s"),
+    FaultKind("drive data lost", partial(can.frames_lost, base=o.TPDO1_BASE), ENABLED, TRIP, 0.15 + SCAN_S),
 )  # fmt: skip
+"""Faults of any drive."""
+LEFT_OPERATION: Final = (
+    FaultKind("drive in local mode", drives.local, ENABLED, TRIP, 0.1 + SCAN_S),
+    FaultKind("drive torque off", drives.torque_off, ENABLED, TRIP, 0.1 + SCAN_S),
+)
+"""Ways in which a drive leaves operation without a fault."""
+AT_CONNECTION: Final = (
+    FaultKind("drive of another make", drives.wrong_identity, CONNECTING, TRIP, 3.0),
+    FaultKind("drive SDO abort", partial(drives.sdo_spoiled, kind="abort"), CONNECTING, TRIP, 3.0),
+)
+"""Faults of a drive that the next connection finds."""
 
 
-def device_rows(device: str, needed: Enum, budget_s: float) -> Iterator[FaultKind]:
-    """Yield the ways in which a Modbus device stops answering; ``needed``: when its readings begin to be needed."""
-    for what, kind in _SPOILED:
-        yield FaultKind(f"{device} {what}", partial(modbus.Impaired, device, kind), needed, _TRIP, budget_s)
-    yield FaultKind(f"{device} without supply", partial(modbus.device_off, device), needed, _TRIP, budget_s)
+def rows_of(part: str, faults: Iterable[FaultKind]) -> Iterator[FaultKind]:
+    """Yield faults as those of a part: its name comes first in the phrase, and as the first argument of ``make``."""
+    for fault in faults:
+        yield replace(fault, phrase=f"{part} {fault.phrase}", make=partial(fault.make, part))
 
 
-def bus_rows(drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield the faults of the bus and the safety inputs."""
-    yield FaultKind("CAN adapter gone", can.adapter_gone, drives_on, _TRIP, SCAN_S)
-    yield FaultKind("CAN bus off", can.bus_silent, drives_on, _TRIP, 0.2 + SCAN_S)
-    yield FaultKind("safety chain opened", cabinet.chain_open, drives_on, _TRIP, SCAN_S)
-    yield FaultKind("guard opened", cabinet.guard_open, enabled, _TRIP, SCAN_S)
+SILENCES: Final = ("silent", "CRC errors", "replies cut short", "without supply")
+"""The usual ways in which a Modbus device stops answering."""
 
 
-def computer_rows(always: Enum, drives_on: Enum, enabled: Enum) -> Iterator[FaultKind]:
-    """Yield the faults of the computer and the requests of its operator."""
-    yield FaultKind("scan stalled", cabinet.stalled, enabled, _TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
-                    note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
-    yield FaultKind("process killed", cabinet.killed, always, Expected.DEVICES, 0.25)
-    yield FaultKind("operator hold", partial(cabinet.operator, "hold"), drives_on, Expected.HOLD, SCAN_S)
-    yield FaultKind("operator release", partial(cabinet.operator, "release"), always, Expected.RIDE, 0.0)
-    for action in ("abort", "stop", "fast stop"):
-        yield FaultKind(f"operator {action}", partial(cabinet.operator, action), drives_on, Expected.STOP,
-                        SCAN_S)
+def device_rows(
+    device: str, needed: Enum, stale_s: float, which: Sequence[str] = SILENCES, note: str = ""
+) -> Iterator[FaultKind]:
+    """Yield the faults ``which`` of a Modbus device, all those known for ().
 
+    ``needed``: when its readings begin to be needed; ``stale_s``: the age at which they trip. ``note``: of those that
+    have none.
+    """
+    known = (
+        FaultKind("silent", partial(modbus.Impaired, kind="silence"), needed, TRIP, stale_s),
+        FaultKind("without supply", modbus.device_off, needed, TRIP, stale_s),
+        FaultKind("reset", modbus.DeviceReset, needed, TRIP, stale_s, lasts_s=modbus.REBOOT_S),
+        FaultKind("CRC errors", partial(modbus.Impaired, kind="corrupt"), needed, TRIP, stale_s),
+        FaultKind("garbage", partial(modbus.Impaired, kind="noise"), needed, TRIP, NOISY_S,
+                  note="bytes before a reply: its time is over before the driver can tell it from them"),
+        FaultKind("replies cut short", partial(modbus.Impaired, kind="truncate"), needed, TRIP, stale_s),
+        FaultKind("replies of another address", partial(modbus.Impaired, kind="wrong_id"), needed, TRIP, stale_s),
+        FaultKind("replies split", partial(modbus.Impaired, kind="split", delay_s=0.005), needed, MAY,
+                  note="the second half comes 5 ms later, a gateway's way: a reply like any other"),
+        FaultKind("replies merged", partial(modbus.Impaired, kind="merged"), needed, TRIP, NOISY_S,
+                  note="a gateway keeps every second reply and sends it with the next, in one piece"),
+        FaultKind("replies late", modbus.late_reply, needed, TRIP, stale_s + 0.5, "ms", 1.5),
+        FaultKind("reply late once", partial(modbus.Impaired, kind="late", count=1, delay_s=0.02), ALWAYS, RIDE),
+        FaultKind("CRC error once", partial(modbus.Impaired, kind="corrupt", count=1), ALWAYS, RIDE),
+        FaultKind("exception", modbus.exception_reply, needed, TRIP, stale_s, "", 4.0),
+        FaultKind("line unplugged", modbus.line_gone, DRIVES, TRIP, 0.2 + SCAN_S),
+    )  # fmt: skip
+    by_phrase = {row.phrase: row for row in known}
+    for row in rows_of(device, (by_phrase[phrase] for phrase in which or by_phrase)):
+        yield replace(row, note=row.note or note)
+
+
+BUS: Final = (
+    FaultKind("CAN adapter gone", can.adapter_gone, DRIVES, TRIP, SCAN_S),
+    FaultKind("CAN bus off", can.bus_silent, DRIVES, TRIP, 0.2 + SCAN_S),
+    FaultKind("safety chain opened", cabinet.chain_open, DRIVES, TRIP, SCAN_S),
+    FaultKind("guard opened", cabinet.guard_open, ENABLED, TRIP, SCAN_S),
+)
+"""Faults of the bus and of the safety inputs."""
+COMPUTER: Final = (
+    FaultKind("scan stalled", cabinet.stalled, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
+              note="tripped by the first scan after it; a drive stops by itself after 0.2 s"),
+    FaultKind("process killed", cabinet.killed, ALWAYS, DEVICES, 0.25),
+    FaultKind("operator hold", partial(cabinet.operator, "hold"), DRIVES, HOLD, SCAN_S),
+    FaultKind("operator release", partial(cabinet.operator, "release"), ALWAYS, RIDE),
+    *(FaultKind(f"operator {action}", partial(cabinet.operator, action), DRIVES, STOP, SCAN_S)
+      for action in ("abort", "stop", "fast stop")),
+)  # fmt: skip
+"""Faults of the computer, and requests of its operator."""
 
 PLAIN_STEPS: Final = ("connect", "mount", "settle", "slide")
 """Names of steps that a fault can wait for."""
 
 
-class PlainExposure(Enum):
-    """The earliest time at which a fault can be noticed."""
-
-    ALWAYS = "at once, once the run has begun"
-    DRIVES = "at once, once every drive is configured"
-    ENABLED = "while the drives are on"
-    MOVING = "while something moves"
-
-
-_ALWAYS, _DRIVES = PlainExposure.ALWAYS, PlainExposure.DRIVES
-_ENABLED, _MOVING = PlainExposure.ENABLED, PlainExposure.MOVING
-
-
 def plain_language(axes: Iterable[str], sensors: Iterable[str], *own: FaultKind) -> FaultLanguage:
     """Return the language of a plain machine's fault scripts; ``sensors``: their names for people."""
-    rows = [*own, *bus_rows(_DRIVES, _ENABLED), *computer_rows(_ALWAYS, _DRIVES, _ENABLED)]
-    for axis in axes:
-        rows += [*drive_rows(axis, _DRIVES, _ENABLED), *left_operation_rows(axis, _ENABLED)]
-        rows.append(FaultKind(f"{axis} drive jammed", partial(drives.Jammed, axis), _MOVING, _TRIP, 1.2 + SCAN_S))
-    rows += [row for device in sensors for row in device_rows(device, _ENABLED, 0.3 + SCAN_S)]
+    jammed = FaultKind("drive jammed", drives.Jammed, MOVING, TRIP, 1.2 + SCAN_S)
+    rows = [*own, *BUS, *COMPUTER]
+    rows += [row for axis in axes for row in rows_of(axis, (*DRIVE, *LEFT_OPERATION, jammed))]
+    rows += [row for sensor in sensors for row in device_rows(sensor, ENABLED, 0.3 + SCAN_S)]
     return FaultLanguage({row.phrase: row for row in rows}, PLAIN_STEPS)

@@ -10,6 +10,16 @@ from math import inf
 from sim.faults.scene import Effect
 
 
+class Exposure(Enum):
+    """The earliest time at which a fault of any machine can be noticed: its budget counts from then on."""
+
+    ALWAYS = "at once, once the run has begun"
+    DRIVES = "at once, once every drive is configured"
+    CONNECTING = "at the next connection"
+    ENABLED = "while the drives are on"
+    MOVING = "while something moves"
+
+
 class Expected(Enum):
     """Required reaction to a fault."""
 
@@ -27,8 +37,8 @@ class FaultKind:
 
     ``make`` gets the value, if the fault has one (``unit`` not None), or ``value`` if none is given.
     ``budget_s`` counts up to the safe commands, from the onset, or from the time when the fault can be noticed
-    (``exposure``, in each machine's own words).
-    ``force_stays`` and ``heat_stays``: no command can remove the force, or the heat (the reason is in ``note``).
+    (``exposure``: an ``Exposure``, or one of the machine's own).
+    ``force_stays``: no command can remove the force (the reason is in ``note``).
     ``lasts_s``: time after which the fault ends by itself.
     ``slow``: a fault of temperature, watched for two minutes and more.
     ``axis``: its drive, if its exposure depends on one.
@@ -39,13 +49,12 @@ class FaultKind:
     make: Callable[..., Effect]
     exposure: Enum
     reaction: Expected
-    budget_s: float
+    budget_s: float = 0.0
     unit: str | None = None
     value: float = 0.0
     lasts_s: float = inf
     slow: bool = False
     force_stays: bool = False
-    heat_stays: bool = False
     axis: str = ""
     note: str = ""
 
@@ -59,32 +68,3 @@ class FaultKind:
     def group(self) -> str:
         """Subject of the fault: the first word of its phrase, even where a name has two words."""
         return self.phrase.split()[0]
-
-
-@dataclass(frozen=True, slots=True)
-class Parametric:
-    """A fault whose magnitude lies between ``least`` and ``most`` (the kind's unit); ``normal`` is no fault."""
-
-    kind: FaultKind
-    least: float
-    most: float
-    normal: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Raise ValueError unless least <= normal <= most leaves something to search, and the kind takes a value."""
-        if not self.least <= self.normal <= self.most or self.least == self.most or self.kind.unit is None:
-            raise ValueError(f"{self.kind.phrase}: {self.least:g} to {self.most:g} around {self.normal:g}")
-
-    @property
-    def ends(self) -> tuple[float, ...]:
-        """Return ``least`` and ``most``, except an end that equals ``normal``."""
-        return tuple(end for end in (self.least, self.most) if end != self.normal)
-
-    def between(self, end: float, share: float) -> float:
-        """Return the magnitude at a share (0 to 1) of the way from ``normal`` to one of ``ends``."""
-        return self.normal + share * (end - self.normal)
-
-    def text(self, value: float) -> str:
-        """Return the fault as in a script, without its time."""
-        unit = self.kind.unit or ""
-        return f"{self.kind.phrase} {value:.6g} {'s' if unit == 'ms' else unit}".rstrip()

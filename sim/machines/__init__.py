@@ -12,7 +12,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from sim.faults.language import FaultLanguage
-from sim.rig import SimRig
+from sim.rig import RigSpec, SimRig
 
 
 class UnknownMachineError(LookupError):
@@ -27,8 +27,8 @@ class SimulatedMachine:
     """``world(spec, parameters, seed, can_wire)``: the rig with a wiring (``sim.rig.RigSpec``), with the kind's own
     parameters (the rig file's section ``sim``), all random numbers from ``seed`` (an integer), on a bus of this class.
     """
-    language: Callable[[], FaultLanguage]
-    """The language of its fault scripts; it is asked for only when faults are scripted."""
+    language: Callable[[RigSpec], FaultLanguage]
+    """The language of the fault scripts for a rig with this wiring; called only when faults are scripted."""
     log_columns: tuple[str, ...]
     log_row: Callable[..., tuple[float, ...]]
     """``log_row(rig)``: true values for a log of its state, one for each column, each with its number of decimals."""

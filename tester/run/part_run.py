@@ -26,7 +26,7 @@ from tester.run.kind_lookup import run_parts
 from tester.run.provenance import record_parameters, record_statistics
 from tester.run.rig_wires import connect_ports
 from tester.run.set_up import GoodRun
-from tester.run.simulated import Witnessed, truth_of
+from tester.run.simulated import Witnessed, spec_of, truth_of
 from tester.store.record_file import DATABASE
 from tester.store.writer import RESERVE_BYTES, RunWriter
 
@@ -234,7 +234,8 @@ def _with_faults(run: Run, world: SimRig, texts: Sequence[str]) -> tuple[Ticked,
     from sim.faults import FaultScript
     from tester.run.fault_injection import FaultyRun
 
-    language = machines.find(run_parts(run.engine.ctx.rig).plant).language()
+    rig = run.engine.ctx.rig
+    language = machines.find(run_parts(rig).plant).language(spec_of(rig))
     faulty = FaultyRun(run, world, FaultScript().add(language.parse_script(texts)), on_kill=_die)
     return faulty, faulty
 

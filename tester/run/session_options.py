@@ -67,8 +67,9 @@ def check_faults(texts: tuple[str, ...], rig: Rig) -> None:
         raise CannotStartError("faults happen only on a rig that is simulated in this process", EXIT_USAGE)
     from sim import machines
     from sim.faults import FaultTextError
+    from tester.run.simulated import spec_of
 
     try:
-        machines.find(run_parts(rig).plant).language().parse_script(texts)
+        machines.find(run_parts(rig).plant).language(spec_of(rig)).parse_script(texts)
     except FaultTextError as error:
         raise CannotStartError(str(error), EXIT_USAGE) from error

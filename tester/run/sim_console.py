@@ -137,13 +137,15 @@ class SimConsole:
     ``ended`` is set by the command ``end``. ``happened`` returns the faults that began or ended without a command.
     """
 
-    def __init__(self, life: SpoiledLife, machine: SimulatedMachine, rig: SimRig, clock: RigClock) -> None:
-        """Begin a console for a rig."""
+    def __init__(
+        self, life: SpoiledLife, machine: SimulatedMachine, language: FaultLanguage, rig: SimRig, clock: RigClock
+    ) -> None:
+        """Begin a console for a rig; ``language``: of its fault scripts."""
         self._life = life
         self._machine = machine
         self._rig = rig
         self._clock = clock
-        self._language: FaultLanguage | None = None
+        self._language = language
         self.ended = False
 
     def command(self, line: str, now: float) -> Sequence[str]:
@@ -161,7 +163,7 @@ class SimConsole:
                 self._life.script.clear(self._life.scene, now)
                 return (f"{count} ended; no fault is planned",)
             case ["catalogue", *word]:
-                known = sorted(self._known().catalogue)
+                known = sorted(self._language.catalogue)
                 matching = tuple(phrase for phrase in known if all(part in phrase for part in word))
                 return matching or ("none of that name",)
             case ["speed", *factor]:
@@ -190,15 +192,10 @@ class SimConsole:
         wrong = f"{len(script.active)} wrong" if script.active else "nothing wrong"
         return f"{self._rig.now_s:.1f} s  x{self._clock.speed:g}  {wrong}  {'  '.join(self._state())}"
 
-    def _known(self) -> FaultLanguage:
-        if self._language is None:
-            self._language = self._machine.language()
-        return self._language
-
     def _fault(self, what: str, now: float) -> Sequence[str]:
         timed = ":" in what
         try:
-            injection = self._known().parse(what if timed else f"t={now:.6f} s: {what}")
+            injection = self._language.parse(what if timed else f"t={now:.6f} s: {what}")
         except FaultTextError as error:
             return str(error).splitlines()
         when = injection.when

@@ -25,7 +25,7 @@ from tester.machine.tickers import collector_at_rest
 from tester.run.bus_log import BusLog
 from tester.run.kind_lookup import load_rig, run_parts
 from tester.run.sim_console import RigClock, SimConsole, SpoiledLife
-from tester.run.simulated import simulated_ports
+from tester.run.simulated import simulated_ports, spec_of
 
 
 def reached(rig: OneRig, can: tuple[str, str], lines: Mapping[str, tuple[str, bool]], how: str) -> OneRig:
@@ -109,7 +109,8 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
     config = _on_doors(load_rig(options.rig, options.overrides, options.accept_risk), options.doors)
     kind = run_parts(config)
     machine = machines.find(kind.plant)
-    machine.language().parse_script(config.faults)
+    language = machine.language(spec_of(config))
+    language.parse_script(config.faults)
     with ExitStack() as stack:
         bus_log = None
         if options.bus_log is not None:
@@ -123,7 +124,7 @@ def run_sim(options: SimOptions, say: Callable[[str], None], show: Callable[[str
             state_log = StateLog(options.log, rig_clock, machine)
             stack.callback(state_log.close)
         life = SpoiledLife(rig)
-        console = SimConsole(life, machine, rig, rig_clock)
+        console = SimConsole(life, machine, language, rig, rig_clock)
         server = RigServer(rig, "", 0, doors=options.doors)
         stack.callback(server.close)
         server.life = life

@@ -19,6 +19,7 @@ from tester.base.plugins import plugins
 from tester.cli.main import invoke
 from tester.kinds import PACKAGED, find, load_rig
 from tester.run.kind_lookup import run_parts, served_kind
+from tester.run.simulated import spec_of
 from tester.store.run_reader import RunReader
 from tester.tui.playback import load
 from tests.extension.installing import EXAMPLES, installed
@@ -111,7 +112,8 @@ def test_a_pull_that_is_not_known_is_taken_for_too_much() -> None:
 
 
 def test_every_fault_of_the_twin_that_has_to_trip_is_tried_here() -> None:
-    catalogue = machines.find(run_parts(load_rig("rig.yaml")).plant).language().catalogue
+    rig = load_rig("rig.yaml")
+    catalogue = machines.find(run_parts(rig).plant).language(spec_of(rig)).catalogue
     assert sorted(name for name, one in catalogue.items() if one.reaction is Expected.TRIP) == sorted(TRIPS)
 
 

@@ -7,27 +7,27 @@ from math import inf
 import pytest
 
 from sim.faults import FaultTextError
-from sim.machines.wheel_on_belt.faults import CATALOGUE, parse, parse_script
+from sim.machines.wheel_on_belt.faults import CATALOGUE, LANGUAGE
 
 
 def test_a_fault_at_a_time_for_a_while():
-    found = parse("t=130 s: belt drive heartbeat lost for 3 s")
+    found = LANGUAGE.parse("t=130 s: belt drive heartbeat lost for 3 s")
     assert (found.when.at_s, found.kind.phrase, found.lasts_s) == (130.0, "belt drive heartbeat lost", 3.0)
 
 
 def test_times_have_units():
-    assert parse("t=2 min: operator stop").when.at_s == 120.0
-    assert parse("t=500 ms: operator stop").when.at_s == 0.5
+    assert LANGUAGE.parse("t=2 min: operator stop").when.at_s == 120.0
+    assert LANGUAGE.parse("t=500 ms: operator stop").when.at_s == 0.5
 
 
 def test_a_fault_at_a_scan_lasts_to_the_end():
-    found = parse("at scan 1200: operator stop")
+    found = LANGUAGE.parse("at scan 1200: operator stop")
     assert found.when.scan == 1200
     assert found.lasts_s == inf
 
 
 def test_a_fault_at_a_step_and_some_time_after_it():
-    found = parse("step heat + 20 s: thermometer offset -15 K for 1 min")
+    found = LANGUAGE.parse("step heat + 20 s: thermometer offset -15 K for 1 min")
     assert (found.when.step, found.when.after_s, found.value, found.lasts_s) == ("heat", 20.0, -15.0, 60.0)
 
 
@@ -35,16 +35,16 @@ def test_a_fault_at_a_step_and_some_time_after_it():
     ("when", "name", "after_s"), [("3", "condition 3", 0.0), ("12/2 + 5 s", "condition 12/2", 5.0)],
 )
 def test_a_fault_at_a_condition_or_a_repeat_of_one(when: str, name: str, after_s: float):
-    found = parse(f"condition {when}: friction 115 %")
+    found = LANGUAGE.parse(f"condition {when}: friction 115 %")
     assert (found.when.step, found.when.after_s, found.value) == (name, after_s, 115.0)
 
 
 def test_a_value_that_is_a_time_becomes_seconds():
-    assert parse("t=1 s: scan stalled 250 ms").value == 0.25
+    assert LANGUAGE.parse("t=1 s: scan stalled 250 ms").value == 0.25
 
 
 def test_a_value_without_a_unit():
-    assert parse("t=1 s: jacket exception 0x0B").value == 11.0
+    assert LANGUAGE.parse("t=1 s: jacket exception 0x0B").value == 11.0
 
 
 @pytest.mark.parametrize(
@@ -64,14 +64,14 @@ def test_a_value_without_a_unit():
 )
 def test_what_cannot_be_read_is_refused_with_what_was_expected(text: str, expected: str):
     with pytest.raises(FaultTextError) as caught:
-        parse(text)
+        LANGUAGE.parse(text)
     assert expected in str(caught.value)
     assert text in str(caught.value)
 
 
 def test_all_bad_lines_are_told_at_once():
     with pytest.raises(FaultTextError) as caught:
-        parse_script(["soon: operator stop", "t=1 s: guard opened", "t=1 s: nothing"])
+        LANGUAGE.parse_script(["soon: operator stop", "t=1 s: guard opened", "t=1 s: nothing"])
     assert len(str(caught.value).splitlines()) == 2
 
 
@@ -81,5 +81,5 @@ def test_the_catalogue_has_at_least_forty_faults():
 
 @pytest.mark.parametrize("phrase", sorted(CATALOGUE))
 def test_every_row_can_be_written_and_makes_its_effect(phrase: str):
-    found = parse(f"t=1 s: {phrase}")
+    found = LANGUAGE.parse(f"t=1 s: {phrase}")
     assert found.kind.effect(found.value) is not found.kind.effect(found.value)

@@ -9,6 +9,7 @@ from sim.machines.specimen_on_track.rig import TrackRig
 
 if TYPE_CHECKING:
     from sim.faults.language import FaultLanguage
+    from sim.rig import RigSpec
 
 LOG_COLUMNS = ("track_m_s", "lift_mm", "load_n", "force_n", "slip_m_s", "slid_m", "specimen_c", "air_c")
 """The plant's true values."""
@@ -21,7 +22,7 @@ def log_row(rig: TrackRig) -> tuple[float, ...]:
     return rig.track_m_s, rig.lift_mm, p.load_n, p.force_n, p.slip_m_s, p.slid_m, p.specimen_c, p.air_c
 
 
-def _language() -> FaultLanguage:
+def _language(spec: RigSpec) -> FaultLanguage:
     from sim.machines.specimen_on_track.faults import LANGUAGE
 
     return LANGUAGE

@@ -175,14 +175,6 @@ class TrackRig(SimRig):
         """Lower an arm that has no drive."""
         self.hand_mm = 0.0
 
-    def free_track(self) -> None:
-        """Move a linear track by hand to the middle of its travel and close the chain."""
-        p = self.plant.parameters
-        self._track.axis.position = 0.5e-3 * p.travel / self.metres
-        self._look_at_the_ends()
-        for drive in self.axes.values():
-            drive.set_torque_off(False)
-
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Restart the random streams and the sensors' dither for a repeat."""
         self.plant.begin_repeat(condition, repeat, attempt)

@@ -9,6 +9,7 @@ from sim.machines.wheel_on_belt.rig import WheelRig
 
 if TYPE_CHECKING:
     from sim.faults.language import FaultLanguage
+    from sim.rig import RigSpec
 
 LOG_COLUMNS = (
     "wheel_m_s", "belt_m_s", "slip_m_s", "force_z_n", "press_mm", "heater_w", "hub_c", "surface_c",
@@ -27,7 +28,7 @@ def log_row(rig: WheelRig) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-def _language() -> FaultLanguage:
+def _language(spec: RigSpec) -> FaultLanguage:
     from sim.machines.wheel_on_belt.faults import LANGUAGE
 
     return LANGUAGE

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 from sim.machines.wheel_on_belt.faults import CATALOGUE
-from sim.machines.wheel_on_belt.faults.catalogue import ASSEMBLY
 from tests.campaigns.faults.judge import Case, Judge, Verdict
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit
+from tests.campaigns.faults.parametric import ASSEMBLY
 from tests.campaigns.faults.recipes import GRID
 
 SEED = 402

@@ -10,9 +10,9 @@ from math import hypot, inf, isfinite, radians, sin
 
 from drivers.canopen import objects as o
 from sim.faults.can import FaultyCanWire
-from sim.faults.kinds import FaultKind
+from sim.faults.kinds import Exposure, FaultKind
 from sim.faults.sensors import SpoiledForces, SpoiledTemperature
-from sim.machines.wheel_on_belt.faults.catalogue import Exposure
+from sim.machines.wheel_on_belt.faults.catalogue import WheelExposure
 from sim.nodes.safety_io import SafetyIo
 from sim.physics.contact import ContactModel
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, Install, PreGrind, WheelCondition
@@ -78,63 +78,63 @@ class Exposed:
             return scans == 0 and stage.ticks < 3
         if not stage.running:
             return False
-        if exposure is Exposure.RUNNING:
+        if exposure is Exposure.ENABLED:
+            return stage.all_on
+        if exposure is WheelExposure.RUNNING:
             return self._settled
-        assert isinstance(exposure, Exposure)
+        assert isinstance(exposure, WheelExposure)
         if exposure in _THERMAL:
             return self._thermal(exposure)
         return self._mechanical(exposure)
 
-    def _mechanical(self, exposure: Exposure) -> bool:
+    def _mechanical(self, exposure: WheelExposure) -> bool:
         stage = self.stage
         rig, truth = stage.rig, Truth.of(stage.rig)
-        if exposure is Exposure.ENABLED:
-            return stage.all_on
-        if exposure is Exposure.TURNING:
+        if exposure is WheelExposure.TURNING:
             return abs(truth.wheel_m_s) > TURNS_M_S
-        if exposure is Exposure.ASTRAY:
+        if exposure is WheelExposure.ASTRAY:
             return stage.all_on and astray_m_s(stage, self.kind.axis) > ASTRAY_M_S
-        if exposure is Exposure.LOADED:
+        if exposure is WheelExposure.LOADED:
             return truth.force_n > LOADED_N
         lifts = rig.axes["press"].axis.target < LIFTS_MM_S
         held = truth.force_n > max(LOADED_N, HELD_SHARE * self._most_n) and not lifts
-        if exposure is Exposure.PRESSING:
+        if exposure is WheelExposure.PRESSING:
             return held
-        if exposure is Exposure.MISWEIGHED:
+        if exposure is WheelExposure.MISWEIGHED:
             return held and not excess_mm(stage) <= DEPTH_MM
         slides = driven_slip_m_s(stage) > DRIVEN_M_S
-        if exposure is Exposure.RUBBING:
+        if exposure is WheelExposure.RUBBING:
             return held and slides
         return truth.force_n > LOADED_N and slides
 
-    def _thermal(self, exposure: Exposure) -> bool:
+    def _thermal(self, exposure: WheelExposure) -> bool:
         stage = self.stage
         plant, jacket = stage.rig.plant, stage.rig.jacket
-        if exposure is Exposure.HEATING:
+        if exposure is WheelExposure.HEATING:
             return stage.run.engine.ctx.progress.step in self._warm
-        if exposure is Exposure.MISREAD:
+        if exposure is WheelExposure.MISREAD:
             turning = abs(Truth.of(stage.rig).wheel_m_s) > TURNS_M_S
             return turning and not misread_k(stage) <= MISREAD_K
-        if exposure is Exposure.STARVED:
+        if exposure is WheelExposure.STARVED:
             asked = jacket.running and jacket.output >= OUTPUT_PERCENT
             return asked and jacket.pv_c < jacket.setpoint_c - BELOW_K
-        if exposure is Exposure.HIDDEN:
+        if exposure is WheelExposure.HIDDEN:
             shown_k, hidden_k = jacket.pv_c - plant.parameters.ambient, plant.heat.hub_c - jacket.pv_c
             given = jacket.running and jacket.output >= OUTPUT_PERCENT
             return given and hidden_k > HIDDEN_K and hidden_k > HIDDEN_SHARE * shown_k
-        if exposure is Exposure.OVERHEATED:
+        if exposure is WheelExposure.OVERHEATED:
             return plant.heat.hub_c > max(stage.hub_most_c, plant.surface_c) + ABOVE_K
-        if exposure is Exposure.HOT:
+        if exposure is WheelExposure.HOT:
             return plant.heat.hub_c > HOT_C
         io = io_of(stage)
-        if exposure is Exposure.UNASKED:
+        if exposure is WheelExposure.UNASKED:
             return io.contactor_closed and jacket.heater_w > 0.0 and jacket.output <= 0.0
         return io.contactor_closed and not io.requested
 
 
 _THERMAL = frozenset({
-    Exposure.HEATING, Exposure.MISREAD, Exposure.STARVED, Exposure.HIDDEN, Exposure.OVERHEATED, Exposure.HOT,
-    Exposure.UNASKED, Exposure.WELDED,
+    WheelExposure.HEATING, WheelExposure.MISREAD, WheelExposure.STARVED, WheelExposure.HIDDEN,
+    WheelExposure.OVERHEATED, WheelExposure.HOT, WheelExposure.UNASKED, WheelExposure.WELDED,
 })  # fmt: skip
 
 

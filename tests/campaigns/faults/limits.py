@@ -10,10 +10,10 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
-from sim.machines.wheel_on_belt.faults import PARAMETRIC
 from tests.campaigns.faults.campaign import Tally, all_cases, conduct, faults_of_campaign, sample
 from tests.campaigns.faults.corners import Corner, corners
 from tests.campaigns.faults.moments import Moment, rehearse
+from tests.campaigns.faults.parametric import PARAMETRIC
 
 CASES = 5200
 """Cases at the limits."""

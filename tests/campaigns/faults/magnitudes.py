@@ -15,13 +15,11 @@ from functools import cache
 from pathlib import Path
 from time import process_time
 
-from sim.faults import Parametric
-from sim.machines.wheel_on_belt.faults import PARAMETRIC
-from sim.machines.wheel_on_belt.faults.catalogue import ASSEMBLY
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import FIRST, KnownRatio
 from tester.kinds.wheel_on_belt.run.past_runs import known_from, ratios_of
 from tests.campaigns.faults.judge import Case, Judge
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit
+from tests.campaigns.faults.parametric import ASSEMBLY, PARAMETRIC, Parametric
 from tests.campaigns.faults.stage import Stage
 from tests.campaigns.faults.wheel_harm import CONTACT_C, FORCE_N, HUB_C, POWER_W, STANDING_J
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sim import machines
 from sim.faults.language import FaultLanguage
+from sim.machines.specimen_on_track.faults import LANGUAGE as TRACK
+from sim.machines.wheel_on_belt.faults import LANGUAGE as WHEEL
 from tests.campaigns.faults.corners import corners
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
@@ -130,7 +131,7 @@ class Setting(NamedTuple):
 
 def language_of(recipe: str) -> FaultLanguage:
     """Return the language of the faults of a recipe's kind of machine."""
-    return machines.find("specimen_on_track" if recipe in TRACKS else "wheel_on_belt").language()
+    return TRACK if recipe in TRACKS else WHEEL
 
 
 def setting_of(recipe: str) -> Setting:

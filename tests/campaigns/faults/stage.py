@@ -226,7 +226,6 @@ class Stage:
         return Truth.of(self.rig).unsafe(
             creeping=self.mode == "cooldown",
             force_stays=any(kind.force_stays for kind in kinds),
-            heat_stays=any(kind.heat_stays for kind in kinds),
         )
 
     def _must_stand(self, now: float) -> bool:

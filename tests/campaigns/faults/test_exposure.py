@@ -7,9 +7,9 @@ from functools import cache
 import pytest
 
 from drivers.canopen import objects as o
-from sim.faults.kinds import Expected, FaultKind
-from sim.machines.wheel_on_belt.faults import CATALOGUE, parse
-from sim.machines.wheel_on_belt.faults.catalogue import Exposure
+from sim.faults.kinds import Expected, Exposure, FaultKind
+from sim.machines.wheel_on_belt.faults import CATALOGUE, LANGUAGE
+from sim.machines.wheel_on_belt.faults.catalogue import WheelExposure
 from tester.kinds.wheel_on_belt.image.process_image import Press
 from tests.campaigns.faults.exposure import Exposed
 from tests.campaigns.faults.moments import Moment, Twins, rehearse, visit
@@ -28,15 +28,15 @@ def sliding() -> Stage:
     return found[0]
 
 
-def kind(exposure: Exposure) -> FaultKind:
+def kind(exposure: Exposure | WheelExposure) -> FaultKind:
     return FaultKind("it", CATALOGUE["belt torn"].make, exposure, Expected.TRIP, 1.0)
 
 
 @pytest.mark.parametrize(
-    "exposure", [Exposure.ENABLED, Exposure.TURNING, Exposure.LOADED, Exposure.PRESSING, Exposure.SLIDING,
-                 Exposure.RUBBING, Exposure.HEATING, Exposure.RUNNING],
+    "exposure", [Exposure.ENABLED, WheelExposure.TURNING, WheelExposure.LOADED, WheelExposure.PRESSING,
+                 WheelExposure.SLIDING, WheelExposure.RUBBING, WheelExposure.HEATING, WheelExposure.RUNNING],
 )  # fmt: skip
-def test_what_control_wants_and_knows_switches_no_budget_off(exposure: Exposure):
+def test_what_control_wants_and_knows_switches_no_budget_off(exposure: Exposure | WheelExposure):
     stage = sliding().copy()
     exposed = Exposed(stage, kind(exposure))
     assert exposed.now()
@@ -51,7 +51,7 @@ def test_what_control_wants_and_knows_switches_no_budget_off(exposure: Exposure)
 def test_a_torn_belt_is_exposed_although_nothing_slides_on_it():
     stage = sliding().copy()
     stage.rig.plant.slip_m_s = 0.0
-    assert Exposed(stage, kind(Exposure.RUBBING)).now()
+    assert Exposed(stage, kind(WheelExposure.RUBBING)).now()
 
 
 @pytest.mark.parametrize("axis", ["wheel", "belt"])
@@ -59,7 +59,7 @@ def test_a_torn_belt_is_exposed_although_nothing_slides_on_it():
 def test_an_axis_that_runs_away_is_exposed_where_it_runs_at_another_speed_than_it_was_told(axis: str, off_m_s: float):
     stage = sliding().copy()
     told, radius_m = stage.rig.axes[axis].axis.value, 0.0005 * stage.rig.plant.diameter_mm
-    stage.inject(parse(f"t=0 s: {axis} runs away {told + off_m_s / (radius_m if axis == 'wheel' else 1.0):.6g}"
+    stage.inject(LANGUAGE.parse(f"t=0 s: {axis} runs away {told + off_m_s / (radius_m if axis == 'wheel' else 1.0):.6g}"
                        f" {'rad/s' if axis == 'wheel' else 'm/s'}").shifted(stage.next_s))  # fmt: skip
     exposed = Exposed(stage, CATALOGUE[f"{axis} runs away"])
     assert not exposed.now()
@@ -73,7 +73,7 @@ def test_an_axis_that_runs_away_is_exposed_where_it_runs_at_another_speed_than_i
 @pytest.mark.parametrize("axis", ["wheel", "belt"])
 def test_a_frozen_speed_is_exposed_once_another_one_is_commanded(axis: str):
     stage = sliding().copy()
-    stage.inject(parse(f"t=0 s: {axis} drive feedback frozen").shifted(stage.next_s))
+    stage.inject(LANGUAGE.parse(f"t=0 s: {axis} drive feedback frozen").shifted(stage.next_s))
     exposed = Exposed(stage, CATALOGUE[f"{axis} drive feedback frozen"])
     for _ in range(3):
         stage.tick()
@@ -85,16 +85,16 @@ def test_a_frozen_speed_is_exposed_once_another_one_is_commanded(axis: str):
 
 def test_a_press_told_to_lift_holds_no_load():
     stage = sliding().copy()
-    exposed = Exposed(stage, kind(Exposure.PRESSING))
+    exposed = Exposed(stage, kind(WheelExposure.PRESSING))
     stage.rig.axes["press"].axis.aim(-10.0)  # type: ignore[union-attr]
     assert not exposed.now()
 
 
 def test_a_cell_that_shows_half_of_it_is_exposed_once_its_load_is_brought():
     stage = sliding().copy()
-    stage.inject(parse("t=0 s: load cell reads low").shifted(stage.next_s))
+    stage.inject(LANGUAGE.parse("t=0 s: load cell reads low").shifted(stage.next_s))
     stage.tick()
-    exposed = Exposed(stage, kind(Exposure.MISWEIGHED))
+    exposed = Exposed(stage, kind(WheelExposure.MISWEIGHED))
     assert not exposed.now()
     stage.rig.plant.force_z_n = 400.0
     assert exposed.now()
@@ -109,14 +109,14 @@ def test_heat_is_hidden_where_much_is_given_and_much_of_it_not_shown(output: flo
     jacket.pv_c = plant.parameters.ambient + 5.0
     plant.heat.hub_c = jacket.pv_c + hidden_k
     jacket.running, jacket.output = True, output
-    assert Exposed(stage, kind(Exposure.HIDDEN)).now() is exposed
+    assert Exposed(stage, kind(WheelExposure.HIDDEN)).now() is exposed
     jacket.pv_c += 20.0
     plant.heat.hub_c += 20.0
-    assert not Exposed(stage, kind(Exposure.HIDDEN)).now(), "7 K of 25 K are within twice the row's share"
+    assert not Exposed(stage, kind(WheelExposure.HIDDEN)).now(), "7 K of 25 K are within twice the row's share"
 
 
-@pytest.mark.parametrize("exposure", [Exposure.MISREAD, Exposure.STARVED, Exposure.UNASKED, Exposure.OVERHEATED,
-                                      Exposure.HOT, Exposure.WELDED, Exposure.CONNECTING,
-                                      Exposure.MISWEIGHED, Exposure.HIDDEN])  # fmt: skip
-def test_a_sound_rig_shows_no_fault_of_a_sensor_or_of_the_heat(exposure: Exposure):
+@pytest.mark.parametrize("exposure", [WheelExposure.MISREAD, WheelExposure.STARVED, WheelExposure.UNASKED,
+                                      WheelExposure.OVERHEATED, WheelExposure.HOT, WheelExposure.WELDED,
+                                      Exposure.CONNECTING, WheelExposure.MISWEIGHED, WheelExposure.HIDDEN])  # fmt: skip
+def test_a_sound_rig_shows_no_fault_of_a_sensor_or_of_the_heat(exposure: Exposure | WheelExposure):
     assert not Exposed(sliding().copy(), kind(exposure)).now()

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from sim.machines.wheel_on_belt.faults import CATALOGUE, PARAMETRIC
-from sim.machines.wheel_on_belt.faults.catalogue import ASSEMBLY
+from sim.machines.wheel_on_belt.faults import CATALOGUE
 from tester.inputs.recipe.loader import check
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
@@ -18,6 +17,7 @@ from tests.campaigns.faults.judge import fault_of
 from tests.campaigns.faults.magnitudes import Found, Trial, Written, search, written
 from tests.campaigns.faults.moments import Moment
 from tests.campaigns.faults.mutants import ROOT
+from tests.campaigns.faults.parametric import ASSEMBLY, PARAMETRIC
 
 ALLOWED = {
     "hub sensor gain": (85.0, 100.0),

@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from sim.machines.wheel_on_belt.faults import parse
+from sim.machines.wheel_on_belt.faults import LANGUAGE
 from tests.campaigns.faults.stage import Stage
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
@@ -26,7 +26,7 @@ def held() -> Stage:
 def presses(stage: Stage, fault: str, within_s: float) -> tuple[float, float]:
     """Let a fault happen; return how long it took until a trip, and the greatest force until well after it."""
     began_s, most_n = stage.next_s, 0.0
-    stage.inject(parse(f"t={began_s:.6f} s: {fault}"))
+    stage.inject(LANGUAGE.parse(f"t={began_s:.6f} s: {fault}"))
     tripped_s = float("inf")
     while stage.next_s < min(tripped_s + 1.0, began_s + within_s):
         stage.tick()
@@ -58,7 +58,7 @@ def test_a_load_cell_that_goes_wrong_under_load_is_told(fault: str, within_s: fl
 @pytest.mark.parametrize("fault", ["load cell gain 68 %", "load cell gain 80 %", "load cell Fx and Fz exchanged"])
 def test_a_load_cell_that_was_wrong_before_the_contact_cannot_press_past_500_n(fault: str) -> None:
     stage = Stage(SHORT.replace("200 N", "400 N"), seed=3)
-    stage.inject(parse(f"t=0 s: {fault}"))
+    stage.inject(LANGUAGE.parse(f"t=0 s: {fault}"))
     most_n = 0.0
     while stage.next_s < 90.0 and not stage.ended:
         stage.tick()

@@ -7,8 +7,8 @@ from functools import cache
 from math import isfinite
 
 from sim.faults.can import FaultyCanWire
-from sim.faults.kinds import FaultKind
-from sim.machines.specimen_on_track.faults import CATALOGUE, Onset
+from sim.faults.kinds import Exposure, FaultKind
+from sim.machines.specimen_on_track.faults import CATALOGUE, TrackExposure
 from sim.machines.specimen_on_track.rig import TrackRig
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
@@ -107,11 +107,11 @@ class TrackExposed:
         """Tell whether the fault can be noticed now."""
         stage, exposure = self.stage, self.kind.exposure
         scans = stage.run.engine.scans
-        if exposure is Onset.ALWAYS:
+        if exposure is Exposure.ALWAYS:
             return scans > 0
-        if exposure is Onset.DRIVES:
+        if exposure is Exposure.DRIVES:
             return scans > 0 or stage.run.connector.watches_drives
-        if exposure is Onset.CONNECTING:
+        if exposure is Exposure.CONNECTING:
             return scans == 0 and stage.ticks < 3
         if not stage.running:
             return False
@@ -123,15 +123,15 @@ class TrackExposed:
         track = rig.axes["track"]
         told_m_s = abs(track.axis.target) * rig.metres
         moves = stage.all_on and told_m_s > MOVES_SHARE * track.config.max_speed * rig.metres
-        if exposure is Onset.ENABLED:
+        if exposure is Exposure.ENABLED:
             return stage.all_on
-        if exposure is Onset.MOVING:
+        if exposure is TrackExposure.MOVING:
             return moves
-        if exposure is Onset.SLIDING:
+        if exposure is TrackExposure.SLIDING:
             return moves and rig.plant.load_n > 0.0 and abs(rig.plant.force_n) > 1.0
-        if exposure is Onset.LIFTING:
+        if exposure is TrackExposure.LIFTING:
             return stage.all_on and abs(rig.lift_mm - state.setpoints.lift_mm) > 0.5
-        if exposure is Onset.TEMPERED:
+        if exposure is TrackExposure.TEMPERED:
             return stage.run.engine.ctx.progress.step > self._tempered and state.setpoints.chamber
         place_mm = 1e3 * track.axis.position * rig.metres
         return moves and not NEAR_MM < place_mm < rig.plant.parameters.travel - NEAR_MM

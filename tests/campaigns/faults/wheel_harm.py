@@ -48,7 +48,7 @@ class Truth:
         plant = rig.plant
         return cls(plant.force_z_n, plant.slip_m_s, rig.rim_m_s, rig.belt_m_s, rig.heat_flowing_w)
 
-    def unsafe(self, *, creeping: bool = False, force_stays: bool = False, heat_stays: bool = False) -> list[str]:
+    def unsafe(self, *, creeping: bool = False, force_stays: bool = False) -> list[str]:
         """Return what is missing to the safe state of invariant I5; empty when the rig is safe.
 
         ``creeping``: in a cool-down the wheel turns slowly, unloaded.
@@ -56,7 +56,7 @@ class Truth:
         missing: list[str] = []
         if not self.force_n < UNLOADED_N and not force_stays:
             missing.append(f"force {self.force_n:.1f} N")
-        if self.heater_w > 0.0 and not heat_stays:
+        if self.heater_w > 0.0:
             missing.append(f"heat {self.heater_w:.0f} W")
         if not abs(self.wheel_m_s) < (CREEP_M_S if creeping else STILL_M_S):
             missing.append(f"wheel {self.wheel_m_s:.3f} m/s")

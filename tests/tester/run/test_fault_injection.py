@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from sim.faults.can import FaultyCanWire
-from sim.machines.wheel_on_belt.faults import parse_script
+from sim.machines.wheel_on_belt.faults import LANGUAGE
 from tests.campaigns.faults.moments import rehearse
 from tests.campaigns.faults.recipes import SHORT
 from tests.campaigns.faults.stage import Stage
@@ -26,7 +26,7 @@ def under(text: str, seconds: float) -> Stage:
     """Run on from there for some time with a script; ``t=`` counts from there."""
     stage = started().copy()
     begin = stage.next_s
-    injections = parse_script([text.replace("t=", f"t={begin + 0.001:.6f} s: ", 1)])
+    injections = LANGUAGE.parse_script([text.replace("t=", f"t={begin + 0.001:.6f} s: ", 1)])
     stage.inject(*injections)
     while stage.next_s < begin + seconds:
         stage.tick()
@@ -77,7 +77,7 @@ def test_inputs_that_are_lost_shortly_are_ridden_through():
 def test_an_input_whose_frame_is_lost_is_seen_with_the_next(fault: str, within_s: float):
     stage = started().copy()
     begin = stage.next_s
-    stage.inject(*parse_script([f"t={begin:.6f} s: press drive inputs lost for 50 ms",
+    stage.inject(*LANGUAGE.parse_script([f"t={begin:.6f} s: press drive inputs lost for 50 ms",
                                 f"t={begin + 0.02:.6f} s: {fault}"]))
     while stage.next_s < begin + within_s:
         stage.tick()
@@ -89,7 +89,7 @@ def test_a_contactor_whose_off_is_lost_opens_all_the_same():
     engine = stage.run.engine
     while not (engine.ctx.readings.contactor_closed and engine.control.state.setpoints.heat):
         stage.tick()
-    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: press drive outputs lost shortly for 300 ms"]))
+    stage.inject(*LANGUAGE.parse_script([f"t={stage.next_s:.6f} s: press drive outputs lost shortly for 300 ms"]))
     stage.tick()
     begin = stage.next_s
     stage.run.stays_latched = True
@@ -123,7 +123,7 @@ def test_a_press_that_holds_without_power_keeps_its_force_and_everything_stands(
     stage = Stage(SHORT, ("sim.press_on_power_loss=hold",))
     while not (stage.run.engine.ctx.contact.loaded and stage.rig.plant.force_z_n > 100.0):
         stage.tick()
-    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: process killed"]))
+    stage.inject(*LANGUAGE.parse_script([f"t={stage.next_s:.6f} s: process killed"]))
     until = stage.next_s + 3.0
     while stage.next_s < until:
         stage.tick()
@@ -141,14 +141,14 @@ def test_what_was_done_to_a_run_is_in_its_journal():
     stage = started().copy()
     told: list[str] = []
     stage.ledger.event = lambda t, kind, text, *rest, **more: told.append(f"{kind}: {text}")  # type: ignore[method-assign]
-    stage.inject(*parse_script([f"t={stage.next_s:.6f} s: guard opened"]))
+    stage.inject(*LANGUAGE.parse_script([f"t={stage.next_s:.6f} s: guard opened"]))
     stage.tick()
     assert any(text.startswith("injected:") and "guard opened" in text for text in told)
 
 
 def test_a_fault_waits_for_its_step():
     stage = Stage(SHORT)
-    stage.inject(*parse_script(["step measure: operator stop"]))
+    stage.inject(*LANGUAGE.parse_script(["step measure: operator stop"]))
     while not stage.run.finished:
         stage.tick()
     assert stage.run.outcome.value == "stopped"
@@ -156,7 +156,7 @@ def test_a_fault_waits_for_its_step():
 
 def test_a_fault_waits_for_its_scan():
     stage = Stage(SHORT)
-    stage.inject(*parse_script(["at scan 300: operator fast stop"]))
+    stage.inject(*LANGUAGE.parse_script(["at scan 300: operator fast stop"]))
     while not stage.ended:
         stage.tick()
     assert 300 <= stage.run.engine.scans <= 303

@@ -12,7 +12,7 @@ from sim import machines
 from sim.faults.can import FaultyCanWire
 from tester.kinds import load_rig
 from tester.run.sim_console import HELP, RigClock, SimConsole, SpoiledLife
-from tester.run.simulated import simulated_ports
+from tester.run.simulated import simulated_ports, spec_of
 
 
 class Computer:
@@ -29,12 +29,13 @@ class Bench:
     """A rig and its console."""
 
     def __init__(self, name: str = "sim") -> None:
-        _, self.rig, _ = simulated_ports(load_rig(name, ("sim.noise=0",)), 1, None, FaultyCanWire)
+        rig = load_rig(name, ("sim.noise=0",))
+        _, self.rig, _ = simulated_ports(rig, 1, None, FaultyCanWire)
         self.life = SpoiledLife(self.rig)
         self.computer = Computer()
         self.clock = RigClock(now=self.computer)
         machine = machines.find("wheel_on_belt" if name == "sim" else "specimen_on_track")
-        self.console = SimConsole(self.life, machine, self.rig, self.clock)
+        self.console = SimConsole(self.life, machine, machine.language(spec_of(rig)), self.rig, self.clock)
         self.heard: list[tuple[float, int]] = []
 
     def live(self, until_s: float) -> None:

@@ -8,6 +8,7 @@ has no budget, and the reason why no trip is required.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from enum import Enum
 from functools import partial
 
@@ -15,10 +16,12 @@ from drivers.canopen import objects as o
 from drivers.canopen.objects import NmtCommand
 from sim.faults import cabinet as p
 from sim.faults import can as c
+from sim.faults import common
 from sim.faults import drives as d
 from sim.faults import modbus as m
-from sim.faults.common import SCAN_S, bus_rows, connecting_rows, drive_rows, left_operation_rows
-from sim.faults.kinds import Expected, FaultKind
+from sim.faults.common import ALWAYS, CONNECTING, DRIVES, ENABLED, MAY, RIDE, SCAN_S, TRIP, device_rows, rows_of
+from sim.faults.kinds import FaultKind
+from sim.faults.language import FaultLanguage
 from sim.faults.scene import Effect
 from sim.faults.sensors import CROSSED, SensorFault, controller_output
 from sim.machines.wheel_on_belt.faults import heat as h
@@ -26,14 +29,10 @@ from sim.machines.wheel_on_belt.faults import mechanics as k
 from sim.machines.wheel_on_belt.rig import FORCES
 
 
-class Exposure(Enum):
-    """The earliest time at which a fault can be noticed: its budget counts from then on."""
+class WheelExposure(Enum):
+    """Further times from which a fault of this machine can be noticed."""
 
-    ALWAYS = "at once, once the run has begun"
     RUNNING = "at once, where it begins in a run and no wheel was just changed"
-    DRIVES = "at once, once every drive is configured"
-    CONNECTING = "at the next connection"
-    ENABLED = "while the drives are on"
     TURNING = "while the wheel turns"
     LOADED = "in contact"
     PRESSING = "while a load is held"
@@ -68,63 +67,66 @@ FOLLOW_S = 0.1 + 1.1 + SCAN_S
 """Time to judge a speed, s: it may lag behind a ramp of 0.3 of the rig's (0.6 m/s2), by 0.54 m/s, and 50 mm/s more."""
 SHOWS_S = 40.0
 """Time without a hub reading before its heat is missed, s: the range of delays is 40 s."""
-NOISY_S = 2.0 + 3.0 + 1.0
-"""Time to judge a noisy line, s: it counts failures over 2 s, may fail for 3 s, and asks a slow device each 1 s [A]."""
 
 (
-    ALWAYS, RUNNING, DRIVES, CONNECTING, ENABLED, TURNING, LOADED, PRESSING, SLIDING, RUBBING, ASTRAY, HEATING,
-    MISWEIGHED, MISREAD, STARVED, UNASKED, HIDDEN, OVERHEATED, HOT, WELDED,
-) = Exposure  # fmt: skip
-TRIP, STOP, HOLD, RIDE, MAY, DEVICES = Expected
+    RUNNING, TURNING, LOADED, PRESSING, SLIDING, RUBBING, ASTRAY, HEATING, MISWEIGHED, MISREAD, STARVED, UNASKED,
+    HIDDEN, OVERHEATED, HOT, WELDED,
+) = WheelExposure  # fmt: skip
 
 _NMT_STOP_ALL = bytes((NmtCommand.STOP, 0))
 _ENABLE_AND_GO = b"\x0f\x00" + (50_000).to_bytes(4, "little", signed=True)
 """A stranger's RPDO: enable operation, 0.5 m/s for the packaged rig's belt."""
 
 
+_DRIVE = (
+    *common.DRIVE,
+    *common.AT_CONNECTION,
+    FaultKind("drive mode refused", d.ModeRefused, CONNECTING, TRIP, 5.0),
+    FaultKind("drive SDO toggle error", partial(d.sdo_spoiled, kind="toggle"), CONNECTING, TRIP, 10.0,
+              note="in segmented uploads, which a device may choose for any object"),
+    FaultKind("drive SDO of another object", partial(d.sdo_spoiled, kind="other object"), CONNECTING, TRIP, 10.0,
+              note="a reply that is not believed counts as none: tried again"),
+    FaultKind("drive SDO silent", partial(c.frames_lost, base=o.SDO_REPLY_BASE), CONNECTING, TRIP, 10.0,
+              note="every request is tried again before a drive is given up"),
+)  # fmt: skip
+_VELOCITY_DRIVE = (
+    FaultKind("drive following error", partial(d.drive_fault, code=FOLLOWING_ERROR), DRIVES, TRIP, 0.02 + SCAN_S),
+    FaultKind("drive reports overheating", partial(d.reported, code=OVERHEATING), RUNNING, TRIP, 0.02 + SCAN_S),
+    FaultKind("drive setpoints lost", partial(c.frames_lost, base=o.RPDO1_BASE), ENABLED, TRIP, 0.2 + SCAN_S,
+              note="the drive's own deadline (0x1400:05), or sooner a speed or load error"),
+)  # fmt: skip
+
+
 def _drive_rows() -> Iterator[FaultKind]:
     for axis in AXES:
-        yield from drive_rows(axis, DRIVES, ENABLED)
-        yield from connecting_rows(axis, CONNECTING)
-        yield FaultKind(f"{axis} drive mode refused", partial(d.ModeRefused, axis), CONNECTING, TRIP, 5.0)
-        yield FaultKind(f"{axis} drive SDO toggle error", partial(d.sdo_spoiled, axis, "toggle"), CONNECTING, TRIP,
-                        10.0, note="in segmented uploads, which a device may choose for any object")
-        yield FaultKind(f"{axis} drive SDO of another object", partial(d.sdo_spoiled, axis, "other object"),
-                        CONNECTING, TRIP, 10.0, note="a reply that is not believed counts as none: tried again")
-        yield FaultKind(f"{axis} drive SDO silent", partial(c.frames_lost, axis, o.SDO_REPLY_BASE), CONNECTING, TRIP,
-                        10.0, note="every request is tried again before a drive is given up")
+        yield from rows_of(axis, _DRIVE)
     for axis in VELOCITY_AXES:
-        yield FaultKind(f"{axis} drive following error", partial(d.drive_fault, axis, FOLLOWING_ERROR), DRIVES, TRIP,
-                        0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive reports overheating", partial(d.reported, axis, OVERHEATING), RUNNING, TRIP,
-                        0.02 + SCAN_S)
-        yield FaultKind(f"{axis} drive setpoints lost", partial(c.frames_lost, axis, o.RPDO1_BASE), ENABLED, TRIP,
-                        0.2 + SCAN_S, note="the drive's own deadline (0x1400:05), or sooner a speed or load error")
+        yield from rows_of(axis, _VELOCITY_DRIVE)
         yield _frozen_feedback(axis)
-        yield from left_operation_rows(axis, ENABLED)
+        yield from rows_of(axis, common.LEFT_OPERATION)
     yield FaultKind("press drive inputs lost", partial(c.frames_lost, "press", o.TPDO2_BASE), DRIVES, TRIP,
                     0.25 + 2.0 * SCAN_S, note="safety chain, guard and contactor are not known any more; idle at 10 Hz")
     yield FaultKind("press drive outputs lost shortly", partial(c.frames_lost, "press", o.RPDO2_BASE), ALWAYS, RIDE,
-                    0.0, lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
+                    lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
 
 
 def _frozen_feedback(axis: str) -> FaultKind:
     """Return the row of a drive that repeats its last speed, or its last position."""
     name, make = f"{axis} drive feedback frozen", partial(c.feedback_frozen, axis)
     if axis == "press":
-        return FaultKind(name, make, ENABLED, MAY, 0.0,
+        return FaultKind(name, make, ENABLED, MAY,
                          note="its position tells only where to slow down: the force ends pressing and lifting")
     return FaultKind(name, make, ASTRAY, TRIP, FOLLOW_S, axis=axis,
                      note="seen when another speed is commanded: a slow ramp (0.3 of the rig's) is waited for")
 
 
 def _bus_rows() -> Iterator[FaultKind]:
-    yield from bus_rows(DRIVES, ENABLED)
+    yield from common.BUS
     yield FaultKind("CAN frames lost", c.frame_loss, ENABLED, TRIP, 10.0, "%", 20.0,
                     note="by chance: three frames of a drive in a row at 20 Hz")
     yield FaultKind("CAN frames late", c.frames_late, ENABLED, MAY, 0.0, "ms", 0.1,
                     note="all are late alike and count as fresh: a drive does not say when it measured")
-    yield FaultKind("CAN frames repeated", c.frames_repeated, ALWAYS, RIDE, 0.0)
+    yield FaultKind("CAN frames repeated", c.frames_repeated, ALWAYS, RIDE)
     yield FaultKind("CAN bus busy", c.BusBusy, ALWAYS, MAY, 0.0, "%", 95.0,
                     note="the higher-ranking frames of the drives still get through at the slower scans")
     yield FaultKind("second master SYNC", partial(c.SecondMaster, o.SYNC_ID, b""), DRIVES, TRIP, 0.1 + SCAN_S)
@@ -143,44 +145,22 @@ _WATCHED = {
     "thermometer": (HEATING, 1.2 + SCAN_S),
     "jacket": (ALWAYS, 1.2 + SCAN_S),
 }
-"""When the readings of a device are needed, and their age at which they are stale plus the interlock's delay, s."""
+"""For each device: when its readings are needed, and the age at which they are stale plus the row's delay, s."""
 
 
 def _modbus_rows() -> Iterator[FaultKind]:
-    for device, (when, budget_s) in _WATCHED.items():
-        yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s)
-        yield FaultKind(f"{device} without supply", partial(m.device_off, device), when, TRIP, budget_s)
-        yield FaultKind(f"{device} reset", partial(m.DeviceReset, device), when, TRIP, budget_s,
-                        lasts_s=m.REBOOT_S)
-        yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s)
-        yield FaultKind(f"{device} garbage", partial(m.Impaired, device, "noise"), when, TRIP, NOISY_S,
-                        note="bytes before a reply: its time is over before the driver can tell it from them")
-        yield FaultKind(f"{device} replies cut short", partial(m.Impaired, device, "truncate"), when, TRIP, budget_s)
-        yield FaultKind(f"{device} replies of another address", partial(m.Impaired, device, "wrong_id"), when, TRIP,
-                        budget_s)
-        yield FaultKind(f"{device} replies split", partial(m.Impaired, device, "split", delay_s=0.005), when, MAY,
-                        0.0, note="the second half comes 5 ms later, a gateway's way: a reply like any other")
-        yield FaultKind(f"{device} replies merged", partial(m.Impaired, device, "merged"), when, TRIP, NOISY_S,
-                        note="a gateway keeps every second reply and sends it with the next, in one piece")
-        yield FaultKind(f"{device} replies late", partial(m.late_reply, device), when, TRIP, budget_s + 0.5, "ms", 1.5)
-        yield FaultKind(f"{device} reply late once", partial(m.Impaired, device, "late", count=1, delay_s=0.02),
-                        ALWAYS, RIDE, 0.0)
-        yield FaultKind(f"{device} CRC error once", partial(m.Impaired, device, "corrupt", count=1), ALWAYS, RIDE, 0.0)
-        yield FaultKind(f"{device} exception", partial(m.exception_reply, device), when, TRIP, budget_s, "", 4.0)
-        yield FaultKind(f"{device} line unplugged", partial(m.line_gone, device), DRIVES, TRIP, 0.2 + SCAN_S)
+    for device, (needed, stale_s) in _WATCHED.items():
+        yield from device_rows(device, needed, stale_s, ())
     for force in FORCES:
-        device, (when, budget_s) = f"load cell {force}", _WATCHED["load cell"]
-        note = "of the transmitter that measures it, which may measure all"
-        yield FaultKind(f"{device} silent", partial(m.Impaired, device, "silence"), when, TRIP, budget_s, note=note)
-        yield FaultKind(f"{device} without supply", partial(m.device_off, device), when, TRIP, budget_s, note=note)
-        yield FaultKind(f"{device} CRC errors", partial(m.Impaired, device, "corrupt"), when, TRIP, budget_s, note=note)
+        yield from device_rows(f"load cell {force}", *_WATCHED["load cell"], ("silent", "without supply", "CRC errors"),
+                               "of the transmitter that measures it, which may measure all")
     yield FaultKind("load cell words swapped", partial(m.Impaired, "load cell", "swapped"), LOADED, TRIP, 0.1 + SCAN_S,
                     note="the order of the words of its 32-bit values was changed at the device")
-    yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY, 0.0,
+    yield FaultKind("load cell half updated", partial(m.Impaired, "load cell", "torn"), LOADED, MAY,
                     note="a value of 32 bits is read while the device writes it: off by 3277 N where its sign changes")
     yield FaultKind("slip ring worn", h.WornSector, ALWAYS, MAY, 0.0, "", 90.0,
                     note="requests fail within 20 degrees of this angle of the wheel: one in nine, asked for again")
-    yield FaultKind("jacket memory worn out", partial(m.memory_worn, "jacket"), ALWAYS, MAY, 0.0,
+    yield FaultKind("jacket memory worn out", partial(m.memory_worn, "jacket"), ALWAYS, MAY,
                     note="what it keeps without supply, standby among it, cannot be changed any more (exception 04):"
                     " seen when that is written, at the end")
 
@@ -227,12 +207,12 @@ def _sensor_rows() -> Iterator[FaultKind]:
 def _actuator_rows() -> Iterator[FaultKind]:
     yield FaultKind("jacket output stuck on", partial(OUTPUT, 100.0), OVERHEATED, TRIP, 2.0 + 1.0 + POLL_S,
                     slow=True, note="its sensor follows within a second")
-    yield FaultKind("jacket output stuck off", partial(OUTPUT, 0.0), HEATING, MAY, 0.0,
+    yield FaultKind("jacket output stuck off", partial(OUTPUT, 0.0), HEATING, MAY,
                     note="the wheel gets colder than wanted: the recipe's waits notice, nothing is harmed")
     yield FaultKind("jacket relay shorted", partial(h.heater_element, 100.0), UNASKED, TRIP, 16.0, slow=True,
                     note="the rate is known 3 s after the output has gone, over 4 to 8 s; 5 and 2 s of the row")
     yield FaultKind("heater line open", partial(h.heater_element, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
-    yield FaultKind("jacket limiter dead", h.limiter_dead, ALWAYS, MAY, 0.0,
+    yield FaultKind("jacket limiter dead", h.limiter_dead, ALWAYS, MAY,
                     note="a second line: nothing shows that it is gone before it is needed")
     yield FaultKind("contactor welded", p.contactor_welded, WELDED, TRIP, 0.5 + 2.0 * SCAN_S,
                     note="seen when it is to open")
@@ -242,7 +222,7 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     axis="wheel", note="0.54 m/s; seen where that is not its command")
     yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ASTRAY, TRIP, FOLLOW_S, "m/s", 0.4,
                     axis="belt", note="seen where that is not its command")
-    yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, 0.0, force_stays=True,
+    yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, force_stays=True,
                     note="it holds the load it held: seen when it is to lift, and freed by hand; the rig stands")
     yield FaultKind("belt jammed", partial(d.Jammed, "belt"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("wheel jammed", partial(d.Jammed, "wheel"), LOADED, TRIP, 0.1 + SCAN_S)
@@ -250,24 +230,21 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     note="friction and the wheel's torque are gone")
     yield FaultKind("belt slips on its roller", k.BeltSlips, LOADED, TRIP, 0.05 + 2.0 * SCAN_S, "%", 40.0,
                     note="there is no encoder on the belt itself: by the drive's torque, beyond elastic creep (2 %)")
-    yield FaultKind("wheel slips on its shaft", k.WheelSlipsOnShaft, SLIDING, MAY, 0.0,
+    yield FaultKind("wheel slips on its shaft", k.WheelSlipsOnShaft, SLIDING, MAY,
                     note="the shaft's encoder turns on, and friction does not vanish: held by the clamping")
     yield FaultKind("emergency stop pressed", partial(p.emergency_stop, VELOCITY_AXES), DRIVES, TRIP, SCAN_S)
 
 
 def _computer_rows() -> Iterator[FaultKind]:
-    yield FaultKind("scan stalled shortly", partial(p.stalled, 0.03), ALWAYS, RIDE, 0.0)
-    yield FaultKind("scan stalled", p.stalled, ENABLED, TRIP, 0.4 + SCAN_S, "ms", 0.4, lasts_s=0.5,
-                    note="tripped by the first scan after it; a drive stops by itself after 0.2 s")
+    stalled, killed, hold, *asked = common.COMPUTER
+    yield FaultKind("scan stalled shortly", partial(p.stalled, 0.03), ALWAYS, RIDE)
+    yield stalled
     yield FaultKind("scan stalled while sliding", partial(p.stalled, 0.165), SLIDING, TRIP, 0.2 + SCAN_S, lasts_s=0.3,
                     note="later than a scan may be, sooner than most drives stop by themselves")
-    yield FaultKind("process killed", p.killed, ALWAYS, DEVICES, 0.25)
+    yield killed
     yield FaultKind("clock jump", p.clock_jump, ENABLED, TRIP, SCAN_S, "ms", 2.0, lasts_s=0.5)
-    yield FaultKind("operator hold", partial(p.operator, "hold"), ALWAYS, HOLD, SCAN_S)
-    yield FaultKind("operator release", partial(p.operator, "release"), ALWAYS, RIDE, 0.0)
-    yield FaultKind("operator abort", partial(p.operator, "abort"), DRIVES, STOP, SCAN_S)
-    yield FaultKind("operator stop", partial(p.operator, "stop"), DRIVES, STOP, SCAN_S)
-    yield FaultKind("operator fast stop", partial(p.operator, "fast stop"), DRIVES, STOP, SCAN_S)
+    yield replace(hold, exposure=ALWAYS)
+    yield from asked
 
 
 _UNASKED = "how much of it goes unnoticed, and what that does, python -m tests.campaigns.faults --magnitudes says"
@@ -302,13 +279,6 @@ def _misread_rows() -> Iterator[FaultKind]:
     yield _hides("hub sensor delay", partial(HUB, "delay"), "ms", 20.0)
 
 
-ASSEMBLY = (
-    "wheel drive reversed", "belt drive reversed", "wheel speed", "belt speed", "wheel and belt drives swapped",
-    "wheel diameter",
-)  # fmt: skip
-"""Beginnings of the phrases of assembly faults of the machine: none of them begins in a run."""
-
-
 def _machine_rows() -> Iterator[FaultKind]:
     """Yield faults of the machine's assembly, and of the rubber on its hub."""
     for axis in ("wheel", "belt"):
@@ -335,3 +305,4 @@ def _rows() -> Iterator[FaultKind]:
 
 CATALOGUE: dict[str, FaultKind] = {row.phrase: row for row in _rows()}
 """Every fault by its phrase."""
+LANGUAGE = FaultLanguage(CATALOGUE, STEPS)

@@ -139,7 +139,10 @@ def test_an_end_switch_opens_the_chain_and_takes_the_torque_before_the_stop() ->
     io = rig.axes["track"].io
     assert rig.beyond_switch and io is not None and not io.inputs & 0x10000
     assert rig.axes["track"].torque_off and not rig.hit_stop
-    rig.free_track()
+    rig.axes["track"].axis.position = 150.0
+    run(rig, 0.02)
+    for axis in rig.axes.values():
+        axis.set_torque_off(False)
     assert not rig.beyond_switch and io.inputs & 0x10000 and not rig.axes["track"].torque_off
 
 

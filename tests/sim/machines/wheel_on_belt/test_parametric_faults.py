@@ -8,14 +8,15 @@ from math import exp
 
 import pytest
 
-from sim.faults import FaultScript, Parametric, Scene
+from sim.faults import FaultScript, Scene
 from sim.faults.sensors import Slow
-from sim.machines.wheel_on_belt.faults import CATALOGUE, PARAMETRIC, parse
+from sim.machines.wheel_on_belt.faults import CATALOGUE, LANGUAGE
 from sim.machines.wheel_on_belt.faults.heat import DETACHED_S
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.motion import VelocityAxis
 from tester.kinds import load_rig
 from tester.run.simulated import spec_of
+from tests.campaigns.faults.parametric import PARAMETRIC, Parametric
 
 QUIET = ["sim.noise=0", "sim.scatter=0", "sim.running_in=0"]
 LOADED_MM = 11.9
@@ -82,7 +83,7 @@ def under(fault: str, seconds: float = 0.5, *, lifted: bool = False) -> WheelRig
 
 def play(rig: WheelRig, fault: str, seconds: float) -> None:
     script, scene, end_s = FaultScript(), Scene(rig, Nobody()), rig.now_s + seconds
-    script.add([parse(f"t={rig.now_s:.6f} s: {fault}")])
+    script.add([LANGUAGE.parse(f"t={rig.now_s:.6f} s: {fault}")])
     while rig.now_s < end_s - 1e-9:
         script.act(scene, rig.now_s + 1e-6)
         script.renew(scene, rig.now_s)
@@ -100,7 +101,7 @@ def test_every_row_can_be_written_at_both_ends_and_between(row: Parametric) -> N
         assert row.between(end, 0.0) == row.normal and row.between(end, 1.0) == end
         for share in (0.25, 1.0):
             value = row.between(end, share)
-            found = parse(f"t=1 s: {row.text(value)}")
+            found = LANGUAGE.parse(f"t=1 s: {row.text(value)}")
             assert found.kind is row.kind and found.value == pytest.approx(value, rel=1e-5)
             assert found.kind.effect(found.value) is not found.kind.effect(found.value)
 
@@ -185,7 +186,7 @@ def test_a_delay_shows_what_was() -> None:
 @pytest.mark.parametrize("fault", ["load cell lag 1 s", "load cell delay 1 s"])
 def test_a_slow_load_cell_goes_on_showing_a_load_that_has_gone(fault: str) -> None:
     rig = deepcopy(sliding())
-    script, scene = FaultScript().add([parse(f"t={rig.now_s:.6f} s: {fault}")]), Scene(rig, Nobody())
+    script, scene = FaultScript().add([LANGUAGE.parse(f"t={rig.now_s:.6f} s: {fault}")]), Scene(rig, Nobody())
     script.act(scene, rig.now_s + 1e-6)
     before_n = forces(rig)[2]
     rig.axes["press"].axis.position = 0.0

@@ -8,9 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from sim import machines
-from sim.faults.common import plain_language
-from sim.plain_twin import PlainTwin
-from sim.rig import RigSpec
+from sim.plain_twin import PlainTwin, plain_machine
 from sim.wires.can_wire import CanWire
 from tester.base.axes import Axes, Axis, Setpoint
 from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, Roles
@@ -108,7 +106,7 @@ class BenchPlant:
 
     ambient_c = 21.0
 
-    def __init__(self) -> None:
+    def __init__(self, parameters: PlainSim | None = None, seed: int = 0) -> None:
         self.force_n = 5.0
         self.installed: list[tuple[int, str]] = []
         self.repeats: list[tuple[int, int, int]] = []
@@ -123,13 +121,7 @@ class BenchPlant:
         self.repeats.append((condition, repeat, attempt))
 
 
-def bench_world(spec: RigSpec, parameters: PlainSim, seed: int, can_wire: type[CanWire] = CanWire) -> PlainTwin:
-    return PlainTwin(spec, BenchPlant(), {"cell": {"fx": "force_n"}}, can_wire)
-
-
-MACHINE = machines.SimulatedMachine(
-    bench_world, lambda: plain_language(["left", "right"], ["cell"]), ("force_n",), lambda rig: (0.0,), (3,)
-)
+MACHINE = plain_machine(BenchPlant, {"cell": {"fx": "force_n"}}, (), ("force_n",), lambda rig: (0.0,), (3,))
 
 
 class BenchRuns(PlainRuns):

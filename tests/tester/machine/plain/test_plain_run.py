@@ -15,6 +15,7 @@ from tester.machine.run import Outcome
 from tester.machine.run_parts import NoHistory
 from tester.machine.state import Mode
 from tester.run.fault_injection import FaultyRun
+from tester.run.simulated import spec_of
 from tester.store.recorder import NullRecorder
 from tests.tester.machine.plain.bench import QUANTITIES, RIG, Bench, BenchPart, BenchRuns, bench_plan, bench_rig
 
@@ -88,7 +89,8 @@ FAULTS = [
 @pytest.mark.parametrize(("fault", "row"), FAULTS, ids=[fault for fault, _ in FAULTS])
 def test_a_fault_trips_the_row_that_tells_it_and_the_other_drive_stops(fault: str, row: str | tuple[str, ...]) -> None:
     bench = Bench(can_wire=FaultyCanWire)
-    script = FaultScript(machines.find(BenchRuns.plant).language().parse_script([f"step slide + 1 s: {fault}"]))
+    language = machines.find(BenchRuns.plant).language(spec_of(bench.rig))
+    script = FaultScript(language.parse_script([f"step slide + 1 s: {fault}"]))
     faulty = FaultyRun(bench.run, bench.twin, script)
     now = 0.0
     while not faulty.finished and now < 60.0:

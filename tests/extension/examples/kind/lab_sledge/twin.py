@@ -5,15 +5,12 @@ from dataclasses import dataclass
 from math import copysign, inf
 from typing import Annotated
 
-from sim.faults.common import PlainExposure, plain_language
-from sim.faults.kinds import Expected, FaultKind
+from sim.faults.kinds import Expected, Exposure, FaultKind
 from sim.faults.scene import Effect, Scene
-from sim.machines import SimulatedMachine
 from sim.noise import NormalStream, normal
 from sim.physics.laws import make
-from sim.plain_twin import PlainTwin
-from sim.rig import RigSpec, SimRig
-from sim.wires.can_wire import CanWire
+from sim.plain_twin import PlainTwin, plain_machine
+from sim.rig import SimRig
 from tester.base.config_reader import Range
 from tester.inputs.rig.plain_rig import PlainSim
 
@@ -87,17 +84,13 @@ class Jam(Effect):
         plant_of(scene.rig).jammed = False
 
 
-JAM = FaultKind("sledge jams", Jam, PlainExposure.MOVING, Expected.TRIP, 10.0, note="when the spring is drawn that far")
+JAM = FaultKind("sledge jams", Jam, Exposure.MOVING, Expected.TRIP, 10.0, note="when the spring is drawn that far")
 
 
-def world(spec: RigSpec, parameters: SledgeSim, seed: int, can_wire: type[CanWire] = CanWire) -> PlainTwin:
-    """Return the rig on its wires."""
-    return PlainTwin(spec, SledgePlant(parameters, seed), {"load_cell": {"fx": "cell_n"}}, can_wire)
-
-
-MACHINE = SimulatedMachine(
-    world,
-    lambda: plain_language(["pull"], ["load cell"], JAM),
+MACHINE = plain_machine(
+    SledgePlant,
+    {"load_cell": {"fx": "cell_n"}},
+    (JAM,),
     log_columns=("speed_mm_s", "force_n"),
     log_row=lambda rig: (rig.axes["pull"].axis.value, plant_of(rig).force_n),
     log_decimals=(3, 3),

@@ -13,7 +13,7 @@ import pytest
 from bench.machine import scan_is_compiled
 from drivers.joined_cell import JoinedCell
 from sim.faults.scene import Scene
-from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
+from sim.machines.wheel_on_belt.faults import CATALOGUE
 from tester.base.source import InvalidSource, load_tree
 from tester.inputs.rig.packaged import packaged_text
 from tester.inputs.rig.rig_files import load

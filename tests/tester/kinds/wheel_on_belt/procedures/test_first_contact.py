@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sim.machines.wheel_on_belt.faults import parse
+from sim.machines.wheel_on_belt.faults import LANGUAGE
 from tester.kinds.wheel_on_belt.procedures.first_contact import OFF, FirstContact
 from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
 from tester.machine.activity import MoveFailedError
@@ -22,7 +22,7 @@ def contact(fault: str, compound: str = "1#", seed: int = 3) -> tuple[Stage, flo
     """Install a wheel with a fault that was there before; return the stage after it, greatest force and beginning."""
     stage = Stage(SHORT.replace("1#", compound), seed=seed)
     if fault:
-        stage.inject(parse(f"t=0 s: {fault}"))
+        stage.inject(LANGUAGE.parse(f"t=0 s: {fault}"))
     most_n = installing_s = 0.0
     while stage.next_s < 60.0 and not stage.ended and stage.place[0] < 2:
         stage.tick()

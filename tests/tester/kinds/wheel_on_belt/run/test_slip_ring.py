@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from sim.faults.scene import Scene
-from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
+from sim.machines.wheel_on_belt.faults import CATALOGUE
 from sim.machines.wheel_on_belt.faults.heat import WornSector
 from tester.analysis.ring_errors import sector_of
 from tester.cli.results_group import slip_ring
