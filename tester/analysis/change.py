@@ -11,13 +11,14 @@ prior value, updated by the scatter of the repeats about those means.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from itertools import pairwise
 from math import inf, isfinite, sqrt
 from typing import Final
 
 from tester.analysis.blocks import Block
 from tester.analysis.drift import PER_KELVIN_PERCENT
+from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN, RepeatResult
 from tester.analysis.stability import MIN_BLOCKS, centred
@@ -92,11 +93,13 @@ def greatest(values: Iterable[float]) -> float:
     return max((value for value in values if isfinite(value)), key=abs, default=NAN)
 
 
-def change_of(repeats: Sequence[RepeatResult], repeatability: float) -> float:
+def change_of(results: Sequence[RepeatResult], by_hand: Container[int] = ()) -> float:
     """Return the greatest change within a repeat or between the repeats of a condition, per cent; NaN if unknown.
 
-    ``repeats``: those that have a coefficient, in order of time, all of one direction.
+    ``results``: in order of time, all of one direction. Those count that show friction: valid ones, and those refused
+    for their drift. ``by_hand``: positions that a person has left out.
     """
+    repeats = [result for i, result in enumerate(results) if (result.valid or result.drifts) and i not in by_hand]
     values = [repeat.mu_resultant for repeat in repeats]
-    between = [change_between(values, repeatability)] if len(values) > 1 else []
+    between = [change_between(values, REPEATABILITY)] if len(values) > 1 else []
     return greatest([*(repeat.change_percent for repeat in repeats), *between])

@@ -78,18 +78,16 @@ def both_ways(pairs: Sequence[tuple[RepeatResult, RepeatResult]]) -> BothWays:
 
 def _way(repeats: Sequence[RepeatResult]) -> SlidingWay:
     n = len(repeats)
+    means = mean_of(repeat.means for repeat in repeats)
     values, drifts = [repeat.mu_resultant for repeat in repeats], [repeat.drift_percent for repeat in repeats]
     along = sum(repeat.mu_longitudinal for repeat in repeats) / n
-    return SlidingWay(n, sum(values) / n, standard_deviation(values), along, sum(drifts) / n,
-                      mean_of(repeat.means for repeat in repeats))  # fmt: skip
+    return SlidingWay(n, sum(values) / n, standard_deviation(values), along, sum(drifts) / n, means)
 
 
 def mean_of_both_ways(replicates: Sequence[BothWays]) -> BothWays:
     """Return the mean over replicates, each of equal weight; deviations between pairs are pooled."""
-    forward, backward = (
-        _mean_way([replicate.forward for replicate in replicates]),
-        _mean_way([replicate.backward for replicate in replicates]),
-    )
+    forward = _mean_way([replicate.forward for replicate in replicates])
+    backward = _mean_way([replicate.backward for replicate in replicates])
     df = [replicate.pairs - 1 for replicate in replicates]
     squares = sum(n * replicate.half_sum_s**2 for n, replicate in zip(df, replicates, strict=True) if n)
     spread = (squares / sum(df)) ** 0.5 if sum(df) else float("nan")
@@ -100,15 +98,12 @@ def mean_of_both_ways(replicates: Sequence[BothWays]) -> BothWays:
 def _mean_way(ways: Sequence[SlidingWay]) -> SlidingWay:
     n = len(ways)
     values = [way.mu for way in ways]
-    along, drift = (
-        sum(way.along for way in ways) / n,
-        sum(way.drift_percent for way in ways) / n,
-    )
-    return SlidingWay(sum(way.n for way in ways), sum(values) / n, standard_deviation(values), along, drift,
-                      mean_of(way.means for way in ways))  # fmt: skip
+    means = mean_of(way.means for way in ways)
+    along, drift = sum(way.along for way in ways) / n, sum(way.drift_percent for way in ways) / n
+    return SlidingWay(sum(way.n for way in ways), sum(values) / n, standard_deviation(values), along, drift, means)
 
 
-def halves(results: Sequence[RepeatResult], pair: int) -> tuple[int, int]:
+def halves(pair: int) -> tuple[int, int]:
     """Return the places of the repeats of a pair (from 0): the one in the requested direction, then the reverse."""
     first = 2 * pair
     return (first + 1, first) if is_reversed(first + 1) else (first, first + 1)
@@ -124,7 +119,7 @@ def as_pairs(results: Sequence[RepeatResult], *, whole: bool = False) -> list[Re
 
 
 def _as_one(results: Sequence[RepeatResult], pair: int) -> RepeatResult:
-    places = halves(results, pair)
+    places = halves(pair)
     there = [results[place] for place in places if place < len(results)]
     odd = next(((results[place], place) for place in sorted(places) if place < len(results)
                 and not results[place].valid), None)  # fmt: skip

@@ -1,4 +1,4 @@
-"""Which repeats of a condition are left out of its mean, and why.
+"""Which repeats of a condition are left out of its mean, and why; and how many were requested, made and valid.
 
 A repeat is left out automatically only on objective grounds: a gate or the drift test (module ``judge``) made it
 invalid, or it fluctuates in excess, by Cochran's C (1 %) and by a variation within its window of more than three times
@@ -10,11 +10,14 @@ The paper's mean of the closest two of three repeats is used only on request (``
 596, doi 10.3390/polym16050596 (CC BY 4.0), 2.2.2. It looks more precise but is less precise: it scatters 1.38 times as
 much as the mean of all, and those two differ by a third of the true scatter. So the deviation between repeats stays
 that of all three, and the uncertainty of the mean is that of this mean.
+
+Every count in the program comes from this module. The counted items are those that make a value: repeats; pairs of
+repeats where both directions are measured; replicates for the row of their mean.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from statistics import median
@@ -139,3 +142,55 @@ def taken(values: Sequence[float], combining: Combining) -> list[int]:
     if below == above:
         return every
     return sorted((low, middle) if below < above else (middle, high))
+
+
+REPEATS: Final = "repeats"
+PAIRS: Final = "pairs"
+REPLICATES: Final = "replicates"
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Counts of a condition: ``made`` is always ``valid`` plus ``left_out``.
+
+    ``asked``: the least number that the recipe requests. ``valid``: those in the mean. ``make_ups``: places among
+    ``made``, from 0, of those that replace refused ones.
+    """
+
+    asked: int = 0
+    made: int = 0
+    valid: int = 0
+    make_ups: tuple[int, ...] = ()
+    of: str = REPEATS
+
+    @property
+    def left_out(self) -> int:
+        """Return how many are in no mean: refused, left out by hand, or not chosen."""
+        return self.made - self.valid
+
+    @property
+    def made_up(self) -> int:
+        """Return how many were made in place of refused ones."""
+        return len(self.make_ups)
+
+    @property
+    def words(self) -> str:
+        """Return valid of requested, as text: ``3 of 3``."""
+        return f"{self.valid} of {self.asked}"
+
+
+NO_COUNTS: Final = Counts()
+
+
+def make_ups_of(asked: int, made: int, refused: Collection[int]) -> tuple[int, ...]:
+    """Return the places, from 0, of make-ups among ``made``: each replaces a refused one before it.
+
+    Repeats beyond ``asked`` that replace none serve precision or the drift test: they are no make-ups.
+    """
+    owed, make_ups = 0, list[int]()
+    for place in range(made):
+        if place >= asked and owed:
+            owed -= 1
+            make_ups.append(place)
+        owed += place in refused
+    return tuple(make_ups)

@@ -17,7 +17,7 @@ Welch and Satterthwaite.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, expm1, hypot, inf, isfinite, log, sqrt
 from statistics import median
@@ -25,6 +25,7 @@ from typing import Final
 
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.uncertainty import CONFIDENCE, Contribution, contribution, effective_df
+from tester.base.words import coefficient
 
 NAME: Final = "reference"
 """Grid of reference conditions, in a run whose metadata has references."""
@@ -292,6 +293,26 @@ def control_charts(references: Sequence[Reference], known: KnownScatter) -> tupl
         ]
         charts.append(ControlChart(compound, centre, low, high, tuple(points)))
     return tuple(charts)
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceWatch:
+    """Result of a run's references: themselves, the counterface's drift, a control chart for each compound."""
+
+    references: tuple[Reference, ...]
+    drift: CounterfaceDrift | None
+    charts: tuple[ControlChart, ...]
+
+    def lines(self, worn: str) -> Iterator[str]:
+        """Yield the result, for people; ``worn``: the kind's word for a piece."""
+        if self.drift is not None:
+            yield self.drift.sentence(worn)
+        else:
+            yield "counterface: fewer than two references have a value, nothing is known of it"
+        for chart in self.charts:
+            outside = [f"{point.number}" for point in chart.points if isfinite(point.mu) and not point.within]
+            limits = f"references of {chart.compound}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
+            yield f"{limits}; outside: {', '.join(outside)}" if outside else f"{limits}; all inside"
 
 
 def doubted(charts: Sequence[ControlChart], conditions: Sequence[int]) -> frozenset[int]:

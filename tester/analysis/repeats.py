@@ -7,17 +7,20 @@ from dataclasses import astuple, dataclass, replace
 from math import sqrt
 
 from tester.analysis.change import LIMIT_PERCENT, change_of, greatest
-from tester.analysis.counts import NO_COUNTS, REPEATS, REPLICATES, Counts, make_ups_of
 from tester.analysis.directions import BothWays, mean_of_both_ways
 from tester.analysis.flags import CHANGED, CLOSEST_TWO, DOUBTS, EXCLUDED, OUTLIER, SHORT, flags_in, joined
 from tester.analysis.left_out import (
     CLOSEST_STANDARD,
+    NO_COUNTS,
     NONE_BY_HAND,
     NOT_CLOSEST,
-    REPEATABILITY,
+    REPEATS,
+    REPLICATES,
     Combining,
+    Counts,
     Exclusion,
     exclusions,
+    make_ups_of,
     outliers,
     taken,
 )
@@ -141,26 +144,22 @@ def combine_repeats(
     condition (None: it has not left it), ``judged`` the judgement of its drift. ``by_hand``: positions that a person
     has left out, each with the reason. ``combining``: the mean of all that count, or the paper's way.
     ``changed_percent``: the greatest sudden change, where it is not computed from ``results`` (pairs of repeats).
-    ``counted``: the unit of ``results``, from ``tester.analysis.counts``.
+    ``counted``: the unit of ``results``, from ``tester.analysis.left_out``.
     """
     kept, excluded = _kept(results, by_hand)
-    counts = _counts(results, planned, counted)
+    refused = {exclusion.position for exclusion in exclusions(results)}
+    counts = Counts(planned, len(results), make_ups=make_ups_of(planned, len(results), refused), of=counted)
+    if changed_percent is None:
+        changed_percent = change_of(results, by_hand)
     status, why = _condition_status(results, excluded, counts, ended, reason)
     if not kept:
         return ConditionResult(status, why, EXCLUDED if by_hand else "", counts=counts, excluded=tuple(excluded))
-    if changed_percent is None:
-        changed_percent = change_of(with_coefficient(results, by_hand), REPEATABILITY)
     shell = ConditionResult(status, why, counts=counts, excluded=tuple(excluded), change_percent=changed_percent)
     result = _of_kept(shell, results, kept, judged, combining)
     asked = planned - sum(results[i].valid for i in by_hand if i < len(results))
     short = result.ok and len(kept) < max(asked, min_valid)
     marks = ((EXCLUDED, by_hand), (SHORT, short), (CHANGED, abs(changed_percent) > LIMIT_PERCENT))
     return replace(result, flags=joined([*flags_in(result.flags), *(word for word, on in marks if on)]))
-
-
-def _counts(results: Sequence[RepeatResult], planned: int, counted: str) -> Counts:
-    refused = {exclusion.position for exclusion in exclusions(results)}
-    return Counts(planned, len(results), make_ups=make_ups_of(planned, len(results), refused), of=counted)
 
 
 def _kept(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> tuple[list[int], list[Exclusion]]:
@@ -202,11 +201,6 @@ def _of_kept(
         unsteady=unsteadiness(judged),
     )
     return _with_mean(shell, repeats, flagged, used)
-
-
-def with_coefficient(results: Sequence[RepeatResult], by_hand: Mapping[int, str] = NONE_BY_HAND) -> list[RepeatResult]:
-    """Return the repeats that show friction: those that count, and those refused for their drift."""
-    return [result for i, result in enumerate(results) if (result.valid or result.drifts) and i not in by_hand]
 
 
 def combine_replicates(results: Sequence[ConditionResult]) -> ConditionResult:

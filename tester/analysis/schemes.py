@@ -13,13 +13,13 @@ from typing import Final
 
 from tester.analysis.blocks import Block
 from tester.analysis.change import change_of, greatest
-from tester.analysis.counts import PAIRS as COUNTED
 from tester.analysis.directions import as_pairs, both_ways, halves, is_reversed
 from tester.analysis.flags import flags_in, joined
 from tester.analysis.judge import judge
-from tester.analysis.left_out import BY_HAND, NONE_BY_HAND, REPEATABILITY, Combining, Exclusion, counting
+from tester.analysis.left_out import BY_HAND, NONE_BY_HAND, Combining, Exclusion, counting
+from tester.analysis.left_out import PAIRS as COUNTED
 from tester.analysis.quantiles import t_quantile
-from tester.analysis.repeats import ConditionResult, combine_repeats, with_coefficient
+from tester.analysis.repeats import ConditionResult, combine_repeats
 from tester.analysis.results import NAN, NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
 from tester.analysis.stability import Window
 from tester.analysis.uncertainty import CONFIDENCE
@@ -96,18 +96,18 @@ class OppositePairs(Scheme):
         combining: Combining = "mean",
     ) -> ConditionResult:
         """Return the result of a condition from its pairs; ``by_hand`` and the exclusions are places of repeats."""
+        changed_percent = _changed(results, by_hand)
         pairs = as_pairs(results, whole=ended is None)
+        places_of = [halves(pair) for pair in range(len(pairs))]
         hands = {place // 2: why for place, why in by_hand.items() if place // 2 < len(pairs)}
         result = combine_repeats(pairs, planned, min_valid, ended, reason, judged=judged, by_hand=hands,
-                                combining=combining, changed_percent=_changed(results, by_hand),
-                                counted=COUNTED)  # fmt: skip
+                                combining=combining, changed_percent=changed_percent, counted=COUNTED)  # fmt: skip
         out = {exclusion.position: exclusion.reason for exclusion in result.excluded}
-        kept = [halves(results, pair) for pair in range(len(pairs)) if pair not in out]
-        kept = [(a, b) for a, b in kept if max(a, b) < len(results)]
+        whole = [(a, b) for pair, (a, b) in enumerate(places_of) if pair not in out and max(a, b) < len(results)]
         excluded = [
             Exclusion(place, _why(results, place, out[pair], by_hand))
             for pair in sorted(out)
-            for place in sorted(halves(results, pair))
+            for place in sorted(places_of[pair])
             if place < len(results)
         ]
         half = range(2 * len(pairs), len(results))
@@ -115,8 +115,8 @@ class OppositePairs(Scheme):
         return replace(
             result,
             excluded=tuple(excluded),
-            flagged=tuple(place for pair in result.flagged for place in sorted(halves(results, pair))),
-            both_ways=both_ways([(results[a], results[b]) for a, b in kept]) if kept else None,
+            flagged=tuple(place for pair in result.flagged for place in sorted(places_of[pair])),
+            both_ways=both_ways([(results[a], results[b]) for a, b in whole]) if whole else None,
         )
 
 
@@ -127,7 +127,7 @@ def _changed(results: Sequence[RepeatResult], by_hand: Mapping[int, str]) -> flo
         [result for i, result in enumerate(results) if is_reversed(i + 1) == backward and i not in by_hand]
         for backward in (False, True)
     )
-    return greatest(change_of(with_coefficient(way), REPEATABILITY) for way in ways)
+    return greatest(change_of(way) for way in ways)
 
 
 def _why(results: Sequence[RepeatResult], place: int, of_pair: str, by_hand: Mapping[int, str]) -> str:

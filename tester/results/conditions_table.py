@@ -1,8 +1,8 @@
 """The table of conditions: every column of it, once.
 
 ``mu`` is the coefficient at the nominal temperature (``tester.analysis.repeats``), as are U and all its other figures
-except ``mu_as_measured`` and the scatter between repeats, ``s``. Counts are those of ``tester.analysis.counts``. A new
-column is an entry here; its ``views`` name the outputs that show it to people.
+except ``mu_as_measured`` and the scatter between repeats, ``s``. Counts are those of ``tester.analysis.left_out``. A
+new column is an entry here; its ``views`` name the outputs that show it to people.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Final
 
-from tester.analysis.counts import Counts
 from tester.analysis.flags import flags_in
+from tester.analysis.left_out import Counts
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN, SoakCheck, mark_of
 from tester.analysis.wear_rate import ConditionWear

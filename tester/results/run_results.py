@@ -10,23 +10,13 @@ from math import isfinite
 from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, THERMOMETER, flags_in, joined
 from tester.analysis.left_out import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
-from tester.analysis.reference import (
-    RESERVED,
-    ControlChart,
-    CounterfaceDrift,
-    Reference,
-    control_charts,
-    counterface_drift,
-    doubted,
-    is_reference,
-)
+from tester.analysis.reference import RESERVED, ReferenceWatch, doubted, is_reference
 from tester.analysis.repeats import combine_replicates
 from tester.analysis.ring_runs import RingRun
 from tester.analysis.schemes import Misalignment, misalignment
 from tester.analysis.wear_rate import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
 from tester.base.axes import Axes
 from tester.base.quantities import Quantities
-from tester.base.words import coefficient
 from tester.results.settings_compared import RepeatedSetting, settings_of
 from tester.results.surroundings import SurroundingsOf
 from tester.results.table_rows import Measured, TableRow
@@ -35,26 +25,6 @@ from tester.store.journal_records import StoredExclusion
 from tester.store.records import PieceInfo, StoredCondition, StoredRepeat, StoredRun
 from tester.store.run_folders import RunStatus, run_status, under_way
 from tester.store.run_reader import RunReader
-
-
-@dataclass(frozen=True, slots=True)
-class ReferenceWatch:
-    """Result of a run's references: themselves, the counterface's drift, a control chart for each compound."""
-
-    references: tuple[Reference, ...]
-    drift: CounterfaceDrift | None
-    charts: tuple[ControlChart, ...]
-
-    def lines(self, worn: str) -> Iterator[str]:
-        """Yield the result, for people; ``worn``: the kind's word for a piece."""
-        if self.drift is not None:
-            yield self.drift.sentence(worn)
-        else:
-            yield "counterface: fewer than two references have a value, nothing is known of it"
-        for chart in self.charts:
-            outside = [f"{point.number}" for point in chart.points if isfinite(point.mu) and not point.within]
-            limits = f"references of {chart.compound}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
-            yield f"{limits}; outside: {', '.join(outside)}" if outside else f"{limits}; all inside"
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,15 +134,14 @@ def results_of(reader: RunReader) -> RunResults:
     """Return the results of a run's committed repeats; raises StoreError where the record cannot be read."""
     run, pieces, checks = reader.run(), tuple(reader.pieces()), tuple(reader.wear_checks())
     conditions = _combined(reader, run)
-    surroundings = SurroundingsOf(reader, run, pieces, checks, pooled([condition.result for condition in conditions]))
     references = [condition for condition in conditions if _watches(condition, run)]
     ordinary = [condition for condition in conditions if not _watches(condition, run)]
-    for condition in ordinary:
-        surroundings.add(condition.info.setpoint, condition.result)
+    pool = pooled([condition.result for condition in conditions])
+    measured = [(condition.info.setpoint, condition.result) for condition in ordinary]
+    surroundings = SurroundingsOf(reader, run, pieces, checks, pool, measured)
     watch = None
     if references:
-        watch = watch_of(references, surroundings, run)
-        surroundings.watched(watch.drift)
+        watch = surroundings.watch(references, reserved=RESERVED in run.info.metadata)
         doubts = doubted(watch.charts, [condition.info.condition for condition in ordinary])
         conditions = [
             _flagged(condition, REFERENCE if _watches(condition, run) else OUT_OF_LIMITS)
@@ -243,18 +212,6 @@ def _rows(conditions: Sequence[Measured], surroundings: SurroundingsOf) -> list[
         by = surroundings.of(replicates[0].info, measured, combined)
         rows.append(TableRow(replicates, with_budget_of_replicates(combined, results, by)))
     return rows
-
-
-def watch_of(references: Sequence[Measured], surroundings: SurroundingsOf, run: StoredRun) -> ReferenceWatch:
-    """Return the result of a run's reference conditions, each with its coefficient at the nominal temperature."""
-    in_order = sorted(references, key=lambda condition: condition.info.condition)
-    listed: list[Reference] = []
-    for number, condition in enumerate(in_order, start=1):
-        result = with_budget(condition.result, surroundings.of(condition.info, condition.repeats, condition.result))
-        started_s = condition.condition.started_s
-        listed.append(surroundings.reference(number, condition.info, condition.repeats, started_s, result))
-    known = surroundings.known(RESERVED in run.info.metadata)
-    return ReferenceWatch(tuple(listed), counterface_drift(listed, known), control_charts(listed, known))
 
 
 def _flagged(measured: Measured, flag: str) -> Measured:

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 from math import inf, isfinite, sqrt
 
 from tester.analysis.kelvin import UNKNOWN, Slope, SurfaceWarmth, slope_of_pairs
 from tester.analysis.left_out import REPEATABILITY
-from tester.analysis.measurand import Surroundings
-from tester.analysis.reference import CounterfaceDrift, KnownScatter, Reference
+from tester.analysis.measurand import Surroundings, with_budget
+from tester.analysis.reference import (
+    CounterfaceDrift,
+    KnownScatter,
+    Reference,
+    ReferenceWatch,
+    control_charts,
+    counterface_drift,
+)
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
@@ -16,6 +24,7 @@ from tester.analysis.uncertainty import Pool
 from tester.analysis.wear_rate import WearCheck
 from tester.analysis.worn import Worn
 from tester.base.axes import AxisValue, Setpoint
+from tester.results.table_rows import Measured
 from tester.store.record_schema import StoreError
 from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun, Travel
 from tester.store.run_reader import RunReader
@@ -27,8 +36,7 @@ _SAME_K = 0.5
 
 
 class SurroundingsOf:
-    """Collects the sources of a condition's uncertainty. ``add`` every condition first: pairs of them give the
-    sensitivity to temperature."""
+    """Sources of the uncertainty of a run's conditions."""
 
     def __init__(
         self,
@@ -37,8 +45,12 @@ class SurroundingsOf:
         pieces: Sequence[PieceInfo],
         checks: Sequence[WearCheck],
         pool: Pool,
+        measured: Iterable[tuple[Setpoint, ConditionResult]],
     ) -> None:
-        """Read the data common to all conditions; raises StoreError for a setting of the budget that is no number."""
+        """Read the data common to all conditions; raises StoreError for a setting of the budget that is no number.
+
+        ``measured``: every condition but references; pairs of them give the sensitivity to temperature.
+        """
         try:
             self.terms = with_settings(run.info.terms, run.info.metadata)
         except ValueError as error:
@@ -46,20 +58,18 @@ class SurroundingsOf:
         self._known = run.info.known
         self._worn = _worn(pieces, checks)
         self._pool = pool
-        self._warming = reader.warming()
-        self._travels = reader.travels()
-        self._marks = reader.slid()
         self._drift: CounterfaceDrift | None = None
         quantities = reader.quantities()
         role = quantities.roles.temperature
         screen = quantities[role].screen if role else None
         self._axis = screen.axis if screen is not None else ""
-        self._points: dict[_Held, list[tuple[float, float]]] = {}
-
-    def add(self, held: Setpoint, result: ConditionResult) -> None:
-        """Add a condition's temperature and coefficient."""
-        if result.ok and result.mu_resultant > 0.0 and isfinite(result.measured.temperature):
-            self._points.setdefault(held.key(self._axis), []).append((result.measured.temperature, result.mu_resultant))
+        self._points: defaultdict[_Held, list[tuple[float, float]]] = defaultdict(list)
+        for held, result in measured:
+            if result.ok and result.mu_resultant > 0.0 and isfinite(result.measured.temperature):
+                self._points[held.key(self._axis)].append((result.measured.temperature, result.mu_resultant))
+        self._warming = reader.warming()
+        self._travels = reader.travels()
+        self._marks = reader.slid()
 
     def of(self, info: ConditionInfo, repeats: Sequence[StoredRepeat], result: ConditionResult) -> Surroundings:
         """Return the sources of uncertainty of a condition, or of replicates of one."""
@@ -67,38 +77,34 @@ class SurroundingsOf:
         travel_m = self._travel(repeats).counterface_m
         return Surroundings(self.terms, self._pool, warmth, self._size(repeats), self._drift, travel_m)
 
-    def reference(
-        self,
-        number: int,
-        info: ConditionInfo,
-        repeats: Sequence[StoredRepeat],
-        started_s: float,
-        result: ConditionResult,
-    ) -> Reference:
-        """Return a reference condition for the analysis; ``started_s``: rig time of its beginning."""
+    def watch(self, references: Sequence[Measured], *, reserved: bool) -> ReferenceWatch:
+        """Return the result of the reference conditions, and count the counterface's drift among the sources from now
+        on; ``reserved``: a piece is reserved for them.
+        """
+        in_order = sorted(references, key=lambda condition: condition.info.condition)
+        listed = [self._reference(number, condition) for number, condition in enumerate(in_order, start=1)]
+        between = sum(term.standard for term in self.terms if term.acts is Acts.PIECE)
+        known = KnownScatter(float(self._pool.df) if self._pool.df else inf, between, reserved)
+        self._drift = counterface_drift(listed, known)
+        return ReferenceWatch(tuple(listed), self._drift, control_charts(listed, known))
+
+    def _reference(self, number: int, condition: Measured) -> Reference:
+        """Return a reference condition for the analysis, its coefficient at the nominal temperature."""
+        info, repeats = condition.info, condition.repeats
+        result = with_budget(condition.result, self.of(info, repeats, condition.result))
         travel = self._travel(repeats)
-        n = max(result.n_valid, 1)
         valid_pieces = [repeat.piece for repeat in repeats if repeat.result.valid]
         return Reference(
             number,
             info.condition,
-            started_s,
+            condition.condition.started_s,
             info.compound,
             valid_pieces[-1] if valid_pieces else 0,
             result.mu if result.ok else NAN,
-            self._share() / sqrt(n),
+            self._share() / sqrt(max(result.n_valid, 1)),
             travel.counterface_m,
             travel.piece_m,
         )
-
-    def known(self, reserved: bool) -> KnownScatter:
-        """Return the known scatter for the evaluation of references."""
-        between = sum(term.standard for term in self.terms if term.acts is Acts.PIECE)
-        return KnownScatter(float(self._pool.df) if self._pool.df else inf, between, reserved)
-
-    def watched(self, drift: CounterfaceDrift | None) -> None:
-        """Set the counterface's drift from reference conditions."""
-        self._drift = drift
 
     def _share(self) -> float:
         return 0.01 * self._pool.s_percent if self._pool.df else REPEATABILITY

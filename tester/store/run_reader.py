@@ -68,6 +68,7 @@ class RunReader(RecordFile):
     def run(self) -> StoredRun:
         """Return the run; raises StoreError if none is recorded."""
         for row in self.rows("SELECT * FROM run"):
+            rig_seconds = self._rig_seconds(row)
             info = record(
                 RunInfo,
                 row,
@@ -79,7 +80,7 @@ class RunReader(RecordFile):
                 versions=self._texts("version", "component", "version"),
                 materials=tuple(self.materials()),
             )
-            return record(StoredRun, row, info=info, rig_seconds=self._rig_seconds(row))
+            return record(StoredRun, row, info=info, rig_seconds=rig_seconds)
         raise NotBegunError(f"{self.path}: the run was not begun")
 
     def _rig_seconds(self, run: Row) -> float:
@@ -156,9 +157,11 @@ class RunReader(RecordFile):
         for row in self.rows("SELECT * FROM condition ORDER BY row, replicate, condition"):
             status = ConditionStatus(text(row, "status"))
             left = status if row["ended_s"] is not None or status is not ConditionStatus.PENDING else None
-            info = record(ConditionInfo, row, setpoint=setpoint_of(row, axes))
             judged = record(Judgement, row)
-            conditions.append(record(StoredCondition, row, info=info, status=left, judged=judged))
+            conditions.append(
+                record(StoredCondition, row, status=left, judged=judged,
+                       info=record(ConditionInfo, row, setpoint=setpoint_of(row, axes)))
+            )  # fmt: skip
         return conditions
 
     def repeats(self, condition: int | None = None, *, attempts: bool = False) -> list[StoredRepeat]:
@@ -173,8 +176,8 @@ class RunReader(RecordFile):
             status = RepeatStatus(text(row, "status"))
             if not attempts and status in (RepeatStatus.OPEN, RepeatStatus.VOID):
                 continue
-            means = Means(channels, [number(row, quantity.name) for quantity in channels.averaged])
-            result = record(RepeatResult, row, status=status, means=means)
+            values_of_channels = [number(row, quantity.name) for quantity in channels.averaged]
+            result = record(RepeatResult, row, status=status, means=Means(channels, values_of_channels))
             stored = record(StoredRepeat, row, key=whole(row, "id"), result=result)
             key = (stored.condition, stored.repeat, stored.attempt if attempts else 0)
             repeats[key] = stored

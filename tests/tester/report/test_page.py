@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tester.analysis.reference import ControlChart, ControlPoint
+from tester.analysis.reference import ControlChart, ControlPoint, ReferenceWatch
 from tester.base.plugins import MissingExtraError
 from tester.base.words import FORBIDDEN
 from tester.report.charts import Material, values_of
@@ -20,7 +20,6 @@ from tester.report.layout import Paragraph, Report, ReportSection
 from tester.report.page import LONGEST_TEXT, POLICY, page_of, readable
 from tester.report.record_section import MachineWords, RunRecord, read_record
 from tester.report.report_build import report_of
-from tester.results.run_results import ReferenceWatch
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 from tests.tester.results.test_reference import BLUNT, SHARP, watched_run
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, record
