@@ -135,7 +135,7 @@ STALE_CAN_SCANS: Final = Parameter(
 STALE_CAN_S: Final = Parameter(
     "stale_can_s", "s", "150 ms", "... and never more than this",
     hardest="200 ms",
-    because="a drive without setpoints stops by itself after 200 ms; nothing older may be believed of it",
+    because="a drive without setpoints stops by itself after 200 ms; its older data do not count",
 )  # fmt: skip
 
 

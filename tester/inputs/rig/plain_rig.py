@@ -26,7 +26,7 @@ PLAIN_CEILINGS: Final = (
     Ceiling("arming.withhold", "s", HIGHER, "300 ms",
             "half as long again as the 200 ms after which a drive must report the missing heartbeat"),
     Ceiling("scan.enabled", "Hz", HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
-    Ceiling("scan.idle", "Hz", HIGHER, "5 Hz", "the inputs are too old after 250 ms: one scan at least looks at them"),
+    Ceiling("scan.idle", "Hz", HIGHER, "5 Hz", "the inputs are too old after 250 ms: at least one scan must read them"),
     Ceiling("can.heartbeat", "s", LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait"),
     Ceiling("can.drive_heartbeat", "s", LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
     Ceiling("can.consumer_heartbeat", "s", LOWER, "300 ms", "without heartbeats a drive keeps its last command"),

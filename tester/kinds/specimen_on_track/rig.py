@@ -111,7 +111,7 @@ else:
 CEILINGS: Final = (
     Ceiling("limits.force", "N", LOWER, "195 N", "the cell ends at 200 N: it does not see a greater force"),
     Ceiling("limits.track_speed", "m/s", LOWER, "2.1 m/s",
-            "a disc at 2.1 m/s stands within 1.1 s; one that does not must lose its power 3 s after a trip"),
+            "a disc at 2.1 m/s stops within 1.1 s; a disc that does not must lose its power 3 s after a trip"),
     Ceiling("limits.air_low", "degC", HIGHER, "-50 degC", "the chamber's own limiter acts at -55 degC"),
     Ceiling("limits.air_high", "degC", LOWER, "100 degC", "the chamber's own limiter acts at 105 degC"),
     Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,

@@ -184,7 +184,7 @@ MOVING_AT_REST: Final[Row] = Interlock(
 
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
-    hardest="120 min", because="nobody is expected to attend to a powered machine for longer than that",
+    hardest="120 min", because="no operator attends a powered machine for longer than that",
 )  # fmt: skip
 OPERATION: Final = (HOLD_AT_MOST_S, ACK_WAIT_S)
 ABOUT: Final = "holds and acknowledgements"

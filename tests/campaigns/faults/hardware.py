@@ -51,18 +51,18 @@ HARDWARE_MUST_HOLD: tuple[MustHold, ...] = (
              ("press drive in local mode", "press drive following error", "press drive fault",
               "press drive feedback frozen", "press drive off the bus", "press drive data lost",
               "press drive heartbeat lost", "press drive setpoints lost"),
-             _CLUTCH, "its own drive does not hear that its power is to go, or does not say where it is"),
-    MustHold("press runs away", _UNHEARD, _CLUTCH, "nobody can tell its drive that the power is to go"),
+             _CLUTCH, "its own drive does not receive the order to lose its power, or does not report its position"),
+    MustHold("press runs away", _UNHEARD, _CLUTCH, "no order to lose its power reaches its drive"),
     MustHold("press runs away",
              ("load cell frozen", "load cell silent", "load cell exception", "load cell replies cut short",
               "load cell replies merged"),
-             _CLUTCH, "nobody sees the force rise in time"),
+             _CLUTCH, "the force rises unseen"),
     MustHold("press runs away", ("operator hold", "wheel drive off the bus"), _CLUTCH,
              "the press comes while the drives are being stopped, or one of them no longer is"),
     *(MustHold(f"{axis} runs away",
                (*(f"{axis} drive {what}" for what in _DEAF), "CAN adapter gone", "CAN bus off", "CAN frames lost",
                 "process killed", "second master stops nodes", "clock jump"),
-               _TORQUE_OFF, "its own drive does not hear that its power is to go")
+               _TORQUE_OFF, "its own drive does not receive the order to lose its power")
       for axis in ("wheel", "belt")),
     *(MustHold(f"{axis} runs away", ("press drive in local mode", "press stuck"), _TORQUE_OFF,
                "it rubs until its power is gone, as the contact does not open sooner")
@@ -97,7 +97,7 @@ UNLIFTED: tuple[tuple[str, str], ...] = (
     ("second master stops nodes", "no command reaches a stopped node"),
     ("scan stalled", "every drive has stopped by itself without our heartbeat, and none starts by itself"),
     ("clock jump", "every drive's heartbeat looks lost: a drive that may be dead is not commanded"),
-    ("process killed", "nobody is left to command"),
+    ("process killed", "no program is left to command"),
     ("safety chain opened", "every command is zero while the emergency stop is mirrored"),
     ("emergency stop pressed", "the hardware has taken the drives' power"),
 )

@@ -256,7 +256,7 @@ NEVER_FIRST: dict[str, str] = {
     "device refused": "no device of the catalogue refuses: shown on the wheel, whose row is the same",
     "line noisy": "what the catalogue spoils it spoils wholly: the value's own age comes before the share of errors",
     "not switched off": "only within the moment in which the drives switch off for a person: the grid comes upon it",
-    "stop not ended": "a track that nobody sees loses its power before: a stop is never that long",
+    "stop not ended": "an unseen track loses its power before: a stop is never that long",
     "moving at rest": "the catalogue's drives that obey nothing turn only with power, and at rest none has any",
     "scan delayed": "a warning; shown on the wheel, whose row is the same",
 }

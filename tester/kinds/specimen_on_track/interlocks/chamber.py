@@ -73,7 +73,7 @@ AIR_BROKEN: Final[Row] = Interlock(
 
 RANGE_K: Final = Parameter(
     "range_k", "K", "2 K", "the chamber's air beyond limits.air_low or air_high by this ... [A]",
-    hardest="4 K", because="the chamber's own limiter stands by 5 K beyond; 10 K beyond specimen and cell are spoilt",
+    hardest="4 K", because="the chamber's own limiter acts 5 K beyond; 10 K beyond specimen and cell are spoilt",
 )  # fmt: skip
 RANGE_DELAY_S: Final = Parameter(
     "range_delay_s", "s", "2 s", "... for this long [A]", NOT_NEGATIVE,

@@ -120,7 +120,7 @@ Row: TypeAlias = Interlock[TrackInputs]
 
 
 STANDING_SHARE: Final = Parameter(
-    "standing_share", "1", "0.0005", "a track slower than this share of axes.track.max_speed stands [A]", SHARE,
+    "standing_share", "1", "0.0005", "a track slower than this share of axes.track.max_speed is at rest [A]", SHARE,
     hardest="0.001", because="a thousandth of the greatest speed counts as motion where everything must stand",
 )  # fmt: skip
 SPEEDS_OLD_S: Final = Parameter(

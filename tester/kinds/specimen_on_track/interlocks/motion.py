@@ -58,7 +58,7 @@ SPEED_SHARE: Final = Parameter(
 )  # fmt: skip
 SPEED_FLOOR: Final = Parameter(
     "speed_floor", "1", "0.00002", "... and this share of axes.track.max_speed, times a second [A] ...", SHARE,
-    hardest="0.0001", because="1 um/s is a ten-thousandth of 10 mm/s: a track that stands instead would pass",
+    hardest="0.0001", because="1 um/s is a ten-thousandth of 10 mm/s: a track at rest instead would pass",
 )  # fmt: skip
 SPEED_DELAY_S: Final = Parameter(
     "speed_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE,
@@ -128,7 +128,7 @@ ARM_WRONG: Final[Row] = Interlock(
 
 ARM_LATE_S: Final = Parameter(
     "arm_late_s", "s", "3.5 s", "the arm is not where it was sent after this long [A]: 10 mm take 1.2 s",
-    hardest="5 s", because="three times as long as the way takes: what is not there by then does not come",
+    hardest="5 s", because="three times the time of the move: an arm that is not there by then does not come",
 )  # fmt: skip
 
 ARM_LATE: Final[Row] = Interlock(

@@ -46,7 +46,7 @@ QUICK_STOP_FAILED: Final = quick_stop_failed(
 OFF_DELAY_S: Final = Parameter(
     "off_delay_s", "s", "500 ms", "with its drive commanded off the track moves for this long [A]", NOT_NEGATIVE,
     hardest="1 s",
-    because="the track is at rest before: one that moves obeys nothing, and a person is about to come near",
+    because="the track was at rest: a track that moves obeys nothing, and a person is about to come near",
 )  # fmt: skip
 
 
@@ -101,11 +101,11 @@ ROWS: Final[tuple[Row, ...]] = (NOT_SWITCHED_OFF, QUICK_STOP_FAILED, NOT_STOPPIN
 
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
-    hardest="120 min", because="nobody is expected to attend to a rig with its drives on for longer than that",
+    hardest="120 min", because="no operator attends a rig with its drives on for longer than that",
 )  # fmt: skip
 ZERO_STOP_N: Final = Parameter(
     "zero_stop_n", "N", "10 N", "a zero of the cell further off than this is not taken: the run ends [A]",
-    hardest="20 N", because="20 N that a tare takes off are a contact as firm as any of these rigs has",
+    hardest="20 N", because="a tare of 20 N may hide a contact as firm as any of these rigs has",
 )  # fmt: skip
 
 OPERATION: Final[tuple[Parameter, ...]] = (HOLD_AT_MOST_S, ACK_WAIT_S, ZERO_STOP_N)

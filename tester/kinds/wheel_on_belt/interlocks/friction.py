@@ -133,7 +133,7 @@ BELT_TORQUE_NM: Final = Parameter(
     "belt_torque_nm", "N m", "3 N m",
     "belt drive off friction by this: rollers 0.4, inertia 1 N m, zero of Fx [A] ...",
     hardest="5 N m",
-    because="a slack belt that stands then hides 100 N of friction: 40 J of heat on one spot in half a second",
+    because="a slack belt at rest then hides 100 N of friction: 40 J of heat on one spot in half a second",
 )  # fmt: skip
 BELT_TORQUE_SHARE: Final = Parameter(
     "belt_torque_share", "1", "0.05",

@@ -21,7 +21,7 @@ def _hub_known(v: Inputs) -> bool:
 
 JACKET_MARGIN_K: Final = Parameter(
     "jacket_margin_k", "K", "3 K", "the hub may overshoot limits.jacket by this; 155 degC is harm [A]", NOT_NEGATIVE,
-    hardest="4 K", because="150 degC and 4 K leave 1 K: what 200 W heat a hub of 420 J/K in two seconds",
+    hardest="4 K", because="150 degC and 4 K leave 1 K to harm, which 200 W add to a hub of 420 J/K in two seconds",
 )  # fmt: skip
 JACKET_DELAY_S: Final = Parameter(
     "jacket_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
@@ -52,7 +52,7 @@ RUNAWAY_K: Final = Parameter(
 RUNAWAY_WINDOW_S: Final = Parameter(
     "runaway_window_s", "s", "10 min", "how far back setpoints count: a hub cools more slowly than it heats [A]",
     hardest="30 min",
-    because="a hub at 112 degC cools to 45 degC in half an hour: an older setpoint says nothing of it",
+    because="a hub at 112 degC cools to 45 degC in half an hour: an older setpoint does not describe it",
 )  # fmt: skip
 RUNAWAY_DELAY_S: Final = Parameter(
     "runaway_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
@@ -90,7 +90,7 @@ JACKET_RUNAWAY: Final[Row] = Interlock(
 
 STUCK_RATE_K_S: Final = Parameter(
     "stuck_rate_k_s", "K/s", "0.05 K/s", "the hub rises faster than this ...",
-    hardest="0.2 K/s", because="full output, 200 W at 420 J/K, makes 0.48 K/s: less than half of it must be told",
+    hardest="0.2 K/s", because="full output, 200 W at 420 J/K, makes 0.48 K/s: less than half of it must be noticed",
 )  # fmt: skip
 STUCK_OFF_S: Final = Parameter(
     "stuck_off_s", "s", "5 s", "... with no output for this long ...", NOT_NEGATIVE,
@@ -150,7 +150,7 @@ STANDSTILL_HEAT_DELAY_S: Final = Parameter(
 HEATING_AT_STANDSTILL: Final[Row] = Interlock(
     name="heating at standstill",
     cause="jacket heating with the wheel not turning",
-    watch=at_most("output > {}, wheel stands", lambda v: v.readings.heat_percent, 0.0, "%"),
+    watch=at_most("output > {}, wheel at rest", lambda v: v.readings.heat_percent, 0.0, "%"),
     applies=lambda v: v.readings.contactor_closed and not v.turning,
     delay=STANDSTILL_HEAT_DELAY_S,
     at_rest=always,
@@ -185,7 +185,7 @@ HEAT_SHARE_KNOWN: Final = Parameter(
 )  # fmt: skip
 HEAT_LEAK_W: Final = Parameter(
     "heat_leak_w", "W", "5 W", "... and this: air 10 K colder than believed takes 4 W [A] ...", NOT_NEGATIVE,
-    hardest="10 W", because="85 degC take some 25 W: 10 W are what a common supply 30 % low puts in besides",
+    hardest="10 W", because="85 degC take some 25 W: a common supply 30 % low puts in 10 W more",
 )  # fmt: skip
 UNSEEN_HEAT_K: Final = Parameter(
     "unseen_heat_k", "K", "5 K",

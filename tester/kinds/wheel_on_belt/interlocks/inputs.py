@@ -121,7 +121,7 @@ Row: TypeAlias = Interlock[Inputs]
 
 
 STANDING_M_S: Final = Parameter(
-    "standing_m_s", "m/s", "20 mm/s", "a drive slower than this stands [A]: forty times the noise of its speed",
+    "standing_m_s", "m/s", "20 mm/s", "a drive slower than this is at rest [A]: forty times the noise of its speed",
     hardest="50 mm/s", because="0.05 m/s is the creep that the arming proof calls moving",
 )  # fmt: skip
 SPEEDS_OLD_S: Final = Parameter(

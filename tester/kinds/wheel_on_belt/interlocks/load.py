@@ -168,7 +168,7 @@ OVERSHOOT: Final[Row] = Interlock(
 )
 
 DEPTH_FACTOR: Final = Parameter(
-    "depth_factor", "1", "1.3", "the press stands beyond the contact by this times what the load shown needs ...",
+    "depth_factor", "1", "1.3", "the press is beyond the contact by this times the depth for the load shown ...",
     AT_LEAST_ONE, hardest="1.5",
     because="force grows with depth^1.3: at 1.5 times the depth 300 N shown are 508 N, and harm begins at 500 N",
 )  # fmt: skip

@@ -61,7 +61,7 @@ RAMP_SHARE: Final = Parameter(
 SPEED_ERROR_M_S: Final = Parameter(
     "speed_error_m_s", "m/s", "50 mm/s", "a speed off what its ramp allows by this [A]",
     hardest="100 mm/s",
-    because="a slip of 0.1 m/s that nobody asked for is within Table 2 of the paper; twice that doubles its heat",
+    because="an unrequested slip of 0.1 m/s is within Table 2 of the paper; twice that doubles its heat",
 )  # fmt: skip
 SPEED_ERROR_DELAY_S: Final = Parameter(
     "speed_error_delay_s", "s", "100 ms", "... for this long", NOT_NEGATIVE,
@@ -124,13 +124,13 @@ PRESS_TRAVEL: Final[Row] = Interlock(
 )
 
 APART_M_S: Final = Parameter(
-    "apart_m_s", "m/s", "0.1 m/s", "one stands, the other is faster than this: no rounding of two equal ramps [A]",
+    "apart_m_s", "m/s", "0.1 m/s", "one is at rest, the other faster than this: no rounding of two equal ramps [A]",
     hardest="0.2 m/s",
     because="at 0.2 m/s a standing 3# wheel takes a quarter of that 1 kW on one spot: 40 J in 0.16 s",
 )  # fmt: skip
 STANDING_DELAY_S: Final = Parameter(
     "standing_delay_s", "s", "0 ms",
-    "one drive stands under load while the other turns: 3# takes 1 kW, harm is 40 J", NOT_NEGATIVE,
+    "one drive is at rest under load while the other turns: 3# takes 1 kW, harm is 40 J", NOT_NEGATIVE,
     hardest="0 ms",
     because="a belt that jams under 430 N makes 38 J until it is unloaded, with no delay at all; harm is 40 J",
 )  # fmt: skip

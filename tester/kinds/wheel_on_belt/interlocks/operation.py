@@ -25,14 +25,14 @@ COLD_K: Final = Parameter(
 )  # fmt: skip
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
-    hardest="120 min", because="nobody is expected to attend to a hot, turning wheel for longer than that",
+    hardest="120 min", because="no operator attends a hot, turning wheel for longer than that",
 )  # fmt: skip
 ZERO_WARN_N: Final = Parameter(
     "zero_warn_n", "N", "5 N", "the unloaded cell is off its reference zero by this: a warning",
 )  # fmt: skip
 ZERO_STOP_N: Final = Parameter(
     "zero_stop_n", "N", "20 N", "... by this: the run stops",
-    hardest="30 N", because="450 N, the most that is asked for, and 30 N unseen are 480 N; harm begins at 500 N",
+    hardest="30 N", because="450 N, the greatest load, and 30 N unseen are 480 N; harm begins at 500 N",
 )  # fmt: skip
 ZERO_CHECK_EVERY_S: Final = Parameter(
     "zero_check_every_s", "s", "10 min",
@@ -42,12 +42,12 @@ ZERO_CHECK_EVERY_S: Final = Parameter(
 )  # fmt: skip
 COOLDOWN_HUB_C: Final = Parameter(
     "cooldown_hub_c", "degC", "60 degC", "after a stop the wheel keeps turning, unloaded, while the hub is hotter", ANY,
-    hardest="80 degC", because="the paper's tests heat turning rubber to 85 degC; what stands is baked on one side",
+    hardest="80 degC", because="the paper's tests heat turning rubber to 85 degC; a wheel at rest is baked on one side",
 )  # fmt: skip
 COOLDOWN_SPEED_M_S: Final = Parameter(
     "cooldown_speed_m_s", "m/s", "0.1 m/s", "... this slowly [A]",
     hardest="0.2 m/s",
-    because="a wheel that nobody attends to creeps; at 0.2 m/s its rim turns three quarters of a turn a second",
+    because="an unattended wheel creeps; at 0.2 m/s its rim turns three quarters of a turn a second",
 )  # fmt: skip
 COOLDOWN_AT_MOST_S: Final = Parameter(
     "cooldown_at_most_s", "s", "45 min", "... and this long at most [A]",
@@ -56,7 +56,7 @@ COOLDOWN_AT_MOST_S: Final = Parameter(
 FIRST_CONTACT_LOAD_N: Final = Parameter(
     "first_contact_load_n", "N", "15 N",
     "load of a wheel's first contact: friction must turn round with the slip ... [A]",
-    hardest="20 N", because="what turns the wrong way rubs at little load: 20 N is what counts as unloaded",
+    hardest="20 N", because="a shaft that turns the wrong way rubs at little load: 20 N counts as unloaded",
 )  # fmt: skip
 FIRST_CONTACT_SWEEP: Final = Parameter(
     "first_contact_sweep", "1", "3 %", "... while the belt's speed goes from this share above the wheel's to below ...",

@@ -43,12 +43,12 @@ LIFT_FAILED_S: Final = Parameter(
     hardest="2 s", because="the spring takes half a second more, and a rig is to be safe 3 s after its trip",
 )  # fmt: skip
 PUSHED_MM: Final = Parameter(
-    "pushed_mm", "mm", "0.3 mm", "told to lift or to rest, the press goes on by this at most: 50 N at 200 N [A]",
+    "pushed_mm", "mm", "0.3 mm", "ordered to lift or rest, the press moves on by this at most: 50 N at 200 N [A]",
     hardest="0.5 mm", because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
 )  # fmt: skip
 PRESS_LAG_S: Final = Parameter(
     "press_lag_s", "s", "50 ms", "from a command to the press following it: scan, wire and drive together [A]",
-    hardest="100 ms", because="at 2 mm/s of loading it is another 0.2 mm that the press may go on unseen",
+    hardest="100 ms", because="at 2 mm/s of loading the press may move another 0.2 mm unseen",
 )  # fmt: skip
 
 
@@ -68,7 +68,7 @@ def _still_pressing(v: Inputs) -> Compared:
 
 LIFT_FAILED: Final[Row] = Interlock(
     name="lift failed",
-    cause="still loaded after the quick stop, or the press goes on",
+    cause="still loaded after the quick stop, or the press moves on",
     watch=condition(
         "Fz >= 20 N at lift_failed after it began; or the press beyond its ramp and lag by pushed",
         _lift_failed,
@@ -175,7 +175,7 @@ STOP_NOT_ENDED: Final = stop_not_ended(
 
 CONTACTOR_DELAY_S: Final = Parameter(
     "contactor_delay_s", "s", "500 ms", "the contactor has not followed its request by then [A]", POSITIVE,
-    hardest="1 s", because="a contactor opens within 0.1 s [A]; the input word that says so may be 0.25 s old",
+    hardest="1 s", because="a contactor opens within 0.1 s [A]; the input word that shows it may be 0.25 s old",
 )  # fmt: skip
 
 CONTACTOR_WELDED: Final[Row] = Interlock(

@@ -75,7 +75,7 @@ FROZEN_MODEL_K: Final = Parameter(
 FROZEN_DELAY_S: Final = Parameter(
     "frozen_delay_s", "s", "2 s",
     "either of both for this long: the thermometer is polled, the model is not [A]", NOT_NEGATIVE,
-    hardest="5 s", because="25 readings that say what the model denies",
+    hardest="5 s", because="25 readings that contradict the model",
 )  # fmt: skip
 
 

@@ -30,7 +30,7 @@ FORCE_STEP_CROSS_SHARE: Final = Parameter(
 )  # fmt: skip
 FORCE_STEP_DELAY_S: Final = Parameter(
     "force_step_delay_s", "s", "30 ms", "... for this long [A]", NOT_NEGATIVE,
-    hardest="80 ms", because="a step stands in the comparison for 100 ms",
+    hardest="80 ms", because="a step stays in the comparison for 100 ms",
 )  # fmt: skip
 
 FORCE_STEP: Final[Row] = Interlock(

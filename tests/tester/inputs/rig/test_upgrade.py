@@ -66,7 +66,7 @@ def test_upgrade_keeps_every_other_line_as_it_is(old: Path) -> None:
 def test_upgrade_gives_the_new_keys_their_comments(old: Path) -> None:
     upgrade(old)
     (line,) = [line for line in old.read_text(encoding="utf-8").splitlines() if line.startswith("  pushed:")]
-    assert line.startswith("  pushed: 0.3 mm ") and "# told to lift or to rest" in line
+    assert line.startswith("  pushed: 0.3 mm ") and "# ordered to lift or rest" in line
 
 
 def test_upgrade_of_a_complete_file_leaves_it_alone(tmp_path: Path) -> None:
