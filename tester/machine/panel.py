@@ -39,6 +39,7 @@ class RunPanel:
         """Read the engine only; change nothing."""
         self.engine = engine
         self._stale_can_s = engine.ctx.rig.values()[STALE_CAN_S]
+        self._limits = engine.ctx.rig.stale_limits()
 
     def news(self) -> dict[str, News]:
         """Return the news of the devices that the table of channels names.
@@ -46,12 +47,11 @@ class RunPanel:
         "can": the drives, with the oldest data of one; the kind's own devices by their names in the rig file; further
         sensors by their places there.
         """
-        devices, rig = self.engine.devices, self.engine.ctx.rig
-        limits = rig.stale_limits()
+        devices, own = self.engine.devices, self.engine.ctx.rig.own
         news = {f"can.nodes.{node.name}": News(node.stamp_s, node.online, node.stale_s) for node in devices.nodes}
         for device in devices.modbus:
-            _, stale_s = age_limit(device, limits)
-            key = device.name if device.name in rig.own else f"devices.{device.name}"
+            _, stale_s = age_limit(device, self._limits)
+            key = device.name if device.name in own else f"devices.{device.name}"
             news[key] = News(device.driver.stamp_s, device.driver.valid, stale_s or inf)
         oldest_s = min(drive.stamp_s for drive in devices.drives)
         return news | {"can": News(oldest_s, not self.engine.ctx.readings.drive_fault, self._stale_can_s)}

@@ -106,6 +106,8 @@ class OwnDevice:
     """Channels that it must measure, by the names of its profile's channels."""
     joined: bool = False
     """Whether it may be several transmitters, which measure the channels together (``DeviceConfig.part_of``)."""
+    stale: Parameter | None = None
+    """The interlock parameter that limits the age of its readings; None: its driver's own limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +233,11 @@ class Rig:
 
     def stale_limits(self) -> Mapping[str, tuple[str, float]]:
         """Return the key and the value, s, of the greatest age of a device's reading, by its name in ``devices``."""
-        return {}
+        return {
+            name: (f"{SECTION}.{own.stale.key}", self.values()[own.stale])
+            for name, own in self.own.items()
+            if own.stale is not None
+        }
 
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive on the bus, by name."""

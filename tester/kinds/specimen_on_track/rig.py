@@ -15,6 +15,8 @@ from tester.inputs.rig.ceilings import AXES, HIGHER, LOWER, TRUE, Ceiling, ceili
 from tester.inputs.rig.config import CalibrationConfig, OwnDevice, Rig, section_of
 from tester.inputs.rig.parameter import SECTION, Parameter
 from tester.kinds.specimen_on_track import KIND
+from tester.kinds.specimen_on_track.interlocks.chamber import STALE_AIR_S, STALE_EXIT_S
+from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_S
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.interlock_table import InterlockTable
@@ -136,9 +138,9 @@ class TrackConfig(Rig):
     )  # fmt: skip
     manual: ClassVar[tuple[str, ...]] = ("lift",)
     own: ClassVar[Mapping[str, OwnDevice]] = {
-        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx",)),
-        "chamber": OwnDevice("chamber", "chamber", optional=True),
-        "pyrometer": OwnDevice("pyrometer", "ir_thermometer", optional=True),
+        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx",), stale=STALE_CELL_S),
+        "chamber": OwnDevice("chamber", "chamber", optional=True, stale=STALE_AIR_S),
+        "pyrometer": OwnDevice("pyrometer", "ir_thermometer", optional=True, stale=STALE_EXIT_S),
         "thermometer": OwnDevice("thermometer", "ir_thermometer", optional=True),
     }
     quantities: ClassVar[Quantities] = QUANTITIES
@@ -172,15 +174,6 @@ class TrackConfig(Rig):
     def in_air(self, ambient_c: float) -> TrackConfig:
         """Return the rig with this temperature of the air around a real machine, degC, in its file."""
         return replace(self, ambient=ambient_c)
-
-    def stale_limits(self) -> Mapping[str, tuple[str, float]]:
-        """Return the keys and values, s, of the greatest age of readings."""
-        limits = self.interlocks
-        return {
-            "load_cell": ("interlocks.stale_cell", limits.stale_cell_s),
-            "chamber": ("interlocks.stale_air", limits.stale_air_s),
-            "pyrometer": ("interlocks.stale_exit", limits.stale_exit_s),
-        }
 
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive, by name."""

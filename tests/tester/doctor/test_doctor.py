@@ -74,6 +74,7 @@ def test_another_kind_of_rig_is_looked_at_too() -> None:
     lines = look(wires, "grosch")
     assert not [line for line in lines if line.startswith("fault")]
     assert any("CAN bus" in line for line in lines)
+    assert any(line.split()[1] == "chamber:" and "(the rig file allows 2500 ms)" in line for line in lines)
 
 
 def test_what_costs_time_is_done_once() -> None:

@@ -20,8 +20,8 @@ from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 HARMFUL_N: Final = 500.0
 """A force on the wheel from this value up counts as harm (sim.harm)."""
 
-VELOCITY_AXES: Final = ("wheel", "belt", "press")
-"""The drives of every rig of the kind; each other drive positions an axis (``axes.POSITIONED``)."""
+VELOCITY_AXES: Final = {"wheel": "rad/s", "belt": "m/s", "press": "mm/s"}
+"""The drives of every rig of the kind, with their units; each other drive positions an axis (``axes.POSITIONED``)."""
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)

@@ -20,9 +20,13 @@ from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt import KIND
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
+from tester.kinds.wheel_on_belt.interlocks.load import STALE_CELL_S
+from tester.kinds.wheel_on_belt.interlocks.surface import STALE_IR_S
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.kinds.wheel_on_belt.rig.sections import (
     HARMFUL_N,
+    VELOCITY_AXES,
     ArmingConfig,
     AxesConfig,
     CertificatesConfig,
@@ -67,7 +71,7 @@ def _decelerations(rig: RigConfig) -> _Found:
 
 
 def _units(rig: RigConfig) -> _Found:
-    due = {"wheel": "rad/s", "belt": "m/s", "press": "mm/s"} | {axis.name: axis.recipe_unit for axis in POSITIONED}
+    due = VELOCITY_AXES | {axis.name: axis.recipe_unit for axis in POSITIONED}
     for name, axis in rig.axes.driven().items():
         if axis.unit != due[name]:
             yield ("axes", name, "unit"), f"the {name} axis is in {due[name]}, not {axis.unit}"
@@ -182,9 +186,11 @@ class RigConfig(Rig):
     stated: ClassVar[tuple[str, ...]] = ("observer.wheel",)
     manual: ClassVar[tuple[str, ...]] = tuple(axis.name for axis in POSITIONED)
     own: ClassVar[Mapping[str, OwnDevice]] = {
-        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True),
-        "jacket": OwnDevice("jacket", "jacket"),
-        "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer"),
+        "load_cell": OwnDevice(
+            "load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True, stale=STALE_CELL_S
+        ),
+        "jacket": OwnDevice("jacket", "jacket", stale=STALE_JACKET_S),
+        "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer", stale=STALE_IR_S),
     }
     quantities: ClassVar[Quantities] = QUANTITIES
     table: ClassVar[InterlockTable] = TABLE
@@ -223,15 +229,6 @@ class RigConfig(Rig):
     def in_air(self, ambient_c: float) -> RigConfig:
         """Return the rig with this temperature of the air around a real machine, degC, in its file."""
         return replace(self, observer=replace(self.observer, ambient_c=ambient_c))
-
-    def stale_limits(self) -> Mapping[str, tuple[str, float]]:
-        """Return the keys and values, s, of the greatest age of readings."""
-        limits = self.interlocks
-        return {
-            "load_cell": ("interlocks.stale_cell", limits.stale_cell_s),
-            "ir_thermometer": ("interlocks.stale_ir", limits.stale_ir_s),
-            "jacket": ("interlocks.stale_jacket", limits.stale_jacket_s),
-        }
 
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive, by name."""

@@ -13,7 +13,7 @@ from tester.inputs.rig.config import OwnDevice, section_of
 from tester.inputs.rig.parameter import SECTION, Parameter
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.interlock_table import InterlockSheet
-from tester.machine.plain.rows import ABOUT, PlainInputs, plain_table
+from tester.machine.plain.rows import ABOUT, STALE_SENSOR_S, PlainInputs, plain_table
 from tester.machine.row import FAST, LOADED, REPAIR, Interlock
 from tester.machine.watches import at_most
 
@@ -52,7 +52,7 @@ class SledgeRig(PlainRig):
     """A rig of this kind."""
 
     packaged: ClassVar[Mapping[str, str]] = {"sledge": "lab_sledge:rig.yaml"}
-    own: ClassVar[Mapping[str, OwnDevice]] = {"load_cell": OwnDevice("load cell", "load_cell")}
+    own: ClassVar[Mapping[str, OwnDevice]] = {"load_cell": OwnDevice("load cell", "load_cell", stale=STALE_SENSOR_S)}
     quantities: ClassVar[Quantities] = QUANTITIES
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
     ceilings: ClassVar[tuple[Ceiling, ...]] = (*PlainRig.ceilings, *ceilings_of(SECTION, TABLE.parameters))
