@@ -55,7 +55,7 @@ def record_word(folder: Path, word: Word) -> None:
     differs from its manifest: a new manifest would hide that. Raises CannotExcludeError, StoreError, OSError.
     """
     if not word.reason.strip() or len(word.reason) > LONGEST:
-        raise CannotExcludeError(f"a reason is needed, of at most {LONGEST} characters: it goes on record")
+        raise CannotExcludeError(f"a reason is needed, of at most {LONGEST} characters: it is recorded")
     try:
         plain_text(word.reason, "reason")
         plain_text(word.operator, "operator")

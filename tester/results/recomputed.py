@@ -93,7 +93,7 @@ def table_problems(folder: Path, record: Record) -> Iterator[tuple[str, str]]:
             except (UnicodeDecodeError, csv.Error):
                 difference = "it cannot be read"
             if difference:
-                yield kind.file, f"{kind.file}: not what the record says: {difference}"
+                yield kind.file, f"{kind.file}: differs from the record: {difference}"
 
 
 def _first_difference(there: str, by_record: str) -> str:

@@ -59,13 +59,13 @@ def read_scan(path: Path, content: bytes, options: ScanOptions, findings: Findin
         matrix, pixel, unit = _instrument(path, findings)
     if options.unit is not None:
         if unit is not None and unit != options.unit:
-            findings.doubt((1, 1), f"the file says heights in {unit}; taken in {options.unit}, as asked", lasting=True)
+            findings.doubt((1, 1), f"the file has heights in {unit}; taken in {options.unit}, as asked", lasting=True)
         unit = options.unit
     if unit is None:
         findings.refuse((1, 1), f"the heights have no unit (expected nm, um, mm or m; {options.ask_unit})")
     if options.pixel_m is not None:
         if pixel is not None and not np.allclose(pixel, options.pixel_m, rtol=1e-3):
-            hint = f"the file says points {pixel[0]:.4g} m apart; taken {options.pixel_m:.4g} m, as asked"
+            hint = f"the file states points {pixel[0]:.4g} m apart; taken {options.pixel_m:.4g} m, as asked"
             findings.doubt((1, 1), hint, lasting=True)
         pixel = (options.pixel_m, options.pixel_m)
     if pixel is None:
@@ -167,7 +167,7 @@ def _instrument(path: Path, findings: Findings) -> tuple[Array, tuple[float, flo
     values = np.asarray(heights.filled(np.nan), dtype=np.float64)
     known = unit if unit in UNITS_M else None
     if unit and known is None:
-        findings.doubt((1, 1), f'the file says heights in "{unit}", which is not known here', lasting=True)
+        findings.doubt((1, 1), f'the file has heights in "{unit}", which is not known here', lasting=True)
     if sizes is None or known is None:
         return values, None, known
     pixel = tuple(float(size) / points * UNITS_M[known] for size, points in zip(sizes, values.shape, strict=True))

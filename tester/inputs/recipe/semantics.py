@@ -129,7 +129,7 @@ def _measure(measure: MeasureModel, grid: GridModel | None, at: Location, tree: 
     if stated & {"repeats", "min_valid"} and min_valid is not None and min_valid > repeats:
         yield tree.problem(place("min_valid", "repeats"), f"min_valid, {min_valid}, is more than repeats, {repeats}")
     if "repeats" in stated and min_valid is None and repeats < DEFAULT_MIN_VALID:
-        message = f"a value without a flag needs {DEFAULT_MIN_VALID} valid repeats unless min_valid says otherwise"
+        message = f"a value without a flag needs {DEFAULT_MIN_VALID} valid repeats unless min_valid is lower"
         expected = f"(expected repeats of at least {DEFAULT_MIN_VALID}, or min_valid)"
         yield tree.problem((*at, "repeats"), f"{message} {expected}")
     if stated & {"repeats", "until"} and (section.until or measure.until) is not None and most < LEAST_REPEATS:
@@ -187,5 +187,5 @@ def _shared(
         shared = all(values & axes[second][name] for name, values in axes[first].items())
         if shared and settings[first] != settings[second]:
             message = f"shares conditions with grid {shown(grids[first][1].name)} but measures them differently"
-            problem = f"{message}; a shared condition is measured once, unless a grid says measure_again: true"
+            problem = f"{message}; a shared condition is measured once, unless a grid has measure_again: true"
             yield tree.problem(("grids", grids[second][0]), problem)

@@ -68,7 +68,7 @@ def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> On
     problems = [
         tree.problem(
             risk.location,
-            f"{risk.key}: {risk.compared}, and --set may only tighten what the file of a real rig says"
+            f"{risk.key}: {risk.compared}, and --set may only tighten the file of a real rig"
             f" ({risk.ceiling.because}): write it there, and run with --accept-risk REASON",
         )
         for risk in loose

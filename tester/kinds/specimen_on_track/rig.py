@@ -225,4 +225,4 @@ class TrackConfig(Rig):
         if self.simulated and self.linear != (self.sim.motion == "linear"):
             yield ("sim", "motion"), f"is {self.sim.motion}, and track is {self.track}"
         if self.simulated and self.chamber != self.sim.enclosed:
-            yield ("sim", "enclosed"), "says otherwise than devices whether there is a chamber"
+            yield ("sim", "enclosed"), "contradicts devices on whether there is a chamber"

@@ -94,7 +94,7 @@ class Commissioning:
             label = f"{number}/{len(self.steps)} {step.title}"
             done = self.record.standing(step.name, self._sections(step))
             if done is not None:
-                self.person.message(f"{label}: stands ({done.at[:10]}, {done.by}): {done.text}")
+                self.person.message(f"{label}: done ({done.at[:10]}, {done.by}): {done.text}")
                 continue
             before = self.record.last(step.name)
             if before is not None and before.what == BEGUN:

@@ -114,7 +114,7 @@ STALE_SENSOR_S: Final = Parameter(
 
 SENSOR_SILENT: Final[Row] = Interlock(
     name="sensor silent",
-    cause="a sensor does not answer, or says that it is not valid",
+    cause="a sensor does not answer, or reports an invalid reading",
     watch=at_most("age > {}, or invalid", lambda v: v.readings.now_s - v.readings.sensors_at_s, STALE_SENSOR_S),
     when=LOADED,
     unseen=True,

@@ -45,7 +45,7 @@ class TrackUnloaded(Lifting):
         """Return "", or the reason why the rig may be loaded."""
         cell = self.devices.cell
         if self.done and not (cell.valid and now - cell.stamp_s <= SILENT_S):
-            return "load cell silent: nobody sees whether the specimen touches"
+            return "load cell silent: whether the specimen touches is unknown"
         if not self.raised:
             return ""
         force_n, most_n = cell.raw[0], self.rig.arming.unloaded_n

@@ -145,7 +145,7 @@ def _eq_2() -> PaperFinding:
     phrase = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in off)
     return judged(
         False,
-        f"as printed p^2 stands twice: {max(printed)} of 6 coefficients can be told from each other. With a constant"
+        f"as printed p^2 occurs twice: {max(printed)} of 6 coefficients can be told from each other. With a constant"
         f" in place of one, mean error {phrase} % on the rows at 25 degC that were fitted",
     )
 

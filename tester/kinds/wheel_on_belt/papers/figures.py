@@ -29,7 +29,7 @@ def _trend(variable: int, up: bool) -> PaperFinding:
     agree, count = steps(subset, variable, up)
     return judged(
         agree >= NEARLY * count,
-        f"{agree} of {count} steps in the data; Eqs 7 to 9, by which the twin rubs, {by_compound_words(subset)}",
+        f"{agree} of {count} steps in the data; Eqs 7 to 9, the twin's law, {by_compound_words(subset)}",
     )
 
 

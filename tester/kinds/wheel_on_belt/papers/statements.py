@@ -272,7 +272,7 @@ CONCLUSIONS: Final = (
         "5 (1)", "tests over temperature, slip, load, frequency, formula, road", "tester schema --of recipe", _variables
     ),
     PaperItem("5 (2)", "mu falls with load", "tester fit appendix-a appendix-b", lambda: _exponents(1, -1.0)),
-    PaperItem("5 (2)", "... as steeply as the model says (1#)", "tester fit appendix-a appendix-b", _paper_exponent),
+    PaperItem("5 (2)", "... as steeply as by the model (1#)", "tester fit appendix-a appendix-b", _paper_exponent),
     PaperItem("5 (2)", "mu rises with slip velocity", "tester fit appendix-a appendix-b", lambda: _exponents(2, 1.0)),
     PaperItem("3.4, 4.1, 5 (2)", "mu peaks at about 70 degC", "tester fit appendix-a appendix-b", _peak),
     not_attempted("5 (2)", "why: adhesion rises, hysteresis falls", "coefficients alone do not separate the two"),

@@ -131,7 +131,7 @@ class Unloaded(Lifting):
         if not shown:
             return ""
         return (
-            f"{shown}, and the press says {self.devices.axes.press.actual:.1f} mm (0 = lifted):"
+            f"{shown}, and the press shows {self.devices.axes.press.actual:.1f} mm (0 = lifted):"
             " the press's zero is wrong, the cell's zero is wrong, or the wheel touches"
         )
 

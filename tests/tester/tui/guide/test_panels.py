@@ -44,7 +44,7 @@ QUESTION = Question("jog belt direction", "did the belt, and only it, move so th
 ASKED = GuideView(
     "my rig", False, tuple(standing(name, DONE if at < 2 else "") for at, name in enumerate(NAMES)), "jog belt",
     "jog press", {"identify": 2.3, "jog wheel": 41.5}, Live("jog belt", 12.0, READINGS), QUESTION,
-    ("1/7 title of identify: stands (2026-11-23, A. Name): 8 devices", "> go"), True, None, "",
+    ("1/7 title of identify: done (2026-11-23, A. Name): 8 devices", "> go"), True, None, "",
 )  # fmt: skip
 MOVING = replace(ASKED, question=None)
 REFUSAL = ("scale of the belt axis: it moved 1.25 times as far as its drive reports, more than 1 % off. In the rig"

@@ -70,7 +70,7 @@ def test_a_wheel_under_load_is_refused_whatever_the_press_says() -> None:
 
 def test_the_refusal_says_what_the_cell_and_the_press_show() -> None:
     reason = wrongly_zeroed().to_the_end(20.0).run.reason
-    assert reason.startswith("not armed: the load cell shows Fz ") and "the press says 0.0 mm" in reason
+    assert reason.startswith("not armed: the load cell shows Fz ") and "the press shows 0.0 mm" in reason
 
 
 def test_a_press_that_moves_the_other_way_is_refused_before_it_presses_much() -> None:
