@@ -10,7 +10,8 @@ Nothing here depends on the kind of machine. A kind is a folder in ``tester/kind
 - its **control**: a class that inherits from ``Control`` and implements the commands of each mode and
   the beginning and end of a stop (``StandstillControl`` has those of a machine that is safe at standstill); its loops
   keep their state in a class that inherits from ``ControlState``;
-- its **context**: what a step may read and write, inherited from ``BaseContext``: specimen, gates, attendant;
+- its **context**: what a step may read and write, inherited from ``BaseContext``: specimen, attendant, gates
+  (``gate_bits``, from which the screen's list of gates follows, and ``closed_gates``);
 - its **procedures**: activities, and a class that inherits from ``Procedures`` and selects the activity for each step
   and for unplanned work; also the proofs before a run may begin (``Arming``), the activity of a condition
   (``MeasureCondition``), and its results (``StoredResults``);

@@ -22,13 +22,9 @@ from tester.machine.rig_ports import Ports
 class RigDrivers:
     """Drivers by their names in the rig file. A kind only adds its own Modbus devices to ``devices``."""
 
-    def __init__(self, rig: Rig, ports: Ports, titles: Mapping[str, str] | None = None) -> None:
-        """Build the drives, the nodes and the masters of all lines.
-
-        ``titles``: a device's name on screens, where it differs from the title in the kind's table of devices.
-        """
+    def __init__(self, rig: Rig, ports: Ports) -> None:
+        """Build the drives, the nodes and the masters of all lines."""
         self.rig, self.ports = rig, ports
-        self._titles = titles or {}
         self.master = CanMaster(rig.can.node, rig.can.heartbeat_s)
         self.drives = {name: ServoDrive(axis) for name, axis in rig.drives().items()}
         self.nodes = [SensorNode(config) for config in rig.can.nodes.values()]
@@ -69,8 +65,9 @@ class RigDrivers:
 
     def field_devices(self) -> list[FieldDevice]:
         """Return every Modbus device in the order of the rig file."""
+        shown = {name: own.shown for name, own in self.rig.own.items() if own.shown}
         return [
-            FieldDevice(name, self._titles.get(name, title_of(self.rig, name)), config.line, self.devices[name])
+            FieldDevice(name, shown.get(name, title_of(self.rig, name)), config.line, self.devices[name])
             for name, config in self.rig.devices.items()
         ]
 

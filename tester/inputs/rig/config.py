@@ -108,6 +108,8 @@ class OwnDevice:
     """Whether it may be several transmitters, which measure the channels together (``DeviceConfig.part_of``)."""
     stale: Parameter | None = None
     """The interlock parameter that limits the age of its readings; None: its driver's own limit."""
+    shown: str = ""
+    """Its name on screens during a run; "" is its title."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,7 @@ from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.commission.commission_step import Dialogue, Measured, Notes, StepRefused, Waits, choose, press, wait
 from tester.machine.proof import WatchdogProof
@@ -29,8 +30,6 @@ SETPOINT_LATE: Final = 0x8250
 MORE_S: Final = 0.15
 """Setpoints are withheld this much longer than the longest deadline, s [A]: the EMCY arrives, and the ramp from creep
 ends."""
-NEEDS_DEADLINE: Final = ("wheel", "belt", "press")
-"""Axes that would keep moving at their last setpoint."""
 COOLER_K: Final = 20.0
 """The jacket's setpoint is this much below the hub's temperature, so that it runs without heating."""
 RUNS_S: Final = 1.5
@@ -146,7 +145,8 @@ def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
         raise StepRefused("watchdogs not shown: switched off in the rig file (arming.bump_test, arming.watchdog_proof)")
     drives = seat.devices.drives
     unproven = [drive.config.name for drive in drives if not drive.config.proves_watchdog]
-    needing = [drive for drive in drives if drive.config.name in NEEDS_DEADLINE]
+    # Any other drive ends at its position: without setpoints these would keep moving.
+    needing = [drive for drive in drives if drive.config.name in VELOCITY_AXES]
     without = [drive.config.name for drive in needing if not deadline_s(drive) > 0.0]
     if unproven:
         raise StepRefused(f"watchdogs not shown: the rig file leaves out axes.*.proves_watchdog: {', '.join(unproven)}")

@@ -190,7 +190,7 @@ class RigConfig(Rig):
             "load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True, stale=STALE_CELL_S
         ),
         "jacket": OwnDevice("jacket", "jacket", stale=STALE_JACKET_S),
-        "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer", stale=STALE_IR_S),
+        "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer", stale=STALE_IR_S, shown="thermometer"),
     }
     quantities: ClassVar[Quantities] = QUANTITIES
     table: ClassVar[InterlockTable] = TABLE

@@ -85,13 +85,9 @@ def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
     return Bounds(load, wheel, max(belt, wheel), surface, rig_bounds(rig).hub_c, positions)
 
 
-TITLES = {"ir_thermometer": "thermometer"}
-"""Screen names of devices that differ from the record's, by the device's key in the rig file."""
-
-
 def build_devices(rig: RigConfig, ports: Ports) -> Devices:
     """Return drivers for every device of the rig file, on the given wires."""
-    drivers = RigDrivers(rig, ports, TITLES)
+    drivers = RigDrivers(rig, ports)
     drives = dict(drivers.drives)
     wheel, belt, press = (drives.pop(name) for name in VELOCITY_AXES)
     cell, transmitters = load_cell_of(rig, drivers.links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
