@@ -12,7 +12,7 @@ from tester.cli.stored_runs import results_named, run_folder
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
-    from tester.analysis.ring_runs import RingRun
+    from tester.analysis.ring_errors import RingRun
 
 
 def _of_a_repeat(command: Decorated) -> Decorated:
@@ -68,7 +68,7 @@ def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
     means a worn place or a brush. The angle counts from the wheel's position when it was mounted. Several runs are
     put in order of time, with the turns of the ring until then: errors that grow with its age call for new brushes.
     """
-    from tester.analysis.ring_runs import ages_of, trend_of
+    from tester.analysis.ring_errors import ages_of, trend_of
 
     found = sorted((_ring_of(name) for name in dict.fromkeys(runs)), key=lambda one: one.started)
     ages = ages_of(found, before)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tester.analysis.results import RepeatStatus
-from tester.analysis.ring_runs import RingRun
+from tester.analysis.ring_errors import RingRun
 from tester.results.run_files import MANIFEST
 from tester.results.run_results import RingPart, RunResults, results_of
 from tester.results.table_rows import Measured

@@ -7,9 +7,8 @@ from math import isfinite
 
 from tester import __version__
 from tester.base.words import counted
-from tester.report.budgets import budget_section
 from tester.report.charts import Material, charts_of, repeats_chart
-from tester.report.condition_tables import conditions_section, drift_section, short_table, verdict
+from tester.report.condition_tables import budget_section, conditions_section, drift_section, short_table, verdict
 from tester.report.layout import Chapter, FactSheet, Paragraph, Part, Picture, Report, ReportSection, day
 from tester.report.materials_section import materials_sections
 from tester.report.overview import overview_chart

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isfinite, sqrt
 
-from tester.analysis.ring_errors import RingSector
-from tester.analysis.ring_runs import RingRun, ages_of, trend_of
+from tester.analysis.ring_errors import RingRun, RingSector, ages_of, trend_of
 from tester.base.words import NONE, counted, decimal
 from tester.report.chart import Chart, ChartPanel, Mark, series_of
 from tester.report.layout import Paragraph, Part, Picture, ReportRow, ReportSection, ReportTable, heads

@@ -12,7 +12,7 @@ from tester.analysis.left_out import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.reference import RESERVED, ReferenceWatch, doubted, is_reference
 from tester.analysis.repeats import combine_replicates
-from tester.analysis.ring_runs import RingRun
+from tester.analysis.ring_errors import RingRun
 from tester.analysis.schemes import Misalignment, misalignment
 from tester.analysis.wear_rate import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
 from tester.base.axes import Axes

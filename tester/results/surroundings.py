@@ -21,8 +21,7 @@ from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
 from tester.analysis.uncertainty import Pool
-from tester.analysis.wear_rate import WearCheck
-from tester.analysis.worn import Worn
+from tester.analysis.wear_rate import WearCheck, Worn
 from tester.base.axes import AxisValue, Setpoint
 from tester.results.table_rows import Measured
 from tester.store.record_schema import StoreError

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from tester import kinds
-from tester.analysis.ring_runs import RingRun
+from tester.analysis.ring_errors import RingRun
 from tester.base.source import InvalidSource, Problem, read_tree
 from tester.inputs.rig import Rig
 from tester.kinds import PACKAGED, UnknownKindError, find

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from tester.analysis.ring_errors import RingSector
-from tester.analysis.ring_runs import RingRun, ages_of
+from tester.analysis.ring_errors import RingRun, RingSector, ages_of
 from tester.run.kind_lookup import RingFound, of_one_rig, ring_in
 from tester.store.record_schema import StoreError
 from tester.store.run_folders import run_folders, under_way

@@ -12,9 +12,8 @@ import numpy as np
 from tester.analysis.fit.check import Errors, errors_of, levels, refuse
 from tester.analysis.fit.fit_law import FitError, FitPoint, Law
 from tester.analysis.fit.lack import Lack, lack_of
-from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.resample import RESAMPLES, SEED, Resamples, resample, without_cells
-from tester.analysis.fit.solve import solve
+from tester.analysis.fit.solve import FitProblem, solve
 from tester.analysis.fit.trends import Interval, Trends, trends_of
 from tester.base.arrays import Array
 

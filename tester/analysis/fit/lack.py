@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 
 from tester.analysis.fit.fit_law import NAN, FitPoint, Source
-from tester.analysis.fit.problem import FitProblem
+from tester.analysis.fit.solve import FitProblem
 from tester.base.arrays import Array, Places
 
 LEVEL: Final = 0.01

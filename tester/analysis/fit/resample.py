@@ -9,8 +9,7 @@ from typing import Final
 import numpy as np
 
 from tester.analysis.fit.check import place_of
-from tester.analysis.fit.problem import FitProblem
-from tester.analysis.fit.solve import solve_many
+from tester.analysis.fit.solve import FitProblem, solve_many
 from tester.base.arrays import Array, Booleans
 
 RESAMPLES: Final = 999

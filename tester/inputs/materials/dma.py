@@ -15,6 +15,7 @@ from typing import Final
 
 from tester.inputs.materials.files import Findings
 from tester.inputs.materials.headings import (
+    DmaLayout,
     DmaOptions,
     Heading,
     UnitRefusedError,
@@ -23,11 +24,12 @@ from tester.inputs.materials.headings import (
     first_unit,
     heading,
     is_unit,
+    layout_of,
     quantity_of,
     unit_of,
+    without_brackets,
 )
 from tester.inputs.materials.measured_moduli import ALIKE, ModuliRow, ModuliTable, judge
-from tester.inputs.materials.table_layout import DmaLayout, layout_of, without_brackets
 
 _STRAIN: Final = re.compile(r"(dyn(amic)?|shear|tensile|oscillation)?\W*(strain|deformation)\b(?!\W*rate)", re.I)
 _PERCENT: Final = re.compile(r"%|per\s?cent", re.I)

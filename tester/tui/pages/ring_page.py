@@ -10,7 +10,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
 from textual.widgets import DataTable
 
-from tester.analysis.ring_runs import RingRun
+from tester.analysis.ring_errors import RingRun
 from tester.base.words import NONE, decimal
 from tester.tui.formatting import clean
 from tester.tui.host import Keys, View, read_in_thread

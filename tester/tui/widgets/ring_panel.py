@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from textwrap import wrap
 from typing import Final
 
-from tester.analysis.ring_runs import RingRun, trend_of
+from tester.analysis.ring_errors import RingRun, trend_of
 from tester.base.words import NONE, decimal
 from tester.tui.formatting import fit
 from tester.tui.plot import Point, scatter

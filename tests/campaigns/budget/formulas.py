@@ -8,7 +8,7 @@ from typing import Final
 from tests.campaigns.budget.mutant import SIGNED, SIZES, Mutant, scaled, tests_of
 
 _MEASURAND, _KELVIN = "tester/analysis/measurand.py", "tester/analysis/kelvin.py"
-_REFERENCE, _WORN = "tester/analysis/reference.py", "tester/analysis/worn.py"
+_REFERENCE, _WORN = "tester/analysis/reference.py", "tester/analysis/wear_rate.py"
 _UNCERTAINTY, _DIFFERENCE = "tester/analysis/uncertainty.py", "tester/analysis/difference.py"
 _SURROUNDINGS = "tester/results/surroundings.py"
 _TESTS = tests_of(*(f"analysis/{name}" for name in ("kelvin", "measurand", "reference", "uncertainty", "difference")))

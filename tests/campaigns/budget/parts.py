@@ -81,18 +81,18 @@ def of_components() -> Iterator[Mutant]:
             yield Mutant(f"components: {name}", path, old, new, tests)
 
 
-_PROBLEM, _LACK, _RESAMPLE = (f"tester/analysis/fit/{name}.py" for name in ("problem", "lack", "resample"))
+_SOLVE, _LACK, _RESAMPLE = (f"tester/analysis/fit/{name}.py" for name in ("solve", "lack", "resample"))
 _POINTS, _POWER = "tester/results/fit_points.py", "tests/campaigns/fit/power.py"
 _OF_FIT = tests_of("analysis/fit/lack", "analysis/fit/joint")
 _OF_POINTS = tests_of("kinds/wheel_on_belt/fit/run_data", "kinds/specimen_on_track/fit/run_data")
 _FIT_SCALED: Final = (
-    (_PROBLEM, "weight of repeats", "squares = [\n        (point.type_a**2 if", "squares = [({} * point.type_a**2 if"),
-    (_PROBLEM, "weight of what is a condition's own", "+ point.own**2 + point.between**2\n        for",
+    (_SOLVE, "weight of repeats", "squares = [\n        (point.type_a**2 if", "squares = [({} * point.type_a**2 if"),
+    (_SOLVE, "weight of what is a condition's own", "+ point.own**2 + point.between**2\n        for",
      "+ {} * point.own**2 + point.between**2 for"),
-    (_PROBLEM, "weight of scatter between conditions", "+ point.own**2 + point.between**2\n        for",
+    (_SOLVE, "weight of scatter between conditions", "+ point.own**2 + point.between**2\n        for",
      "+ point.own**2 + {} * point.between**2 for"),
-    (_PROBLEM, "prior of a common error", "of_prior = self.reference * (", "of_prior = {} * self.reference * ("),
-    (_PROBLEM, "size of a common error", "error = one.standard * z", "error = {} * one.standard * z"),
+    (_SOLVE, "prior of a common error", "of_prior = self.reference * (", "of_prior = {} * self.reference * ("),
+    (_SOLVE, "size of a common error", "error = one.standard * z", "error = {} * one.standard * z"),
     (_LACK, "repeats in the denominator", "repeats = fmean(point.type_a**2", "repeats = {} * fmean(point.type_a**2"),
     (_LACK, "a condition's own part in the denominator", "fmean(point.own**2 for point in points),",
      "{} * fmean(point.own**2 for point in points),"),
@@ -106,9 +106,9 @@ _FIT_SCALED: Final = (
     (_RESAMPLE, "common errors of resamples", "prior = fitted[free:] + random", "prior = fitted[free:] + {} * random"),
 )  # fmt: skip
 _FIT_OTHERS: Final = (
-    (_PROBLEM, "conditions count alike", "self.weight: Array = self.reference / self.sigma",
+    (_SOLVE, "conditions count alike", "self.weight: Array = self.reference / self.sigma",
      "self.weight: Array = np.ones(len(points))"),
-    (_PROBLEM, "conditions that scatter more count more", "self.weight: Array = self.reference / self.sigma",
+    (_SOLVE, "conditions that scatter more count more", "self.weight: Array = self.reference / self.sigma",
      "self.weight: Array = self.sigma / self.reference"),
     (_LACK, "degrees of freedom of repeats are taken as many",
      "df = (repeats + own_variance + between_variance) ** 2 / squares if squares", "df = inf if squares"),

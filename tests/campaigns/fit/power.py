@@ -6,7 +6,7 @@ import numpy as np
 
 from tester.analysis.fit.fit_law import NAN
 from tester.analysis.fit.lack import DRAWS, LEVEL, Chance, denominator_of
-from tester.analysis.fit.problem import FitProblem
+from tester.analysis.fit.solve import FitProblem
 from tester.base.arrays import Array
 
 

@@ -15,9 +15,8 @@ import numpy as np
 from sim.physics import laws
 from tester.analysis.fit.fit_law import FitError
 from tester.analysis.fit.joint import fit_group
-from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.resample import resample
-from tester.analysis.fit.solve import solve
+from tester.analysis.fit.solve import FitProblem, solve
 from tests.campaigns.fit import twins
 from tests.campaigns.fit.power import power_of
 from tests.campaigns.fit.records import Record, on_track, on_wheel, truth_on_track, truth_on_wheel

@@ -7,8 +7,7 @@ from random import Random
 
 import pytest
 
-from tester.analysis.ring_errors import LEAST_ERRORS, sector_of, speed_class, speed_words
-from tester.analysis.ring_runs import trend_of
+from tester.analysis.ring_errors import LEAST_ERRORS, sector_of, speed_class, speed_words, trend_of
 
 
 def away_deg(one: float, other: float) -> float:

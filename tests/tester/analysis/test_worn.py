@@ -7,7 +7,7 @@ from math import hypot, isnan, nan
 
 import pytest
 
-from tester.analysis.worn import Worn
+from tester.analysis.wear_rate import Worn
 from tests.tester.analysis.test_wear_rate import FIRST
 
 U = FIRST.u_mm

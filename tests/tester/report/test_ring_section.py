@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tester.analysis.ring_errors import RingSegment
-from tester.analysis.ring_runs import RingRun
+from tester.analysis.ring_errors import RingRun, RingSegment
 from tester.report.charts import Material, values_of
 from tester.report.layout import Paragraph, Picture, ReportSection, ReportTable
 from tester.report.page import page_of

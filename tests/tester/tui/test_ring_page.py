@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.analysis.ring_errors import RingSegment
-from tester.analysis.ring_runs import RingRun
+from tester.analysis.ring_errors import RingRun, RingSegment
 from tester.tui.pages.ring_page import RingPage
 from tester.tui.rings import KeptRings
 from tester.tui.widgets.ring_panel import columns

@@ -15,8 +15,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Final, cast
 
-from tester.analysis.ring_errors import RingSegment
-from tester.analysis.ring_runs import RingRun
+from tester.analysis.ring_errors import RingRun, RingSegment
 from tester.kinds.wheel_on_belt.image.ring_watch import BUS
 from tester.kinds.wheel_on_belt.interlocks import hub, surface
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio, known_ratio

@@ -12,9 +12,8 @@ import pytest
 from tester.analysis.fit.check import errors_of
 from tester.analysis.fit.fit_law import Band, Common, FitError, FitPoint, Source
 from tester.analysis.fit.joint import GroupFit, fit_group, fit_only, overall
-from tester.analysis.fit.problem import ROBUST, FitProblem
 from tester.analysis.fit.resample import resample
-from tester.analysis.fit.solve import cost, solve, solve_many
+from tester.analysis.fit.solve import ROBUST, FitProblem, cost, solve, solve_many
 from tests.tester.analysis.fit.straight import LINE, line, point
 
 pytest.importorskip("scipy", reason="needs the extra `report`")

@@ -11,9 +11,8 @@ import pytest
 
 from tester.analysis.fit.fit_law import Common, FitPoint, Source
 from tester.analysis.fit.lack import Lack, denominator_of, lack_of, neighbours
-from tester.analysis.fit.problem import FitProblem
 from tester.analysis.fit.resample import resample
-from tester.analysis.fit.solve import solve
+from tester.analysis.fit.solve import FitProblem, solve
 from tests.campaigns.fit.power import power_of
 from tests.tester.analysis.fit.straight import LINE, line, point
 

@@ -10,8 +10,7 @@ import pytest
 from sim.physics.friction import COMPOUNDS, V2, evaluate
 from tester.analysis.fit.fit_law import Law
 from tester.analysis.fit.joint import fit_only, predict
-from tester.analysis.fit.problem import FitProblem
-from tester.analysis.fit.solve import solve
+from tester.analysis.fit.solve import FitProblem, solve
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, PAPER, V2_LAW, joint_of, of_v2, table_3_of
 from tests.campaigns.fit import synthetic as campaign
 from tests.campaigns.fit.synthetic import DESIGN, NOISE, SAME, made, split
