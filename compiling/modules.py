@@ -96,6 +96,7 @@ HOT = (
     "tester/machine/run.py",
     "tester/machine/sampler.py",
     "tester/machine/silence.py",
+    "tester/machine/soak.py",
     "tester/machine/standstill.py",
     "tester/machine/state.py",
     "tester/machine/tickers.py",

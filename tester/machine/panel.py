@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import inf
 
 from tester.base.screen import Check, Gate, SoakView
 from tester.inputs.rig import Rig
@@ -83,20 +83,6 @@ class RunPanel:
         """Return number and compound of the specimen on the rig; (0, "") if there is none."""
         mounted = self.engine.ctx.mounted
         return mounted.specimen, mounted.compound
-
-
-def soak_view(
-    now: float, shown_c: float, target_c: float, within_k: float, since_s: float, for_s: float, began_s: float,
-    at_most_s: float,
-) -> SoakView:  # fmt: skip
-    """Return the view of a soak at ``now``, rig s.
-
-    ``since_s``: time since when the temperature has been in its band; ``began_s``: start of the soak; inf: not yet.
-    """
-    within_s, whole_s = (max(now - t, 0.0) if isfinite(t) else 0.0 for t in (since_s, began_s))
-    return SoakView(
-        shown_c if isfinite(shown_c) else None, target_c, within_k, within_s, for_s, whole_s, at_most_s
-    )  # fmt: skip
 
 
 def drives_alone(rig: Rig, *also: str) -> str:

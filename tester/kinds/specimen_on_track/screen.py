@@ -9,7 +9,7 @@ from tester.base.screen import Check, HandAxis, MachineView, PlotView, SoakView,
 from tester.kinds.specimen_on_track.axes import AXES, NAME
 from tester.kinds.specimen_on_track.procedures.steps import TemperAir
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
-from tester.machine.panel import News, RunPanel, Wanted, soak_view
+from tester.machine.panel import News, RunPanel, Wanted
 
 HAND: Final = (
     HandAxis("track", "Track speed", "a tenth of the greatest a step, arm raised"),
@@ -64,13 +64,7 @@ class TrackPanel(RunPanel):
     def soak(self, now: float) -> SoakView | None:
         """Return the soak under way, None where there is none."""
         activity = self.engine.executor.activity
-        if not isinstance(activity, TemperAir):
-            return None
-        step = activity.temper
-        return soak_view(
-            now, self.engine.ctx.readings.air_c, step.temperature_c, step.within_k, activity.since_s, step.for_s,
-            activity.began_s, step.at_most_s,
-        )  # fmt: skip
+        return activity.view(now, self.engine.ctx.readings.air_c) if isinstance(activity, TemperAir) else None
 
     def checks(self) -> tuple[Check, ...]:
         """Return the connected rig's own checks before a start."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence as Steps
-from typing import Final
 
 from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds.specimen_on_track.context import TrackContext
@@ -14,9 +13,7 @@ from tester.machine.activity import Activity
 from tester.machine.context import MountedSpecimen
 from tester.machine.executor import Procedures, Unforeseen
 from tester.machine.result_keeping import StoredResults
-
-SHOW_S: Final = 1.0
-"""Period at which the progress of a wait is shown, s."""
+from tester.machine.soak import SoakWait
 
 
 class InstallSpecimen(AskBesideTrack):
@@ -68,27 +65,17 @@ class PrepareTrack(AskBesideTrack):
         return True
 
 
-class TemperAir:
+class TemperAir(SoakWait):
     """Bring the air to a temperature and let the specimen follow. Later conditions report a temperature not reached."""
 
     def __init__(self, step: Temper) -> None:
         """The step of the plan."""
-        self.temper = step
-        self.began_s = self.shown_s = float("-inf")
-        self.since_s = float("inf")
+        super().__init__(step.temperature_c, step.within_k, step.for_s, step.at_most_s)
 
     def step(self, ctx: TrackContext) -> bool:
         """Done when the air has been near its target long enough, or has not come near in time."""
-        step, r = self.temper, ctx.readings
-        ctx.demand.chamber_c = step.temperature_c if ctx.rig.chamber else float("nan")
-        if self.began_s == float("-inf"):
-            self.began_s = ctx.now
-        if ctx.now >= self.shown_s:
-            self.shown_s = ctx.now + SHOW_S
-            ctx.progress.phase = f"temper {r.air_c:.1f} of {step.temperature_c:.1f} degC"
-        near = r.air_valid and abs(r.air_c - step.temperature_c) <= step.within_k
-        self.since_s = min(self.since_s, ctx.now) if near else float("inf")
-        return ctx.now - self.since_s >= step.for_s or ctx.now - self.began_s > step.at_most_s
+        ctx.demand.chamber_c = self.target_c if ctx.rig.chamber else float("nan")
+        return self.over(ctx, "temper", ctx.readings.air_c, valid=ctx.readings.air_valid)
 
 
 class TrackProcedures(Procedures[TrackContext]):

@@ -12,6 +12,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Rest
 from tester.kinds.wheel_on_belt.run.past_runs import KIND, LEAST_J, LEAST_RISE_K, heating_data
 from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Power, Sequence
+from tester.machine.soak import SHOW_S, SoakWait
 
 NEAR_AMBIENT_K: Final = 3.0
 """A setpoint within this of ambient is reached slowly, by heating or cooling: the soak only reaches the band [A]."""
@@ -21,9 +22,6 @@ HEAT_AT_MOST_S: Final = 5400.0
 """Longest time of heating up to a temperature [A]."""
 COOL_AT_MOST_S: Final = 3 * 3600.0
 """Longest cooling of a hub for a person's touch; a prompt then shows its temperature [A]."""
-
-SHOW_S: Final = 1.0
-"""Period for reporting the progress of a wait, s."""
 
 
 def roll(wheel_speed_m_s: float, load_n: float) -> Sequence:
@@ -51,34 +49,14 @@ def soak_within_k(soak: Soak, setpoint_c: float, ambient_c: float, band_k: float
     return band_k if abs(setpoint_c - ambient_c) <= NEAR_AMBIENT_K else soak.within_k
 
 
-class SoakTo:
-    """Hold until the surface has stayed within ``within_k`` of ``target_c`` for ``for_s``, or time has run out."""
-
-    def __init__(self, target_c: float, within_k: float, for_s: float, at_most_s: float) -> None:
-        """Temperatures in degC and K, times in s."""
-        self.target_c = target_c
-        self.within_k = within_k
-        self.for_s = for_s
-        self.at_most_s = at_most_s
-        self.began_s = float("nan")
-        self.since_s = float("inf")
-        self.shown_s = float("-inf")
-        self.reached = False
+class SoakTo(SoakWait):
+    """The wait for the surface's temperature."""
 
     def step(self, ctx: Context) -> bool:
         """Done when soaked or given up; ``reached`` shows which."""
-        if not isfinite(self.began_s):
-            self.began_s = ctx.now
         ctx.demand.surface_c = self.target_c
         ctx.demand.freeze_heat = False
-        surface = ctx.gates.surface.slow_c
-        if ctx.now >= self.shown_s:
-            self.shown_s = ctx.now + SHOW_S
-            ctx.progress.phase = f"soak {surface:.1f} of {self.target_c:.1f} degC"
-        inside = abs(surface - self.target_c) <= self.within_k
-        self.since_s = min(self.since_s, ctx.now) if inside else float("inf")
-        self.reached = ctx.now - self.since_s >= self.for_s
-        return self.reached or ctx.now - self.began_s > self.at_most_s
+        return self.over(ctx, "soak", ctx.gates.surface.slow_c)
 
 
 class HeatUp:

@@ -13,7 +13,7 @@ from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelConditio
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.served.manual import HAND
-from tester.machine.panel import News, RunPanel, Wanted, soak_view
+from tester.machine.panel import News, RunPanel, Wanted
 
 KIND: Final = "wheel_on_belt"
 PLOTS: Final = (
@@ -79,12 +79,7 @@ class WheelPanel(RunPanel):
             soak = activity.soak if activity.rolling else None
         elif isinstance(activity, MeasureWheelCondition):
             soak = None if activity.soaked else activity.soak
-        if soak is None:
-            return None
-        return soak_view(
-            now, self.engine.ctx.gates.surface.slow_c, soak.target_c, soak.within_k, soak.since_s, soak.for_s,
-            soak.began_s, soak.at_most_s,
-        )  # fmt: skip
+        return soak.view(now, self.engine.ctx.gates.surface.slow_c) if soak is not None else None
 
     def checks(self) -> tuple[Check, ...]:
         """Return the connected rig's own checks before a start."""
