@@ -10,7 +10,7 @@ Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import ClassVar
 
 from tester.analysis.schemes import Scheme, scheme_of
@@ -32,6 +32,11 @@ class Step:
     def title(self) -> str:
         """Return a one-line description of the step, for people."""
         return self.kind
+
+
+def fields_of(step: Step) -> dict[str, object]:
+    """Return the values of a step by the names of its fields, without its place."""
+    return {each.name: getattr(step, each.name) for each in fields(step) if each.name != "index"}
 
 
 @dataclass(frozen=True, slots=True)

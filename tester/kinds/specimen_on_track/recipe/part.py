@@ -15,7 +15,7 @@ from tester.base.units import show
 from tester.base.words import rough_duration
 from tester.inputs.recipe.conditions import conditions_of
 from tester.inputs.recipe.plain_recipe import Mount, SpecimenPart
-from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Settings, Stand, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Settings, Stand, Step, fields_of
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
 from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
@@ -193,14 +193,10 @@ class TrackPart(SpecimenPart):
             case MountSpecimen():
                 return {"specimen": step.specimen, "replicate": step.replicate, "number": step.piece,
                         "compound": step.compound, "note": step.note}  # fmt: skip
-            case Prepare():
-                return {"load_n": step.load_n, "interface": step.interface, "text": step.text}
             case Temper():
                 return {"temperature_c": step.temperature_c, "within_k": step.within_k, "for_s": step.for_s}
-            case PromptStep():
-                return {"text": step.text}
             case _:
-                return {}
+                return fields_of(step)
 
 
 def _prepared(setpoint: Setpoint) -> tuple[float, str]:

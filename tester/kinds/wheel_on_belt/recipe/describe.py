@@ -9,7 +9,7 @@ from tester.analysis.difference import pieces_needed
 from tester.analysis.reference import EVERY, RESERVED
 from tester.base.axes import condition_words
 from tester.base.words import listed_some, rough_duration
-from tester.inputs.recipe.plan import ConditionStep, PromptStep, Step
+from tester.inputs.recipe.plan import ConditionStep, PromptStep, Step, fields_of
 from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, Estimate, StepEstimate
 from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
 from tester.kinds.wheel_on_belt.image.axes import held_by
@@ -148,29 +148,9 @@ def step_fields(step: Step, one: StepEstimate) -> dict[str, object]:
                 **({"again": True} if step.again else {}),
             }
         case PreGrind():
-            return {
-                "wheel_speed_m_s": step.wheel_speed_m_s,
-                "belt_speed_m_s": step.belt_speed_m_s,
-                "load_n": step.load_n,
-                "duration_s": step.duration_s,
-                "sliding_m": round(one.sliding_m, 3),
-                "loss_mm": round(one.loss_mm, 5),
-            }
-        case Rest():
-            return {
-                "at_least_s": step.at_least_s,
-                "until_c": step.until_c,
-                "within_k": step.within_k,
-                "at_most_s": step.at_most_s,
-            }
-        case Heat():
-            return {"temperature_c": step.temperature_c}
-        case Cool():
-            return {"hub_below_c": step.hub_below_c}
-        case PromptStep():
-            return {"text": step.text}
+            return fields_of(step) | {"sliding_m": round(one.sliding_m, 3), "loss_mm": round(one.loss_mm, 5)}
         case _:
-            return {}
+            return fields_of(step)
 
 
 def condition_fields(step: ConditionStep, one: StepEstimate) -> dict[str, object]:
