@@ -13,19 +13,18 @@ from tester.base.axes import Axes, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.inputs.recipe.grid_settings import values_of
-from tester.inputs.recipe.plan import ConditionStep, Plan, Stand, Step
-from tester.inputs.recipe.recipe_part import RecipePart
+from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import listed
-from tester.inputs.recipe.time_estimate import Estimate, Estimator, StepEstimate
+from tester.inputs.recipe.time_estimate import Estimator
 from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.budget import terms_of
 from tester.kinds.wheel_on_belt.image.axes import AXES, KIND, LEAST_SPEED_M_S, POSITIONED
-from tester.kinds.wheel_on_belt.recipe import describe
+from tester.kinds.wheel_on_belt.recipe.describe import WheelDescription
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.limits import limit_problems
-from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.recipe.references import reference_problems
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
 from tester.kinds.wheel_on_belt.recipe.schema import (
@@ -95,7 +94,7 @@ def _yawed(slips: list[tuple[int, float]], speeds: list[float], angle: float) ->
     return "it slides at another speed the other way"
 
 
-class WheelPart(RecipePart):
+class WheelPart(WheelDescription):
     """Recipes for a rubber wheel on a belt."""
 
     kind: ClassVar[str] = KIND
@@ -159,29 +158,6 @@ class WheelPart(RecipePart):
     def remaining(self, plan: Plan, stand: Stand) -> WheelPlan:
         """Return the plan of the remaining work after an interruption."""
         return remaining(WheelPlan.of(plan), stand)
-
-    def words(self, step: Step, one: StepEstimate) -> str:
-        """Return a description of a step, in a line."""
-        return describe.words(step, one)
-
-    def heading(self, plan: Plan, step: Step) -> str:
-        """Return the compound and predicted loss of a wheel that a step installs."""
-        return describe.heading(WheelPlan.of(plan), step) if isinstance(step, Install) else ""
-
-    def totals(self, plan: Plan, estimate: Estimate) -> Iterator[str]:
-        """Yield wear and heat."""
-        yield from describe.totals(WheelPlan.of(plan), estimate)
-
-    def plan_fields(self, plan: Plan, estimate: Estimate) -> dict[str, object]:
-        """Return wear and heat for a plan's JSON."""
-        return describe.plan_fields(WheelPlan.of(plan), estimate)
-
-    def step_fields(self, step: Step, one: StepEstimate) -> dict[str, object]:
-        """Return a step's fields in a plan's JSON, for a step other than a condition."""
-        return describe.step_fields(step, one)
-
-    def condition_fields(self, step: ConditionStep, one: StepEstimate) -> dict[str, object]:
-        return super().condition_fields(step, one) | describe.condition_fields(step, one)
 
 
 PART: Final = WheelPart()
