@@ -63,8 +63,3 @@ class FaultKind:
         if self.unit is None:
             return self.make()
         return self.make(self.value if value is None else value)
-
-    @property
-    def group(self) -> str:
-        """Subject of the fault: the first word of its phrase, even where a name has two words."""
-        return self.phrase.split()[0]

@@ -180,11 +180,9 @@ class SensorFault(Effect):
             kind = "saturated" if self.kind == "open" else self.kind
             self._wrapped = slave.source = SpoiledForces(slave.source, kind, self.size, now, self.force, self.device)
         elif isinstance(slave, IrSlave | ControllerSlave):
-            ambient_c = scene.rig.ambient_c
-            self._wrapped = wrapped = SpoiledTemperature(
-                slave.source, self.kind, self.size, now, ambient_c, self.device
+            self._wrapped = slave.source = SpoiledTemperature(
+                slave.source, self.kind, self.size, now, scene.rig.ambient_c, self.device
             )
-            slave.source = wrapped
 
     def end(self, scene: Scene, now: float) -> None:
         """Show the true values again."""

@@ -19,8 +19,12 @@ from tester.kinds import (
     packaged_rigs,
     packaged_text,
 )
+from tester.kinds.specimen_on_track.context import TrackContext
+from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.machine.context import AnyContext
 from tester.machine.interlock_table import InterlockSheet
+from tester.machine.plain.context import PlainContext
 
 
 @pytest.mark.parametrize("name", PACKAGED)
@@ -86,3 +90,9 @@ def test_conditions_that_ship_are_found_by_name_with_their_kind() -> None:
     for name, kind in packaged_conditions().items():
         assert kind.fits is not None and kind.fits().packaged_points(name).points
     assert set(packaged_conditions()) == {"appendix-a", "appendix-b"}
+
+
+@pytest.mark.parametrize("context", [Context, TrackContext, PlainContext])
+def test_every_gate_has_a_bit_of_its_own(context: type[AnyContext]) -> None:
+    bits = list(context.gate_bits.values())
+    assert bits and all(bit.bit_count() == 1 for bit in bits) and len(set(bits)) == len(bits)
