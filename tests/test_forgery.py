@@ -1,4 +1,4 @@
-"""Fifteen forgeries of a finished run: each is told with the head kept, and without it where the chain is unmade."""
+"""Twenty forgeries of a finished run: each is reported with the head kept, and without it where the chain is unmade."""
 
 from __future__ import annotations
 
@@ -23,8 +23,17 @@ def test_the_run_itself_is_as_it_was_left(runs: tuple[Path, Path]) -> None:
     assert verify(runs[0], found.head).problems == () and found.coefficients == 3
 
 
-def test_there_are_fifteen_kinds() -> None:
-    assert len({forgery.name for forgery in FORGERIES}) == 15
+def test_there_are_twenty_kinds() -> None:
+    assert len({forgery.name for forgery in FORGERIES}) == 20
+
+
+BY_ITS_COEFFICIENTS = (
+    "samples changed",
+    "chain dropped, this schema claimed",
+    "chain dropped, an earlier schema claimed",
+    "every sample deleted",
+)
+"""Forgeries that contradict the samples, so that making everything anew does not hide them."""
 
 
 @pytest.mark.parametrize("forgery", FORGERIES, ids=lambda forgery: forgery.name)
@@ -33,10 +42,11 @@ def test_a_forgery_is_told(runs: tuple[Path, Path], forgery: Forgery, tmp_path: 
     assert (kept, without, kept_all_anew) == (True, True, True)
 
 
-def test_changed_samples_are_told_by_the_coefficient_even_with_all_made_anew(
-    runs: tuple[Path, Path], tmp_path: Path
+@pytest.mark.parametrize("name", BY_ITS_COEFFICIENTS)
+def test_the_coefficients_report_it_even_with_all_made_anew(
+    runs: tuple[Path, Path], name: str, tmp_path: Path
 ) -> None:
-    (forgery,) = (one for one in FORGERIES if one.name == "samples changed")
+    (forgery,) = (one for one in FORGERIES if one.name == name)
     assert told(*runs, forgery, tmp_path)[3]
 
 
@@ -59,7 +69,7 @@ def test_a_head_that_is_no_hash_is_refused(runs: tuple[Path, Path]) -> None:
 def test_all_made_anew_over_what_is_right_is_another_head(runs: tuple[Path, Path], tmp_path: Path) -> None:
     import shutil
 
-    folder = tmp_path / "run"
+    folder = tmp_path / runs[1].name
     shutil.copytree(runs[1], folder)
     head = verify(folder).head
     remake_all(folder)

@@ -33,12 +33,12 @@ _FIGURES = ("mu_resultant", "mu_longitudinal", "mu_lateral")
 def coefficient_problems(reader: RunReader) -> tuple[int, list[str]]:
     """Recompute every repeat that has a coefficient; return how many, and the contradictions.
 
-    A run recorded without samples has none to recompute. Raises StoreError.
+    A coefficient without samples, as a sweep records them, is a contradiction: nothing supports it. Raises StoreError.
     """
-    if not reader.count("sample_block", "repeat_id > 0"):
-        return 0, []
-    infos = {stored.info.condition: stored.info for stored in reader.conditions()}
     measured = [repeat for repeat in reader.repeats(attempts=True) if isfinite(repeat.result.mu_resultant)]
+    if measured and not reader.count("sample_block", "repeat_id > 0"):
+        return 0, [f"run.db: no samples, so that none of {len(measured)} coefficients can be recomputed"]
+    infos = {stored.info.condition: stored.info for stored in reader.conditions()}
     problems: list[str] = []
     for repeat_ in measured:
         problems += _differing(repeat_, _recomputed(reader, repeat_, infos[repeat_.condition]))

@@ -61,9 +61,10 @@ def verify(folder: Path, kept: str = "") -> Verification:
             chain = reader.chain()
             problems += _chain(chain, kept)
             problems += _finished(folder, results, chain)
-            if _made_by(reader) == __version__:  # another version may write other tables of the same record
-                reported = {problem.partition(":")[0] for problem in problems}
-                problems += [line for name, line in table_problems(folder, record) if name not in reported]
+            problems += _named(folder, run)
+            reported = {problem.partition(":")[0] for problem in problems}
+            by = _made_by(reader)
+            problems += [f"{line}{by}" for name, line in table_problems(folder, record) if name not in reported]
             coefficients, differing = coefficient_problems(reader)
             problems += differing
             problems += [f"run.db: {problem}" for problem in reader.integrity_problems()]
@@ -111,9 +112,16 @@ def _finished(folder: Path, results: RunResults, chain: ChainFound) -> list[str]
 
 
 def _made_by(reader: RunReader) -> str:
-    """Return the version that last wrote the folder's tables."""
+    """Return which other version last wrote the folder's tables, in brackets; "" for this version."""
     exclusions, sessions = reader.exclusions(), reader.sessions()
-    return exclusions[-1].software_version if exclusions else sessions[-1].software_version if sessions else ""
+    by = exclusions[-1].software_version if exclusions else sessions[-1].software_version if sessions else __version__
+    return "" if by == __version__ else f" (version {by} wrote it, version {__version__} compares)"
+
+
+def _named(folder: Path, run: StoredRun) -> list[str]:
+    """Return whether the folder is another than the record's, by its name."""
+    name = folder.resolve().name
+    return [] if name == run.info.name else [f"run.db: the record of {run.info.name}, in a folder named {name}"]
 
 
 def _cut_off(folder: Path, exclusions: list[StoredExclusion]) -> list[str]:

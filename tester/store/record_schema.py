@@ -206,7 +206,7 @@ def version_of(connection: sqlite3.Connection) -> int:
     application: int = connection.execute("PRAGMA application_id").fetchone()[0]
     if application != APPLICATION_ID and not (application == 0 and version == 0 and _empty(connection)):
         raise StoreError("this database was not made by friction-tester")
-    if version > VERSION:
+    if not 0 <= version <= VERSION:
         reads = f"schema {VERSION}" if VERSION == 1 else f"schemas 1 to {VERSION}"
         raise StoreError(
             f"recorded by another version of friction-tester, with schema {version}; "

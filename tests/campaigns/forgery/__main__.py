@@ -1,4 +1,4 @@
-"""``python -m tests.campaigns.forgery``: 15 forgeries, a line each; exit code 1 where one that must be told is not."""
+"""``python -m tests.campaigns.forgery``: 20 forgeries, a line each; exit code 1 where one that must be told is not."""
 
 from __future__ import annotations
 

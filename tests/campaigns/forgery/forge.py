@@ -16,6 +16,7 @@ from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.run_files import MANIFEST, manifest_text, write_all
 from tester.results.verify import verify
 from tester.store.chain import add_entries, hashes_of, tables_in
+from tester.store.record_schema import VERSION
 from tester.store.run_reader import RunReader
 from tester.store.sample_blocks import unpack_array
 
@@ -74,6 +75,35 @@ def _other_record(folder: Path, other: Path) -> None:
     shutil.copyfile(other / "run.db", folder / "run.db")
 
 
+def _other_folder(folder: Path, other: Path) -> None:
+    """Put the whole folder of another run under this run's name."""
+    shutil.rmtree(folder)
+    shutil.copytree(other, folder)
+
+
+def _chain_dropped(version: int) -> Callable[[Path, Path], None]:
+    """Raise every coefficient, drop the chain, and claim a schema; tables and manifest stay as a reader makes them."""
+
+    def change(folder: Path, _other: Path) -> None:
+        with closing(sqlite3.connect(folder / "run.db")) as database, database:
+            database.executescript(
+                "UPDATE repeat SET mu_resultant = 1.1 * mu_resultant;"
+                f"DROP TABLE chain; PRAGMA user_version = {version};"
+            )
+        (folder / MANIFEST).write_text(manifest_text(folder, ""), encoding="utf-8")
+
+    return change
+
+
+_TABLE_OF_ANOTHER_VERSION = "UPDATE session SET software_version = '0.0.9'"
+
+
+def _table_of_another_version(folder: Path, other: Path) -> None:
+    """Exchange a coefficient in a table, and let an earlier version have written it."""
+    _sql(_TABLE_OF_ANOTHER_VERSION)(folder, other)
+    _table(folder, other)
+
+
 _SWAP = """UPDATE repeat SET mu_resultant = (SELECT r.mu_resultant FROM repeat r WHERE r.id = 3 - repeat.id)
  WHERE id IN (1, 2)"""
 _CUT = "DELETE FROM chain WHERE seq >= (SELECT min(seq) FROM chain WHERE name = 'exclusion')"
@@ -94,6 +124,11 @@ FORGERIES = (
     Forgery("a wear check", _sql("UPDATE wear_check SET diameter_mm = diameter_mm + 0.1 WHERE id = 1")),
     Forgery("a table exchanged, manifest remade", _table),
     Forgery("run.db of another run", _other_record),
+    Forgery("another run's folder under this name", _other_folder),
+    Forgery("chain dropped, this schema claimed", _chain_dropped(VERSION)),
+    Forgery("chain dropped, an earlier schema claimed", _chain_dropped(-1)),
+    Forgery("every sample deleted", _sql("DELETE FROM sample_block")),
+    Forgery("a table exchanged under an earlier version", _table_of_another_version),
 )
 
 
@@ -107,6 +142,8 @@ def remake_manifest(folder: Path) -> None:
 def remake_all(folder: Path) -> None:
     """Make the chain anew over the rows as they are, then tables and manifest: what only a kept head shows."""
     with closing(sqlite3.connect(folder / "run.db")) as database, database:
+        database.execute(f"PRAGMA user_version = {VERSION}")
+        database.execute("CREATE TABLE IF NOT EXISTS chain (seq INTEGER PRIMARY KEY, name, key, row_sha256, head)")
         database.execute("DELETE FROM chain")
         rows = ((table, key, row) for table in tables_in(database) for key, row in hashes_of(database, table))
         add_entries(database, rows)

@@ -27,11 +27,16 @@ TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
-    folder = small_run(tmp_path / "run", FOUR, rows=0)
+    folder = small_run(tmp_path / RUN.name, FOUR, rows=0)
     (folder / "recipe.yaml").write_text(RUN.recipe_text, encoding="utf-8")
     (folder / "rig.yaml").write_text(RUN.rig_text, encoding="utf-8")
     write_all(folder)
     return folder
+
+
+def problems(folder: Path) -> tuple[str, ...]:
+    """Return what a verification reports besides that these small runs have no samples."""
+    return tuple(line for line in verify(folder).problems if "no samples" not in line)
 
 
 def results(folder: Path) -> RunResults:
@@ -60,7 +65,7 @@ def test_the_folders_tables_are_made_anew_and_only_there(run: Path) -> None:
     assert b"0.72" in before["appendix.csv"] and b"0.73" in after["appendix.csv"]
     changed = [row for row in after["repeats.csv"].splitlines() if row not in before["repeats.csv"].splitlines()]
     assert len(changed) == 1 and b",0,excluded by hand: debris on the belt," in changed[0]
-    assert verify(run).problems == () and verify(run).excluded == 1
+    assert problems(run) == () and verify(run).excluded == 1
 
 
 def test_taken_in_again_the_tables_are_what_they_were_to_the_byte(run: Path) -> None:
@@ -122,7 +127,7 @@ def test_a_folder_that_was_changed_is_not_given_a_new_manifest(run: Path) -> Non
     (run / "appendix.csv").write_text("better\n", encoding="utf-8")
     with pytest.raises(CannotExcludeError, match=r"appendix\.csv: changed"):
         record_word(run, OUT)
-    assert verify(run).problems == ("appendix.csv: changed",)
+    assert problems(run) == ("appendix.csv: changed",)
 
 
 @pytest.mark.parametrize("sql", ["UPDATE exclusion SET reason = 'x'", "DELETE FROM exclusion"])
@@ -154,9 +159,9 @@ def test_cut_off_before_the_tables_it_is_found_and_the_same_again_finishes_it(
     with monkeypatch.context() as patch, pytest.raises(OSError, match="killed here"):
         patch.setattr(exclude, "write_all", killed)
         record_word(run, OUT)
-    assert any("`tester results exclude run 2/1` was cut off" in problem for problem in verify(run).problems)
+    assert any(f"`tester results exclude {run.name} 2/1` was cut off" in problem for problem in problems(run))
     record_word(run, OUT)
-    assert verify(run).problems == ()
+    assert problems(run) == ()
     with RunReader(run) as reader:
         assert len(reader.exclusions()) == 1
 
@@ -169,7 +174,7 @@ def test_the_manifest_of_before_is_kept_so_that_the_first_record_can_still_be_to
 
 
 def test_a_run_that_was_cut_off_takes_the_word_and_gets_no_tables_yet(tmp_path: Path) -> None:
-    folder = small_run(tmp_path / "run", FOUR, rows=0)
+    folder = small_run(tmp_path / RUN.name, FOUR, rows=0)
     record_word(folder, OUT)
     assert results(folder).rows[1].result.n_valid == 3
     assert [path.name for path in folder.iterdir()] == ["run.db"]

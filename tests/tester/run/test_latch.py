@@ -28,7 +28,7 @@ def rig() -> RigConfig:
 def tripped(folder: Path, rig: RigConfig, *, tables: bool = True) -> Path:
     folder.mkdir(parents=True)
     writer = open_writer(folder)
-    writer.begin_run(replace(RUN, rig_text=rig.text, simulated=rig.simulated), SPECIMENS, [CONDITION])
+    writer.begin_run(replace(RUN, name=folder.name, rig_text=rig.text, simulated=rig.simulated), SPECIMENS, [CONDITION])
     writer.trip(20.0, "overload", "too firm", 460.0, 450.0, "N")
     writer.finish("tripped", "overload", rig_seconds=30.0)
     writer.close()
