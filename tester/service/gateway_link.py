@@ -173,9 +173,16 @@ class GatewayLink:
     # -- the gateway ------------------------------------------------------------------------------------------
 
     def open(self) -> None:
-        """Open the connection for STOP, then start the gateway. Raises OSError."""
+        """Open the connection for STOP, then start the gateway. Raises OSError, and AddressError for a taken path."""
+        self._free_paths()  # here, because the processes that listen are started again when they end
         self.lane.open(self.config.address)
         self._open_gateway()
+
+    def _free_paths(self) -> None:
+        """Remove the sockets that an earlier service left."""
+        if isinstance(self.config.address, UnixAddress):
+            for path in (self.config.address.path, stop_path(self.config.address.path)):
+                unlink_socket(path)
 
     def _open_gateway(self) -> None:
         self._process, ours = spawn("tester.service.gateway_process", ())
@@ -215,9 +222,7 @@ class GatewayLink:
             self._end.close()
             self._end = None
         self.lane.close()
-        if isinstance(self.config.address, UnixAddress):
-            for path in (self.config.address.path, stop_path(self.config.address.path)):
-                unlink_socket(path)
+        self._free_paths()
         self.config.card.unlink(missing_ok=True)
 
     def _send(self, line: bytes) -> None:

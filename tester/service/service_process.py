@@ -39,7 +39,11 @@ def host(options: ServiceOptions, url: str, port: int | None, notify: str) -> in
             return EXIT_FAILED
         gateway = GatewayLink(LinkConfig(address, where / CARD, options.runs, options.rig, notify, options.accept_risk))
         service = Service(options, gateway)
-        gateway.open()
+        try:
+            gateway.open()
+        except (OSError, AddressError) as error:
+            sys.stderr.write(f"the service cannot listen: {error}\n")
+            return EXIT_FAILED
         sys.stderr.write(f'rig "{service.rig.name}" is served at {address}\n')
         sys.stderr.flush()
         try:
