@@ -14,8 +14,10 @@ from tester.base import clock
 from tester.base.clock import Pace
 from tester.base.processes import RealTimePriority
 
-POLL_S: Final = 0.02
-"""Period of ``poll``, s of wall time: the greatest delay of a STOP from a screen."""
+POLL_S: float = 0.02
+"""Period of ``poll``, s of wall time: the greatest delay of a STOP from a screen. Also a variable where it is compiled:
+a measurement sets 0, polls after every tick, and does not depend on the computer's speed.
+"""
 LEAVE_S: Final = 0.008
 """No poll begins within this time before a due tick, s. At 100 Hz the poll then follows a tick, and may take long."""
 

@@ -22,7 +22,9 @@ from tests.campaigns.time_left.looks import Look, Looked
 
 SEEDS, SAMPLE_SEEDS = 20, 1
 MOST: Final = 0.07
-"""Median of the errors of the time left, share of what was left."""
+"""Median of the errors of the time left, share of what was left, over all seeds."""
+SAMPLE_MOST: Final = 0.3
+"""The same for the sample. The median of one seed is 4 to 19 % in 20 seeds: a sample shows gross errors only."""
 AT: Final = tuple(tenth / 10.0 for tenth in range(1, 10))
 """Shares of a run's time at which it is asked."""
 SLACK_S: Final = 1.0
@@ -50,8 +52,8 @@ def miscounted(looked: Looked) -> int:
     return wrong
 
 
-def report(found: Sequence[tuple[Case, list[Looked]]], seeds: int) -> int:
-    """Print the figures; return how many miss."""
+def report(found: Sequence[tuple[Case, list[Looked]]], seeds: int, most: float) -> int:
+    """Print the figures; return how many miss. ``most``: the greatest median error."""
     missed = 0
     runs = [(case, looked) for case, several in found for looked in several]
     whole = [(case, looked) for case, looked in runs if looked.name == "run"]
@@ -71,7 +73,7 @@ def report(found: Sequence[tuple[Case, list[Looked]]], seeds: int) -> int:
     looks = sum(len(looked.looks) for _, looked in runs)
     figures = [
         (f"runs of {seeds} seeds that were done", f"{done} of {len(whole)}", "all", done == len(whole)),
-        ("time left, median error", f"{100 * median(off):.1f} %", f"<= {100 * MOST:g} %", median(off) <= MOST),
+        ("time left, median error", f"{100 * median(off):.1f} %", f"<= {100 * most:g} %", median(off) <= most),
         (f"looks at which the list does not add up to the head line, of {looks}", f"{unequal}", "0", not unequal),
         *((f"looks at which a {name} counts conditions wrong", f"{count}", "0", not count)
           for name, count in wrong.items()),
@@ -85,7 +87,7 @@ def report(found: Sequence[tuple[Case, list[Looked]]], seeds: int) -> int:
 def main(arguments: list[str] | None = None) -> int:
     """Measure; 1 where a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.time_left", description=__doc__)
-    parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_SEEDS} seed of each recipe")
+    parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_SEEDS} seed of each recipe, with a wider limit")
     parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"seeds ({SEEDS})")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="the first seed (0)")
     parser.add_argument("--only", default="", metavar="NAME", help="one recipe")
@@ -102,7 +104,7 @@ def main(arguments: list[str] | None = None) -> int:
             found = list(pool.map(carry_out, cases))
     else:
         found = [carry_out(case) for case in cases]
-    missed = report(found, seeds)
+    missed = report(found, seeds, SAMPLE_MOST if read.sample else MOST)
     print(f"     processor time of this process: {process_time() - began_s:.0f} s")
     print("every figure met" if not missed else f"{missed} missed")
     return 1 if missed else 0
