@@ -13,9 +13,10 @@ from typing import Any, TypeAlias
 
 from tester.inputs.rig.parameter import SECTION, Parameter, Values, key_line
 from tester.machine.inputs import ScanInputs
-from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Form, Interlock, Watch, When, always
+from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Form, Interlock, Watch, When
 
 Asked: TypeAlias = Callable[[Any], bool]
+Applies: TypeAlias = Asked | None
 Read: TypeAlias = Callable[[Any], float]
 
 
@@ -25,8 +26,10 @@ def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
 
 
 class Group:
-    """Rows that are evaluated together, with their bits. A row's number costs one call, and its limit at most one
-    more.
+    """Rows that are evaluated together, with their bits.
+
+    A number costs one call a scan, and its limit at most one more. A number with a parameter as its limit is compared
+    first, because that is cheap; every other condition is evaluated only where its row applies.
     """
 
     __slots__ = ("least", "members", "most", "numbers", "spans", "states")
@@ -34,30 +37,30 @@ class Group:
     def __init__(self, members: Iterable[tuple[int, Interlock[Any]]]) -> None:
         """Take (bit, row) pairs."""
         self.members: tuple[tuple[int, Interlock[Any]], ...] = tuple(members)
-        self.numbers: tuple[tuple[Read, Parameter, Asked], ...] = tuple(
+        self.numbers: tuple[tuple[Read, Parameter, Applies], ...] = tuple(
             (watch.parts[0], watch.parameters[0], applies)
             for watch, applies in self._of(Form.AT_MOST)
             if watch.parameters
         )
         """For each row: the number, the parameter that it may not exceed, and whether the row applies."""
-        self.most: tuple[tuple[Read, Read, Asked], ...] = tuple(
+        self.most: tuple[tuple[Read, Read, Applies], ...] = tuple(
             (watch.parts[0], watch.parts[1], applies)
             for watch, applies in self._of(Form.AT_MOST)
             if not watch.parameters
         )
         """The same for limits that are not parameters."""
-        self.least: tuple[tuple[Read, Read, Asked], ...] = tuple(
+        self.least: tuple[tuple[Read, Read, Applies], ...] = tuple(
             (watch.parts[0], watch.parts[1], applies) for watch, applies in self._of(Form.AT_LEAST)
         )
-        self.spans: tuple[tuple[Callable[[Any], tuple[float, float, float]], Asked], ...] = tuple(
+        self.spans: tuple[tuple[Callable[[Any], tuple[float, float, float]], Applies], ...] = tuple(
             (watch.parts[0], applies) for watch, applies in self._of(Form.WITHIN)
         )
-        self.states: tuple[tuple[Asked, Asked], ...] = tuple(
+        self.states: tuple[tuple[Asked, Applies], ...] = tuple(
             (watch.holds, applies) for watch, applies in self._of(Form.STATE)
         )
 
-    def _of(self, form: Form) -> list[tuple[Watch[Any], Asked]]:
-        return [(row.watch, row.applies or always) for _, row in self.members if row.watch.form is form]
+    def _of(self, form: Form) -> list[tuple[Watch[Any], Applies]]:
+        return [(row.watch, row.applies) for _, row in self.members if row.watch.form is form]
 
     def held(self, v: ScanInputs) -> int:
         """Return the bits of the rows that hold. Nearly always none holds; the search for the row begins only when one
@@ -68,21 +71,22 @@ class Group:
     def _any(self, v: ScanInputs) -> bool:
         parameters = v.parameters
         for number, parameter, applies in self.numbers:
-            if not (number(v) <= parameters[parameter]) and applies(v):
+            if not (number(v) <= parameters[parameter]) and (applies is None or applies(v)):
                 return True
         for number, limit, applies in self.most:
-            if not (number(v) <= limit(v)) and applies(v):
+            if (applies is None or applies(v)) and not (number(v) <= limit(v)):
                 return True
         for number, limit, applies in self.least:
-            if not (number(v) >= limit(v)) and applies(v):
+            if (applies is None or applies(v)) and not (number(v) >= limit(v)):
                 return True
         for holds, applies in self.states:
-            if holds(v) and applies(v):
+            if (applies is None or applies(v)) and holds(v):
                 return True
         for span, applies in self.spans:
-            low, value, high = span(v)
-            if not (low <= value <= high) and applies(v):
-                return True
+            if applies is None or applies(v):
+                low, value, high = span(v)
+                if not (low <= value <= high):
+                    return True
         return False
 
     def _which(self, v: ScanInputs) -> int:

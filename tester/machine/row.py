@@ -113,7 +113,7 @@ class Interlock(Generic[V]):
     them, to fix its place). A parameter of several rows appears once in the section, with the first of these rows.
     """
     applies: Callable[[V], bool] | None = None
-    """Whether the row applies in a scan; called only when the watch is beyond its limit. None: always."""
+    """Whether the row applies in a scan; None: always. It may be called before or after the condition."""
     delay: Parameter | None = None
     """How long the row must hold before it trips; None: it trips in its first scan."""
     channels: tuple[str, ...] = ()
