@@ -30,7 +30,7 @@ class SpecimenOnTrack(ServedKind):
     def alone(self, rig: Rig) -> str:
         """Return the reactions of drives and chamber without a program, in words."""
         own = TrackConfig.of(rig)
-        also = ("The chamber stands by itself (30 s without a setpoint).",) if own.chamber else ()
+        also = ("The chamber goes to standby by itself (30 s without a setpoint).",) if own.chamber else ()
         return drives_alone(own, "The arm stays where it is, with its weights.", *also)
 
     def hand(self, run: Run, left: Left | None) -> tuple[TrackHand, str]:

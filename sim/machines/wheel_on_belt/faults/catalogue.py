@@ -175,7 +175,7 @@ def _sensor_rows() -> Iterator[FaultKind]:
                     lasts_s=0.3,
                     note="a bolt gives way, an amplifier changes its range: the load reads above its target")
     yield FaultKind("load cell reads low", partial(CELL, "low"), MISWEIGHED, TRIP, 0.05 + 2.0 * SCAN_S, "%",
-                    50.0, note="the press goes on beyond what the load shown needs")
+                    50.0, note="the press moves beyond the depth for the load shown")
     yield FaultKind("load cell drift", partial(CELL, "drift"), PRESSING, MAY, 0.0, "N/s", 2.0,
                     note="seen at the next check of the zero, before each repeat")
     yield FaultKind("load cell noisy", partial(CELL, "noise"), PRESSING, MAY, 0.0, "N", 40.0,
@@ -223,7 +223,7 @@ def _actuator_rows() -> Iterator[FaultKind]:
     yield FaultKind("belt runs away", partial(d.Runaway, "belt"), ASTRAY, TRIP, FOLLOW_S, "m/s", 0.4,
                     axis="belt", note="seen where that is not its command")
     yield FaultKind("press stuck", partial(d.Jammed, "press"), PRESSING, MAY, force_stays=True,
-                    note="it holds the load it held: seen when it is to lift, and freed by hand; the rig stands")
+                    note="it holds the load it held: seen when it is to lift, and freed by hand; the rig is at rest")
     yield FaultKind("belt jammed", partial(d.Jammed, "belt"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("wheel jammed", partial(d.Jammed, "wheel"), LOADED, TRIP, 0.1 + SCAN_S)
     yield FaultKind("belt torn", k.BeltTorn, RUBBING, TRIP, 0.1 + 2.0 * SCAN_S,
@@ -247,7 +247,7 @@ def _computer_rows() -> Iterator[FaultKind]:
     yield from asked
 
 
-_UNASKED = "how much of it goes unnoticed, and what that does, python -m tests.campaigns.faults --magnitudes says"
+_UNASKED = "python -m tests.campaigns.faults --magnitudes prints how much of it goes unnoticed, and its effect"
 
 
 def _may(phrase: str, make: Callable[..., Effect], unit: str | None = None, value: float = 0.0,

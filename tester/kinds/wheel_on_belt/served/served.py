@@ -37,7 +37,7 @@ def _heating(rig: RigConfig) -> str:
     if jacket.heat_off == "fallback" and profile.falls_back_s is not None:
         return f"The jacket falls back to a setpoint of no heat ({profile.falls_back_s:g} s without a command)."
     if jacket.heat_off == "relay":
-        return "The jacket has no watchdog of its own: a relay, the rig file says, takes its supply. See to it."
+        return "The jacket has no watchdog of its own: by the rig file a relay takes its supply. Check it."
     return "The jacket has no watchdog of its own: switch its supply off."
 
 

@@ -48,7 +48,7 @@ def test_one_that_has_a_lease_needs_none() -> None:
 
 def test_a_fallback_is_believed_only_of_a_profile_that_has_one() -> None:
     assert "Omron E5CC temperature controller has no setpoint of its own" in refused(profile="omron_e5cc")
-    assert "a relay, the rig file says" in left_alone(real(profile="omron_e5cc", heat_off="relay"))
+    assert "by the rig file a relay takes its supply" in left_alone(real(profile="omron_e5cc", heat_off="relay"))
 
 
 def test_another_word_is_refused_with_those_there_are() -> None:
