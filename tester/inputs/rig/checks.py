@@ -92,9 +92,13 @@ def _lines(rig: Rig) -> _Found:
         if (line, unit_id) in used:
             yield ("devices", name, "unit_id"), f"{unit_id} on line {line} is {used[line, unit_id]} already"
         used.setdefault((line, unit_id), name)
+    ports: dict[str, str] = {}
     for name, line in rig.lines.items():
         if line.baud <= 0:
             yield ("lines", name, "baud"), "expected a baud rate above 0"
+        if line.port in ports and line.port != "sim":
+            yield ("lines", name, "port"), f"{line.port} is the port of line {ports[line.port]} already"
+        ports.setdefault(line.port, name)
 
 
 def _read(rig: Rig) -> tuple[dict[str, DeviceProfile], list[tuple[Location, str]]]:

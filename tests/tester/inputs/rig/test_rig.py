@@ -165,6 +165,11 @@ def test_what_does_not_fit_together_is_refused(override: str, place: str) -> Non
     assert any(place in problem for problem in problems(override))
 
 
+def test_one_port_for_two_lines_is_refused() -> None:
+    found = problems("lines.heat.port=/dev/ttyUSB0", "lines.load_cell.port=/dev/ttyUSB0")
+    assert any("/dev/ttyUSB0 is the port of line" in problem for problem in found)
+
+
 def test_a_file_that_is_not_there_is_a_problem(tmp_path: Path) -> None:
     with pytest.raises(InvalidSource, match="no such file"):
         load_rig(tmp_path / "none.yaml")
