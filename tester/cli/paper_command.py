@@ -13,7 +13,7 @@ from tester.cli.text_table import Json, dump
 
 if TYPE_CHECKING:
     from tester.analysis.fit.fit_part import PublishedTable
-    from tester.analysis.papers.item import Paper
+    from tester.analysis.papers import Paper
 
 
 @command()
@@ -51,7 +51,7 @@ def _table() -> PublishedTable:
 
 
 def _all(as_json: bool) -> int:
-    from tester.analysis.papers.papers_page import page_text
+    from tester.analysis.papers import page_text
     from tester.kinds import packaged_papers
 
     papers = packaged_papers()
@@ -63,7 +63,7 @@ def _all(as_json: bool) -> int:
 
 
 def _as_json(papers: Sequence[Paper]) -> Json:
-    from tester.analysis.papers.papers_page import judged_items
+    from tester.analysis.papers import judged_items
 
     return {
         entry.name: [

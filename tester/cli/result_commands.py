@@ -111,7 +111,7 @@ def _budgets(results: RunResults) -> Iterator[str]:
 
 def _summary(name: str, results: RunResults) -> dict[str, Json]:
     from tester.results.measured_tables import pieces_table
-    from tester.results.settings_table import settings_table
+    from tester.results.repeated_tables import settings_table
     from tester.results.tally import tally_of
 
     run, tally = results.run, tally_of(results)

@@ -16,7 +16,7 @@ from tester.base.trouble import TroubleError
 from tester.kinds.kind import Kind
 
 if TYPE_CHECKING:
-    from tester.analysis.papers.item import Paper
+    from tester.analysis.papers import Paper
     from tester.base.source import Tree
     from tester.inputs.rig import Rig
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tester.analysis.fit.fit_part import FitPart
     from tester.analysis.master_curve.points import MasterPart
-    from tester.analysis.papers.item import Paper
+    from tester.analysis.papers import Paper
     from tester.base.axes import Axis
     from tester.inputs.recipe.recipe_part import RecipePart
     from tester.inputs.rig import Rig

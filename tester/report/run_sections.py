@@ -31,7 +31,7 @@ from tester.report.page import inline_svg
 from tester.report.record_section import ALARMING, RunRecord
 from tester.results.columns import Output
 from tester.results.measured_tables import pieces_table
-from tester.results.references_table import ReferenceRow, references_table
+from tester.results.repeated_tables import ReferenceRow, references_table
 from tester.results.run_results import RunResults
 
 EVENTS_AT_MOST = 200

@@ -1,8 +1,8 @@
 """A table of results as data: columns with key, heading, unit and decimals, and the rows that they read.
 
 Files, terminal, report and screens pick columns and render them. The column alone defines its content, its heading and
-the digits for people. Each table has a module of its own; a column added there appears in every output that its
-``views`` name, in the CSV file and in JSON.
+the digits for people. A column that is added to a table, in its module, appears in every output that its ``views``
+name, in the CSV file and in JSON.
 """
 
 from __future__ import annotations

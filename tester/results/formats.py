@@ -17,9 +17,8 @@ from tester.results.budget_table import budget_table
 from tester.results.directions_table import directions_table
 from tester.results.measured_tables import checks_table, pieces_table, repeats_table
 from tester.results.parquet import write_parquet
-from tester.results.references_table import references_table
+from tester.results.repeated_tables import references_table, settings_table
 from tester.results.run_results import RunResults, results_of
-from tester.results.settings_table import settings_table
 from tester.results.table_cells import Cell, encode
 from tester.results.tables import appendix_rows, condition_rows, marked, sample_rows
 from tester.store.run_reader import RunReader

@@ -12,9 +12,9 @@ import pytest
 from tester.analysis.flags import DISAGREES, flags_in
 from tester.cli.ending import ending_table
 from tester.cli.main import invoke
+from tester.results.repeated_tables import settings_table
 from tester.results.run_files import write_all
 from tester.results.run_results import RunResults, results_of
-from tester.results.settings_table import settings_table
 from tester.store.run_reader import RunReader
 from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writer, record
 

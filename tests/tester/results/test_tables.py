@@ -16,9 +16,9 @@ import pytest
 from tester.analysis.results import RepeatStatus
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results.measured_tables import checks_table, pieces_table, repeats_table
+from tester.results.repeated_tables import settings_table
 from tester.results.run_files import manifest_problems, write_all, write_file
 from tester.results.run_results import results_of
-from tester.results.settings_table import settings_table
 from tester.store.records import PieceInfo
 from tester.store.run_reader import RunReader
 from tests.tester.results.made import made

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.analysis.papers.item import Paper
+from tester.analysis.papers import Paper
 from tester.kinds.specimen_on_track.papers.adhesion import ADHESION_ITEMS
 from tester.kinds.specimen_on_track.papers.grosch import GROSCH_ITEMS
 from tester.kinds.specimen_on_track.papers.hysteresis import HYSTERESIS_ITEMS

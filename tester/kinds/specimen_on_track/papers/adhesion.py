@@ -9,7 +9,7 @@ import numpy as np
 
 from sim.physics.greta import contact_slope, mean_square_slope
 from sim.physics.materials import Sinusoid
-from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight
+from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempted, slight
 from tester.kinds.specimen_on_track.papers.paper_parts import load_n, rubber, surface, tread_on_road
 
 WARM_C: Final = 25.0

@@ -11,7 +11,7 @@ import numpy as np
 from sim.physics.greta import Dynamic, Greta
 from sim.physics.materials import Components, Rubber, Sinusoid
 from sim.physics.scratch import DEPTHS, FADE, HARMONICS, Scratch, harmonics, normal_x, shear_x
-from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight, unjudged
+from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempted, slight, unjudged
 from tester.base.arrays import Array
 from tester.kinds.specimen_on_track.papers.adhesion import MACRO_M, MACRO_RA_M, PREDICT, PRESSURE_PA, WARM_C, modulus_pa
 from tester.kinds.specimen_on_track.papers.paper_parts import Stiffer, load_n, rubber, surface, tread_on_road

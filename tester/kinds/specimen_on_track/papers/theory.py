@@ -10,7 +10,7 @@ import numpy as np
 from sim.physics.moduli import ConstantModulus
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine
-from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, slight
+from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempted, slight
 from tester.kinds.specimen_on_track.papers.grosch import NEGLIGIBLE, PREDICT
 from tester.kinds.specimen_on_track.papers.paper_parts import (
     PRESSURE_PA,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.analysis.papers.item import Paper
+from tester.analysis.papers import Paper
 from tester.kinds.wheel_on_belt.papers.equations import EQUATIONS, TABLE_3
 from tester.kinds.wheel_on_belt.papers.figures import FIGURES
 from tester.kinds.wheel_on_belt.papers.machine import DRAWINGS, MACHINE, PROCEDURE

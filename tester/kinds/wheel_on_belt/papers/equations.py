@@ -12,7 +12,7 @@ import numpy as np
 from sim.physics.friction import COMPOUNDS, PaperParameters, coefficient, thermal_factor
 from tester.analysis.fit.check import Errors, errors_of
 from tester.analysis.fit.fit_law import FitPoint, by_group
-from tester.analysis.papers.item import PaperFinding, PaperItem, judged, slight, unjudged
+from tester.analysis.papers import PaperFinding, PaperItem, judged, slight, unjudged
 from tester.base.arrays import Array
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE

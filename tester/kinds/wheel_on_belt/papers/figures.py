@@ -6,7 +6,7 @@ from typing import Final
 
 from sim.physics.slip import predict
 from tester.analysis.fit.check import errors_of
-from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted
+from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempted
 from tester.kinds.wheel_on_belt.fit.data import READABLE, rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP
 from tester.kinds.wheel_on_belt.fit.published import errors_on, of_table_3

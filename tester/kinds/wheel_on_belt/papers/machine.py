@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 import recipes
-from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, unjudged
+from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempted, unjudged
 from tester.kinds.wheel_on_belt.image.axes import AXES
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import Final
 from sim.physics.friction import coefficient
 from tester.analysis.fit.fit_law import FitPoint, by_group
 from tester.analysis.fit.joint import fit_only, predict
-from tester.analysis.papers.item import PaperFinding, PaperItem, judged, not_attempted, unjudged
+from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempted, unjudged
 from tester.kinds.wheel_on_belt.fit.data import READABLE, Reading, appendix, rows
 from tester.kinds.wheel_on_belt.fit.laws import V2_LAW
 from tester.kinds.wheel_on_belt.fit.master_conditions import MASTERS

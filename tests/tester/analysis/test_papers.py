@@ -10,17 +10,17 @@ from pathlib import Path
 import click
 import pytest
 
-from tester.analysis.papers.item import (
+from tester.analysis.papers import (
     Paper,
     PaperFinding,
     PaperItem,
     PaperVerdict,
     judged,
     not_attempted,
+    page_text,
     slight,
     unjudged,
 )
-from tester.analysis.papers.papers_page import page_text
 from tester.cli.main import invoke, root
 from tester.kinds import packaged_papers
 

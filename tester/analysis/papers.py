@@ -1,12 +1,78 @@
-"""The page of all papers: a table of items with their verdicts, computed at the time of writing."""
+"""Items of papers: a figure, table, equation or statement, each compared with this program when it is asked for.
+
+A kind supplies the papers behind its machine or its laws (``Kind.papers``). The page of all papers is a table of the
+items with their verdicts, computed at the time of writing.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final, NamedTuple
 
-from tester.analysis.papers.item import Paper, PaperFinding, PaperItem, PaperVerdict
+ROUNDING: Final = 1e-9
+
+
+class PaperVerdict(StrEnum):
+    """Result of comparing an item of a paper with data, formulas or laws."""
+
+    REPRODUCED = "reproduced"
+    REFUTED = "refuted"
+    NOT_ATTEMPTED = "not attempted"
+
+
+@dataclass(frozen=True, slots=True)
+class PaperFinding:
+    """A verdict, and the error or the reason in words."""
+
+    verdict: PaperVerdict
+    error: str
+
+
+@dataclass(frozen=True, slots=True)
+class PaperItem:
+    """An item of a paper.
+
+    ``where``: its place in the paper. ``states``: its content. ``command``: a command that shows the same in full, ""
+    where only the list does. ``work_out`` returns the verdict from numbers computed by the call.
+    """
+
+    where: str
+    states: str
+    command: str
+    work_out: Callable[[], PaperFinding]
+
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """A paper: its short name, its citation, and its items in the order of its pages."""
+
+    name: str
+    citation: str
+    items: tuple[PaperItem, ...]
+
+
+def slight(off: float) -> str:
+    """Return a small difference in words: below 1e-9 it is due to rounding, which differs from computer to computer."""
+    return f"{off:.0e}" if abs(off) >= ROUNDING else f"less than {ROUNDING:.0e}"
+
+
+def judged(holds: bool, error: str) -> PaperFinding:
+    """Return the finding "reproduced", or "refuted" where the item does not hold."""
+    return PaperFinding(PaperVerdict.REPRODUCED if holds else PaperVerdict.REFUTED, error)
+
+
+def unjudged(reason: str) -> PaperFinding:
+    """Return the finding of an item that cannot be judged, with the numbers or the reason."""
+    return PaperFinding(PaperVerdict.NOT_ATTEMPTED, reason)
+
+
+def not_attempted(where: str, states: str, reason: str) -> PaperItem:
+    """Return an item that is not attempted, with the reason."""
+    return PaperItem(where, states, "", lambda: unjudged(reason))
+
 
 HEAD = """# The papers, item by item
 
