@@ -15,7 +15,8 @@ Nothing here depends on the kind of machine. A kind is a folder in ``tester/kind
 - its **procedures**: activities, and a class that inherits from ``Procedures`` and selects the activity for each step
   and for unplanned work; also the proofs before a run may begin (``Arming``), the activity of a condition
   (``MeasureCondition``), and its results (``StoredResults``);
-- a **build** function that puts these into an ``Engine`` and a ``Connector``, and both into a ``Run``.
+- a **build** function that puts these into an ``Engine`` and a ``Connector``, and both into a ``Run``, from a
+  ``RunSetup`` (``run_parts``).
 
 One of the ``tickers`` ticks a ``Run``. Until the rig is ready, each tick belongs to the connector: it listens,
 configures drives, waits for every device, lets ``Arming`` lift, homes position axes and lets ``Arming`` prove. Then

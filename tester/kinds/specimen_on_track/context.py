@@ -65,7 +65,6 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
     def __init__(
         self,
         rig: TrackConfig,
-        demand: TrackDemand,
         prompts: Prompts,
         journal: Recorder,
         attendant: TrackAttendant,
@@ -73,7 +72,7 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         quantities: Quantities = QUANTITIES,
     ) -> None:
         """``quantities``: the run's table of channels."""
-        super().__init__(rig, TrackReadings(channels=[nan] * len(quantities.further)), demand, prompts, journal)
+        super().__init__(rig, TrackReadings(channels=[nan] * len(quantities.further)), TrackDemand(), prompts, journal)
         self.setpoints = TrackSetpoints()
         self.attendant = attendant
         self.devices = devices

@@ -16,7 +16,6 @@ from tester.kinds.specimen_on_track.control import TrackControl
 from tester.kinds.specimen_on_track.devices import TrackDevices
 from tester.kinds.specimen_on_track.procedures.arming import TrackArming
 from tester.kinds.specimen_on_track.procedures.steps import TrackProcedures
-from tester.kinds.specimen_on_track.process import TrackDemand
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.result_keeping import StoredResults
 from tester.machine.run import Run, run_of
@@ -40,7 +39,7 @@ class TrackRuns(KindRun):
         )
         control = TrackControl(own, most_m_s)
         quantities = quantities_on(own)
-        ctx = TrackContext(own, TrackDemand(), setup.prompts, setup.recorder, setup.attendant, devices, quantities)
+        ctx = TrackContext(own, setup.prompts, setup.recorder, setup.attendant, devices, quantities)
         procedures = TrackProcedures(StoredResults[TrackContext](setup.recorder, point=setup.point))
         arming = TrackArming(devices, own)
         return run_of(setup.plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)

@@ -23,6 +23,7 @@ from tester.machine.condition import MeasureCondition
 from tester.machine.measured import ConditionEnd, Ending, MeasuredRepeat
 from tester.machine.motions import Power, Sequence, Settle
 from tester.machine.result_keeping import StoredResults
+from tester.machine.soak import SoakWait
 
 ALIKE: Final = 2
 """Number of small differences in a row that make friction stationary: three stretches have two."""
@@ -207,24 +208,22 @@ class MeasureTrackCondition(MeasureCondition[TrackContext, TrackCondition, Measu
     def __init__(self, step: TrackCondition, results: StoredResults[TrackContext]) -> None:
         """``results`` takes the repeats."""
         super().__init__(step, results)
-        self.waits_since_s = inf
+        self.wait: SoakWait | None = None
 
     def ready(self, ctx: TrackContext) -> bool:
         """Return whether the air is at the condition's temperature; end the condition if it never gets there."""
         step, r = self.condition, ctx.readings
         wanted_c = held_by(step.setpoint).temperature_c
+        wait = self.wait = self.wait or SoakWait(wanted_c, step.temperature_band_k, 0.0, step.soak.at_most_s)
         if ctx.rig.chamber:
             ctx.demand.chamber_c = wanted_c
-        if r.air_valid and abs(r.air_c - wanted_c) <= step.temperature_band_k:
-            self.waits_since_s = inf
-            return True
-        ctx.progress.phase = f"temper {r.air_c:.1f} of {wanted_c:.1f} degC"
-        self.waits_since_s = min(self.waits_since_s, ctx.now)
-        waited_s = ctx.now - self.waits_since_s
-        if waited_s > step.soak.at_most_s:
-            text = f"air at {r.air_c:.1f} degC after {waited_s / 60:.0f} min"
+        if not wait.over(ctx, "temper", r.air_c, valid=r.air_valid):
+            return False
+        if not wait.reached:
+            text = f"air at {r.air_c:.1f} degC after {(ctx.now - wait.began_s) / 60:.0f} min"
             self.end = ConditionEnd(Ending.NOT_REACHED, text)
-        return False
+        self.wait = None
+        return wait.reached
 
     def begin(self, ctx: TrackContext, attempt: int) -> MeasureTrackRepeat:
         """Return the repeat; a specimen's first zero is its reference."""
