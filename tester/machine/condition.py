@@ -40,6 +40,11 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
         """Why the zero of the load cell is not trustworthy, which ends the run; "" if it is."""
         self._looked = False
 
+    @property
+    def in_repeat(self) -> bool:
+        """Whether a repeat is under way, or is being committed."""
+        return self.measuring is not None
+
     # -- by a kind ------------------------------------------------------------------------------------------
 
     def ready(self, ctx: ContextT) -> bool:

@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 
 from tester.inputs.recipe.plan import Plan, Step
 from tester.machine.activity import Activity, MoveFailedError, Resumable
+from tester.machine.condition import MeasureCondition
 from tester.machine.context import AnyContext
 
 ContextT = TypeVar("ContextT", bound=AnyContext)
@@ -46,7 +47,12 @@ class Procedures(Generic[ContextT]):
     def after(
         self, activity: Activity[ContextT], to_come: Sequence[Step], ctx: ContextT
     ) -> Unforeseen[ContextT] | None:
-        """Return unplanned work that follows an activity; None if the plan continues."""
+        """Return unplanned work that follows an activity; None if the plan continues.
+
+        A condition whose load cell has no trustworthy zero ends the run.
+        """
+        if isinstance(activity, MeasureCondition) and activity.failed:
+            return Unforeseen(failed=activity.failed)
         return None
 
     def number_after(self, last: int) -> None:
@@ -54,10 +60,6 @@ class Procedures(Generic[ContextT]):
 
     def resumed(self, ctx: ContextT) -> None:
         """Set the demand with which a step may resume after a hold; called before the present activity resumes."""
-
-    def measuring(self, activity: Activity[ContextT]) -> bool:
-        """Return whether an activity is measuring repeats, whose pace predicts the time left."""
-        return False
 
 
 class Executor(Generic[ContextT]):
@@ -74,8 +76,9 @@ class Executor(Generic[ContextT]):
 
     @property
     def measuring(self) -> bool:
-        """Whether repeats of a condition are under way."""
-        return self.activity is not None and self.procedures.measuring(self.activity)
+        """Whether repeats of a condition are under way, whose pace predicts the time left."""
+        activity = self.activity
+        return isinstance(activity, MeasureCondition) and activity.in_repeat
 
     def hold(self, ctx: ContextT) -> None:
         """Record that the rig is held: samples taken during the hold belong to no repeat."""

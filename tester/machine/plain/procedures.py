@@ -197,7 +197,3 @@ class PlainProcedures(Procedures[PlainContext]):
         if isinstance(step, ConditionStep):
             return MeasureSteady(step, self.results, self.speeds, self.part.settle_s)
         raise TypeError(f"{step.kind}: no step of this machine")
-
-    def measuring(self, activity: Activity[PlainContext]) -> bool:
-        """Return whether an activity is measuring repeats."""
-        return isinstance(activity, MeasureSteady)

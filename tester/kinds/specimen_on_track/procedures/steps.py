@@ -11,7 +11,7 @@ from tester.kinds.specimen_on_track.procedures.slide import MeasureTrackConditio
 from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
 from tester.machine.activity import Activity
 from tester.machine.context import MountedSpecimen
-from tester.machine.executor import Procedures, Unforeseen
+from tester.machine.executor import Procedures
 from tester.machine.result_keeping import StoredResults
 from tester.machine.soak import SoakWait
 
@@ -89,10 +89,6 @@ class TrackProcedures(Procedures[TrackContext]):
         """Resume at rest, with the arm raised."""
         ctx.demand.track_m_s, ctx.demand.lowered = 0.0, False
 
-    def measuring(self, activity: Activity[TrackContext]) -> bool:
-        """Return whether a condition is measuring a repeat."""
-        return isinstance(activity, MeasureTrackCondition) and activity.measuring is not None
-
     def activity(self, step: Step, to_come: Steps[Step], ctx: TrackContext) -> Activity[TrackContext]:
         """Return the activity of a step."""
         match step:
@@ -108,11 +104,3 @@ class TrackProcedures(Procedures[TrackContext]):
                 return AskBesideTrack(step.text)
             case _:
                 raise TypeError(f"{step.kind}: no step of this machine")
-
-    def after(
-        self, activity: Activity[TrackContext], to_come: Steps[Step], ctx: TrackContext
-    ) -> Unforeseen[TrackContext] | None:
-        """End the run if the cell's zero is not trustworthy."""
-        if isinstance(activity, MeasureTrackCondition) and activity.failed:
-            return Unforeseen(failed=activity.failed)
-        return None

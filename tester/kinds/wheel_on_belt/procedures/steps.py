@@ -55,10 +55,6 @@ class WheelProcedures(Procedures[Context]):
         demand.press, demand.load_n, demand.freeze_heat = Press.LIFT, 0.0, False
         demand.belt_speed_m_s = demand.wheel_speed_m_s
 
-    def measuring(self, activity: Activity[Context]) -> bool:
-        """Return whether a condition is past its soak and in its repeats."""
-        return isinstance(activity, MeasureWheelCondition) and activity.measuring is not None
-
     def activity(self, step: Step, to_come: Sequence[Step], ctx: Context) -> Activity[Context]:
         """Return the activity for a step."""
         match step:
