@@ -115,7 +115,7 @@ class TrackDevices(DeviceList):
             r.air_silent = not thermometer.ready
         r.contact_c = r.air_c
         if pyrometer is not None:
-            r.exit_c, r.exit_valid, r.exit_at_s = pyrometer.values[0], pyrometer.valid, pyrometer.stamp_s
+            r.exit_c, r.exit_at_s = pyrometer.values[0], pyrometer.stamp_s
             r.exit_silent = not pyrometer.ready
             r.contact_c = r.exit_c
 

@@ -53,7 +53,6 @@ class TrackReadings(BaseReadings):
     """The chamber has gone to standby by itself: beyond its own limits, or its lease ran out."""
     exit_c: float = NAN
     """Surface of the track behind the contact, by the pyrometer."""
-    exit_valid: bool = False
     exit_silent: bool = False
     exit_at_s: float = NEVER
     contact_c: float = NAN
