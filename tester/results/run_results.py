@@ -12,6 +12,7 @@ from tester.analysis.left_out import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.reference import RESERVED, ReferenceWatch, doubted, is_reference
 from tester.analysis.repeats import combine_replicates
+from tester.analysis.results import SoakCheck
 from tester.analysis.ring_errors import RingRun
 from tester.analysis.schemes import Misalignment, misalignment
 from tester.analysis.wear_rate import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
@@ -143,12 +144,8 @@ def results_of(reader: RunReader) -> RunResults:
     if references:
         watch = surroundings.watch(references, reserved=RESERVED in run.info.metadata)
         doubts = doubted(watch.charts, [condition.info.condition for condition in ordinary])
-        conditions = [
-            _flagged(condition, REFERENCE if _watches(condition, run) else OUT_OF_LIMITS)
-            if _watches(condition, run) or condition.info.condition in doubts
-            else condition
-            for condition in conditions
-        ]
+        flags = dict.fromkeys(doubts, OUT_OF_LIMITS) | {c.info.condition: REFERENCE for c in references}
+        conditions = [_flagged(c, flags[c.info.condition]) if c.info.condition in flags else c for c in conditions]
     conditions, settings = _budgeted(conditions, surroundings)
     rows = _rows(conditions, surroundings)
     in_use = under_way(reader.path.parent) is not None
@@ -180,9 +177,9 @@ def _combined(reader: RunReader, run: StoredRun) -> list[Measured]:
     conditions: list[Measured] = []
     for stored in reader.conditions():
         number = stored.info.condition
-        measured = _measured(stored, repeats.get(number, []), left_out, combining)
-        measured = replace(measured, soak=soaks.get(number))
-        off = measured.soak is not None and not measured.soak.agrees
+        soak = soaks.get(number)
+        measured = _measured(stored, repeats.get(number, []), left_out, combining, soak)
+        off = soak is not None and not soak.agrees
         conditions.append(_flagged(measured, THERMOMETER) if off else measured)
     return conditions
 
@@ -193,7 +190,7 @@ def _budgeted(
     """Return the conditions with their budgets, flagged where their setting disagrees, and the repeated settings."""
     by = [surroundings.of(condition.info, condition.repeats, condition.result) for condition in conditions]
     listed = [replace(c, result=with_budget(c.result, sources)) for c, sources in zip(conditions, by, strict=True)]
-    repeated = settings_of((c.info, c.repeats, c.result, sources) for c, sources in zip(listed, by, strict=True))
+    repeated = settings_of(zip(listed, by, strict=True))
     doubts = {number for setting in repeated if setting.disagrees for number in setting.conditions}
     return [_flagged(c, DISAGREES) if c.info.condition in doubts else c for c in listed], repeated
 
@@ -225,6 +222,7 @@ def _measured(
     repeats: list[StoredRepeat],
     left_out: dict[tuple[int, int, int], StoredExclusion],
     combining: Combining,
+    soak: SoakCheck | None,
 ) -> Measured:
     info = stored.info
     by_hand = {i: left_out[repeat.target] for i, repeat in enumerate(repeats) if repeat.target in left_out}
@@ -238,7 +236,7 @@ def _measured(
         by_hand={i: exclusion.reason for i, exclusion in by_hand.items()},
         combining=combining,
     )
-    return Measured(stored, tuple(repeats), result, by_hand)
+    return Measured(stored, tuple(repeats), result, by_hand, soak)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ result.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import isfinite
 
@@ -21,10 +21,9 @@ from tester.analysis.repeated_settings import (
     difference_of,
     measurement,
 )
-from tester.analysis.repeats import ConditionResult
 from tester.base.axes import AxisValue, Setpoint, condition_words
 from tester.base.words import coefficient
-from tester.store.records import ConditionInfo, StoredRepeat
+from tester.results.table_rows import Measured
 
 DIFFERENCES_SHOWN = 3
 """Most differences from the first measurement in a line; further ones are in the JSON."""
@@ -95,24 +94,22 @@ def _difference(first: SettingMeasurement, second: SettingMeasurement, off: Diff
     return f"{named}: {off.value:+.3f} ± {off.expanded:.3f}"
 
 
-def settings_of(
-    conditions: Iterable[tuple[ConditionInfo, Sequence[StoredRepeat], ConditionResult, Surroundings]],
-) -> tuple[RepeatedSetting, ...]:
+def settings_of(conditions: Iterable[tuple[Measured, Surroundings]]) -> tuple[RepeatedSetting, ...]:
     """Return the settings that conditions measure several times, in the order of the table.
 
-    Each condition with its repeats, its result with budgets, and the sources of its uncertainty.
+    Each condition, its result with budgets, comes with the sources of its uncertainty.
     """
     setpoints: dict[tuple[str, tuple[AxisValue, ...]], Setpoint] = {}
     measurements: defaultdict[tuple[str, tuple[AxisValue, ...]], list[SettingMeasurement]] = defaultdict(list)
-    for info, repeats, result, by in conditions:
+    for measured, by in conditions:
+        info, result = measured.info, measured.result
         setting = info.setpoint.key()
         setpoints.setdefault(setting, info.setpoint)
         if result.ok and isfinite(result.mu):
-            pieces = [repeat.piece for repeat in repeats if repeat.result.valid]
-            measurements[setting].append(measurement(info.condition, pieces[-1] if pieces else 0, result, by))
+            measurements[setting].append(measurement(info.condition, measured.last_piece, result, by))
     return tuple(
         RepeatedSetting(setpoints[setting], in_order, agreement(in_order))
         for setting, listed in measurements.items()
         if len(listed) > 1
-        for in_order in (tuple(sorted(listed, key=lambda measured: measured.condition)),)
+        for in_order in (tuple(sorted(listed, key=lambda made: made.condition)),)
     )

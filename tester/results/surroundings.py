@@ -92,13 +92,12 @@ class SurroundingsOf:
         info, repeats = condition.info, condition.repeats
         result = with_budget(condition.result, self.of(info, repeats, condition.result))
         travel = self._travel(repeats)
-        valid_pieces = [repeat.piece for repeat in repeats if repeat.result.valid]
         return Reference(
             number,
             info.condition,
             condition.condition.started_s,
             info.compound,
-            valid_pieces[-1] if valid_pieces else 0,
+            condition.last_piece,
             result.mu if result.ok else NAN,
             self._share() / sqrt(max(result.n_valid, 1)),
             travel.counterface_m,

@@ -31,6 +31,11 @@ class Measured:
         """Return the condition's setpoints."""
         return self.condition.info
 
+    @property
+    def last_piece(self) -> int:
+        """Return the piece of the last valid repeat, 0 without one."""
+        return next((repeat.piece for repeat in reversed(self.repeats) if repeat.result.valid), 0)
+
     def exclusion(self, repeat: StoredRepeat) -> str:
         """Return why a repeat is not in the mean, an empty text if it is."""
         position = self.repeats.index(repeat)
