@@ -41,6 +41,8 @@ class LineAnswer:
     """Arrival of its last byte, s."""
     delay_s: float = inf
     """Time from the end of the request to the answer, less the answer's time on the wire, s."""
+    took_s: float = inf
+    """Time from the request's first byte to the answer's last, s."""
 
     @property
     def ok(self) -> bool:
@@ -141,8 +143,9 @@ class LineScan:
             wire_s = self._request_s + self._gap_s + len(pdu) * self._character_s + 3 * self._character_s
             delay_s = max(t - sent_s - wire_s, 0.0)
             if found is codec.DecodedAnswer.EXCEPTION:
-                self.answer = LineAnswer(question, exception=codec.exception_code(pdu), at_s=t, delay_s=delay_s)
+                self.answer = LineAnswer(question, exception=codec.exception_code(pdu), at_s=t, delay_s=delay_s,
+                                         took_s=t - sent_s)  # fmt: skip
             else:
-                self.answer = LineAnswer(question, data=pdu[2:], at_s=t, delay_s=delay_s)
+                self.answer = LineAnswer(question, data=pdu[2:], at_s=t, delay_s=delay_s, took_s=t - sent_s)
             self._quiet_s = t + self._gap_s
             return

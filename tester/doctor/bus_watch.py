@@ -30,6 +30,8 @@ class UnitWatch:
     noises: int = 0
     delays_s: list[float] = field(default_factory=list[float])
     """Delay of each answer: from the end of the request to the start of the answer, s."""
+    took_s: list[float] = field(default_factory=list[float])
+    """Duration of each exchange: from the request's first byte to the answer's last, s."""
     oldest_s: float = 0.0
     """Greatest age of a reading at the time when the next arrived, s."""
     values: list[bytes] = field(default_factory=list[bytes])
@@ -108,6 +110,7 @@ class _Line:
         if answer.ok:
             unit.readings += 1
             unit.delays_s.append(answer.delay_s)
+            unit.took_s.append(answer.took_s)
             if unit.last_s > -inf:
                 unit.oldest_s = max(unit.oldest_s, answer.at_s - unit.last_s)
             unit.last_s = answer.at_s

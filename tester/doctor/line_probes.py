@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import isfinite, nan
 from statistics import median
 
+from drivers.modbus.request import REPLIES
 from drivers.profiles.model import RegisterBlock, Signal, WordOrder
 from tester.doctor.bus_watch import UnitWatch
 from tester.doctor.examination import Examination
@@ -13,6 +14,7 @@ from tester.doctor.finding import Finding, fault, note, ok, warning
 from tester.doctor.line_survey import LineSurvey, UnitSurvey
 from tester.inputs.rig import LineConfig
 from tester.inputs.rig.further_sensors import title_of
+from tester.machine.line_speed import needed_s
 
 READINGS_S = 40.0
 """Least rate of readings from a device that is read in every scan, readings a second."""
@@ -238,6 +240,7 @@ def ages(e: Examination) -> Iterator[Finding]:
     for name, why in e.watch.lines_lost.items():
         yield fault(f"line {name}", f"lost while it was watched: {why}", "the adapter and its cable")
     surveyed = {key: unit for line in e.lines.values() for key, unit in line.units.items()}
+    exchange_s = {key: max(watch.took_s[:REPLIES], default=0.0) for key, watch in e.watch.units.items()}
     for key, watch in e.watch.units.items():
         name, unit = title_of(e.rig, key), surveyed[key]
         if not watch.readings and watch.exceptions:
@@ -247,7 +250,11 @@ def ages(e: Examination) -> Iterator[Finding]:
             continue
         yield from _errors(name, watch)
         yield from _reply_time(e, name, unit, watch)
-        yield from _age(e, key, unit, watch)
+        others_s = sum(
+            taken_s for other, taken_s in exchange_s.items()
+            if other != key and surveyed[other].config.line == unit.config.line
+        )  # fmt: skip
+        yield _age(e, key, unit, watch, needed_s(unit.profile.blocks[0].period_s, exchange_s[key], others_s))
 
 
 def _errors(name: str, watch: UnitWatch) -> Iterator[Finding]:
@@ -278,14 +285,19 @@ def _reply_time(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -
         )  # fmt: skip
 
 
-def _age(e: Examination, key: str, unit: UnitSurvey, watch: UnitWatch) -> Iterator[Finding]:
+def _age(e: Examination, key: str, unit: UnitSurvey, watch: UnitWatch, age_s: float) -> Finding:
+    """Compare the age of readings with the limit, as a run does when it connects (tester.machine.line_speed)."""
     name, (_, limit_s) = title_of(e.rig, key), e.rig.stale_limits().get(unit.config.part_of or key, ("", None))
     text = f"{watch.readings} readings, at most {1e3 * watch.oldest_s:.0f} ms old when the next came"
-    if limit_s is not None and watch.oldest_s > limit_s:
-        yield warning(
-            name, f"{text}: the rig file allows {1e3 * limit_s:g} ms",
-            "remove the causes of late or lost answers, as above; the limit stays the rig file's",
+    if limit_s is None:
+        return ok(name, text)
+    allowed = f"the rig file allows {1e3 * limit_s:g} ms"
+    if age_s > limit_s:
+        return fault(
+            name, f"{text}; two readings take {1e3 * age_s:.0f} ms, {allowed}: a run refuses the line as too slow",
+            "a quicker adapter, its latency timer at 1 ms, a higher baud rate, a line of its own",
         )  # fmt: skip
-    else:
-        allowed = f" (the rig file allows {1e3 * limit_s:g} ms)" if limit_s is not None else ""
-        yield ok(name, f"{text}{allowed}")
+    if watch.oldest_s > limit_s:
+        remedy = "remove the causes of late or lost answers, as above; the limit stays the rig file's"
+        return warning(name, f"{text}: {allowed}", remedy)
+    return ok(name, f"{text} ({allowed})")

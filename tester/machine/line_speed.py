@@ -21,6 +21,14 @@ READINGS: Final = 2.0
 """A device's limit of age must cover this many readings with their waits [A], because one may be late or lost."""
 
 
+def needed_s(period_s: float, exchange_s: float, others_s: float) -> float:
+    """Return the age that a device's readings need, s.
+
+    ``period_s``: between two readings; ``exchange_s``: of one of them; ``others_s``: of the line's other devices.
+    """
+    return READINGS * (period_s + exchange_s) + others_s
+
+
 def measured(devices: DeviceList) -> bool:
     """Return whether enough replies of every device were measured."""
     return all(
@@ -42,13 +50,13 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
         link, station = device.driver.link, device.driver.station
         exchange_s = link.exchange_s(station)
         others_s = sum(link.exchange_s(other) for other in link.stations if other is not station)
-        needed_s = READINGS * (device.driver.profile.blocks[0].period_s + exchange_s) + others_s
-        if not needed_s <= limit_s:
+        age_s = needed_s(device.driver.profile.blocks[0].period_s, exchange_s, others_s)
+        if not age_s <= limit_s:
             port = next(port for port, other in devices.lines if other is link)
             return (
                 f"{device.title}: line {device.line} is too slow for {key}, {_ms(limit_s)}:"
                 f" a reply takes {_ms(exchange_s)},"
-                f" {_ms(station.reply.greatest_s)} of them beyond the wire, and two readings {_ms(needed_s)}."
+                f" {_ms(station.reply.greatest_s)} of them beyond the wire, and two readings {_ms(age_s)}."
                 f" To do: {getattr(port, 'remedy', '') or 'a quicker adapter'}"
             )
     return ""

@@ -209,6 +209,11 @@ MISTAKES: tuple[Mistake, ...] = (
         hands=partial(_impaired, "load_cell", "late", -1, delay_s=0.016),
     ),
     _named(
+        "replies held back by 40 ms",
+        r"load cell: .*a run refuses the line as too slow",
+        hands=partial(_impaired, "load_cell", "late", -1, delay_s=0.04),
+    ),
+    _named(
         "noise on a line",
         r"load cell: .*% of \d+ questions failed",
         hands=partial(_impaired, "load_cell", "corrupt", 40),

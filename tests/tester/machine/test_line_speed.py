@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from tester.doctor.examination import Examination
+from tester.doctor.finding import Severity
+from tester.doctor.open_wires import SimulatedWires
+from tester.doctor.probe_table import examined
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.run.build import build_devices
@@ -11,6 +17,7 @@ from tester.machine import line_speed
 from tester.machine.connect import Connector, Stage
 from tester.machine.devices import DeviceList
 from tester.run.simulated import simulated_ports
+from tests.tester.doctor.fake_computer import FakeComputer
 
 
 def connected(held: str) -> tuple[Connector, DeviceList]:
@@ -46,3 +53,12 @@ def test_a_line_too_slow_is_refused_with_the_key_and_the_remedy() -> None:
     assert connector.failed
     assert "load cell: line load_cell is too slow for interlocks.stale_cell, 50.0 ms" in connector.failure
     assert "sim.latency_timer" in connector.failure
+
+
+@pytest.mark.parametrize("held", ["0 ms", "16 ms", "20 ms", "22 ms", "24 ms", "30 ms", "40 ms"])
+def test_the_doctor_finds_a_fault_exactly_where_a_run_refuses_the_line(held: str) -> None:
+    connector, _ = connected(held)
+    rig = load_rig("sim", (f"sim.latency_timer={held}",))
+    examination = Examination(rig, FakeComputer(), SimulatedWires(rig), Path("runs"), 5.0)
+    faults = [str(entry.finding) for entry in examined(examination) if entry.finding.severity is Severity.FAULT]
+    assert any("a run refuses the line" in fault for fault in faults) == connector.failed
