@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.rig_ports import Ports
 from tests.drivers.recorded import RecordedCan, RecordedLine
@@ -26,7 +26,7 @@ class Replay:
         config = RigConfig.of(load_rig("sim"))
         self.can = RecordedCan(can_log)
         self.lines = {name: RecordedLine(RECORD / f"modbus-{name}.log") for name in config.lines}
-        self.devices = build_devices(config, Ports(self.can, dict(self.lines)))
+        self.devices = Devices(config, Ports(self.can, dict(self.lines)))
         self.connector = Connector(
             self.devices, config, WheelArming(self.devices, config), config.arming.listen_s
         )

@@ -11,8 +11,8 @@ from tester.doctor.finding import Severity
 from tester.doctor.open_wires import SimulatedWires
 from tester.doctor.probe_table import examined
 from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
-from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine import line_speed
 from tester.machine.connect import Connector, Stage
 from tester.machine.devices import DeviceList
@@ -24,7 +24,7 @@ def connected(held: str) -> tuple[Connector, DeviceList]:
     """Connect to the simulated rig until its devices are heard, or it is given up."""
     rig = load_rig("sim", (f"sim.latency_timer={held}",))
     ports, world, _ = simulated_ports(rig, 0, None)
-    devices = build_devices(rig, ports)
+    devices = Devices(rig, ports)
     connector = Connector(devices, rig, WheelArming(devices, rig), rig.arming.listen_s)
     now = 0.0
     while connector.stage in (Stage.LISTEN, Stage.CONFIGURE, Stage.HEAR):

@@ -13,9 +13,9 @@ from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.servers.server import RigServer
 from tester.base import clock
 from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.connect import Connector, Stage
 from tester.machine.tickers import TickStatistics, run_real_time
 from tester.run.bus_log import BusLog
@@ -71,7 +71,7 @@ def machine() -> Iterator[Machine]:
 def connect(config: RigConfig, log: BusLog) -> Connector:
     """Connect to every device of a machine and give the wires back."""
     ports = hardware_ports(config, log)
-    devices = build_devices(config, ports)
+    devices = Devices(config, ports)
     connector = Connector(devices, config, WheelArming(devices, config), config.arming.listen_s)
     run_real_time(
         Connecting(connector), None, poll=lambda _: None, statistics=TickStatistics(), pace=ports.pace

@@ -19,7 +19,6 @@ from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.connect import Connector, Lifting, Stage
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
 from tester.machine.proof import ENABLE_S
@@ -321,6 +320,6 @@ class JogSeat(QuietSeat):
         """Connect."""
         believed = RigConfig.of(rig)
         bounded = jog_rig(believed, speeds)
-        devices = build_devices(bounded, ports)
+        devices = Devices(bounded, ports)
         self.jogging = Jogging(devices, bounded)
         super().__init__(bounded, believed, devices, self.jogging)

@@ -20,7 +20,6 @@ from tester.kinds.wheel_on_belt.procedures.arming import Proof
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.commission.commission_step import Dialogue, Measured, Notes, StepRefused, Waits, choose, press, wait
 from tester.machine.proof import WatchdogProof
 from tester.machine.rig_ports import Ports
@@ -121,7 +120,7 @@ class TrialSeat(QuietSeat):
     def __init__(self, rig: Rig, ports: Ports, hands: Any) -> None:
         """Connect."""
         believed = RigConfig.of(rig)
-        devices = build_devices(believed, ports)
+        devices = Devices(believed, ports)
         self.trials = Trials(devices, believed)
         super().__init__(believed, believed, devices, self.trials)
 

@@ -16,8 +16,11 @@ from drivers.servo import ServoDrive
 from drivers.temperature_controller import TemperatureController
 from tester.kinds.wheel_on_belt.image.process_image import NEVER, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.ring_watch import SlipRingWatch
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.machine.devices import DeviceList
-from tester.machine.rig_drivers import RigDrivers
+from tester.machine.rig_drivers import RigDrivers, load_cell_of
+from tester.machine.rig_ports import Ports
 from tester.store.recorder import Recorder
 
 
@@ -64,21 +67,26 @@ class Devices(DeviceList):
     ``cell`` reads CELL_CHANNELS and ``thermometer`` the surface; ``jacket`` heats the hub.
     """
 
-    def __init__(
-        self, drivers: RigDrivers, axes: WheelDrives, cell: LoadCell, thermometer: Sensor, jacket: TemperatureController
-    ) -> None:
-        """Take the drivers."""
-        # A quick-stopped press would stay in contact, so it keeps retracting as long as it is to have power.
-        super().__init__(drivers, links_of(cell), axes.press)
-        self.axes = axes
+    def __init__(self, rig: RigConfig, ports: Ports) -> None:
+        """Build the drivers of the rig file on these wires; nothing is sent."""
+        drivers = RigDrivers(rig, ports)
+        positioned = dict(drivers.drives)
+        wheel, belt, press = (positioned.pop(name) for name in VELOCITY_AXES)
+        self.axes = WheelDrives(wheel, belt, press, positioned)
+        cell, transmitters = load_cell_of(rig, drivers.links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
+        drivers.devices |= transmitters
         self.cell: LoadCell = cell
-        self.thermometer = thermometer
-        self.jacket = jacket
-        self.slip_ring = SlipRingWatch(jacket)
+        thermometer = drivers.sensor("ir_thermometer", SURFACE_CHANNELS)
+        assert thermometer is not None  # a rig file without it is refused
+        self.thermometer: Sensor = thermometer
+        self.jacket: TemperatureController = drivers.controller("jacket")
+        # A quick-stopped press would stay in contact, so it keeps retracting as long as it is to have power.
+        super().__init__(drivers, links_of(cell), press)
+        self.slip_ring = SlipRingWatch(self.jacket)
         self.counted.append(self.slip_ring)
         if isinstance(cell, JoinedCell):
             self.counted.append(CellSkew(cell))
-        self._positioned = tuple(axes.positioned.items())
+        self._positioned = tuple(positioned.items())
         self._contactor_closed = False  # its last feedback
         self._last_angle_s: float = NEVER
 

@@ -13,7 +13,7 @@ from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.control.step import WheelControl
 from tester.kinds.wheel_on_belt.image.axes import held_by, straight
-from tester.kinds.wheel_on_belt.image.devices import CELL_CHANNELS, SURFACE_CHANNELS, Devices, WheelDrives
+from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.image.process_image import CELL, Readings
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
@@ -22,9 +22,6 @@ from tester.kinds.wheel_on_belt.procedures.steps import DEFAULT_LOAD_N, DEFAULT_
 from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, PreGrind, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-from tester.machine.rig_drivers import RigDrivers, load_cell_of
-from tester.machine.rig_ports import Ports
 from tester.machine.run import Run, run_of
 from tester.machine.run_parts import RunSetup
 from tester.store.resumable import ResumePoint
@@ -85,18 +82,6 @@ def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
     return Bounds(load, wheel, max(belt, wheel), surface, rig_bounds(rig).hub_c, positions)
 
 
-def build_devices(rig: RigConfig, ports: Ports) -> Devices:
-    """Return drivers for every device of the rig file, on the given wires."""
-    drivers = RigDrivers(rig, ports)
-    drives = dict(drivers.drives)
-    wheel, belt, press = (drives.pop(name) for name in VELOCITY_AXES)
-    cell, transmitters = load_cell_of(rig, drivers.links, CELL_CHANNELS, rig.interlocks.cell_skew_s)
-    drivers.devices |= transmitters
-    thermometer = drivers.sensor("ir_thermometer", SURFACE_CHANNELS)
-    assert thermometer is not None  # a rig file without it is refused
-    return Devices(drivers, WheelDrives(wheel, belt, press, drives), cell, thermometer, drivers.controller("jacket"))
-
-
 def build_run(
     setup: RunSetup, heat: KnownRatio = NO_HISTORY, procedures: type[WheelProcedures] = WheelProcedures
 ) -> Run:
@@ -106,7 +91,7 @@ def build_run(
     activities of its steps.
     """
     rig, plan, point = RigConfig.of(setup.rig), setup.plan, setup.point
-    devices = build_devices(rig, setup.ports)
+    devices = Devices(rig, setup.ports)
     control = WheelControl(rig, plan_bounds(plan, rig))
     control.view.know_heat(heat)
     diameter_mm, quantities, cell = rig.geometry.wheel_diameter_mm, quantities_on(rig), devices.cell

@@ -9,7 +9,6 @@ import pytest
 from drivers.cia402 import Goal, State
 from tester.kinds.wheel_on_belt.image.devices import OUTPUT_CONTACTOR, Devices
 from tester.kinds.wheel_on_belt.image.process_image import Readings, Setpoints
-from tester.kinds.wheel_on_belt.run.build import build_devices
 from tester.machine.rig_ports import Ports
 from tester.run.simulated import simulated_ports
 from tests.tester.inputs.recipe.texts import rig
@@ -20,7 +19,7 @@ from tests.tester.kinds.wheel_on_belt.bench import Simulation
 def devices() -> Devices:
     """Drivers that have heard nothing yet."""
     ports, _, _ = simulated_ports(rig(), 0, None)
-    return build_devices(rig(), ports)
+    return Devices(rig(), ports)
 
 
 def filled(devices: Devices, diameter_mm: float = 90.0, now: float = 1.0) -> Readings:
@@ -149,7 +148,7 @@ def test_all_is_off_only_without_a_powered_stage(devices: Devices) -> None:
 def test_a_manual_axis_has_no_drive() -> None:
     config = rig("axes.camber={manual: true}")
     ports, _, _ = simulated_ports(config, 0, None)
-    devices = build_devices(config, Ports(ports.can, ports.lines))
+    devices = Devices(config, Ports(ports.can, ports.lines))
     assert "camber" not in devices.axes.positioned and len(devices.drives) == 4
 
 
