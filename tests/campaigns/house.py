@@ -1,4 +1,4 @@
-"""How learnable the tree is, in figures: code lines, small files, repeated names, long files and functions, words.
+"""How learnable the tree is, in figures: code lines, small files, names, circles of imports, long functions, words.
 
     python -m tests.campaigns.house           # tester, drivers and sim; a second
     python -m tests.campaigns.house --list    # and what each figure counts
