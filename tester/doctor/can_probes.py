@@ -164,6 +164,11 @@ def _drive_state(e: Examination, name: str, config: AxisConfig) -> Iterator[Find
             yield fault(name, f"the drive is in fault: {o.emergency_text(code)}", "look this code up in its manual")
         elif state is State.OPERATION_ENABLED:
             yield fault(name, "the drive is enabled, and no run is under way", "end whatever enabled it")
+        if config.drive.remote and not statusword & cia402.REMOTE:
+            yield fault(
+                name, f"in local mode: it does not obey the bus (statusword 0x{statusword:04X}, bit 9 = 0)",
+                "its key switch, its panel, or the maker's set-up tool",
+            )  # fmt: skip
     inputs = can.number(node, (o.DIGITAL_INPUTS, 0)) if config.digital_io else None
     if inputs is not None:
         io, shown = config.io, config.io.from_drive(inputs)

@@ -19,7 +19,9 @@ from tester.machine.line_speed import needed_s
 READINGS_S = 40.0
 """Least rate of readings from a device that is read in every scan, readings a second."""
 LATE_S = 0.008
-"""An answer that exceeds the profile's longest time by this much was delayed by the adapter, s [A]."""
+"""An answer that exceeds the profile's longest time by this much was delayed on its way, s [A]."""
+LATENCY_TIMER_S = (0.01, 0.02)
+"""Delays that a USB adapter's latency timer of 16 ms adds to an answer, s [A]: less or more has another cause."""
 FAILED_MOST = 0.01
 """Greatest acceptable share of failed questions on a line [A]."""
 
@@ -273,11 +275,15 @@ def _reply_time(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -
     rate = watch.readings / e.watch.seconds
     text = f"answers after {1e3 * usual_s:.1f} ms, {rate:.0f} readings/s"
     if usual_s > timing.reply_max_s + LATE_S:
-        yield warning(
-            name, f"{text}; {unit.profile.name} takes at most {1e3 * timing.reply_max_s:g} ms: late by"
-            f" {1e3 * (usual_s - timing.turnaround_s):.0f} ms, as by the latency timer of a USB adapter (16 ms)",
-            "set the adapter's latency timer to 1 ms, or its low-latency flag; or take an adapter without a timer",
-        )  # fmt: skip
+        late_s, most = usual_s - timing.turnaround_s, f"{1e3 * timing.reply_max_s:g} ms"
+        late = f"{text}; {unit.profile.name} takes at most {most}: late by {1e3 * late_s:.0f} ms"
+        least_s, most_s = LATENCY_TIMER_S
+        if e.rig.lines[unit.config.line].framing == "rtu" and least_s <= late_s <= most_s:
+            late += ", as by the latency timer of a USB adapter (16 ms)"
+            remedy = "set the adapter's latency timer to 1 ms, or its low-latency flag; or use an adapter without one"
+        else:
+            remedy = "the device's own reply delay, or what is between it and this computer: a gateway, a radio link"
+        yield warning(name, late, remedy)
     if unit.profile.blocks[0].period_s == 0.0 and rate < READINGS_S:
         yield warning(
             name, f"{text}: less than {READINGS_S:g} readings/s",

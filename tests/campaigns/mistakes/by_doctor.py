@@ -103,6 +103,10 @@ def _no_supply(rig: WheelRig, _seed: int) -> None:
         drive.power(False)
 
 
+def _local(rig: WheelRig, seed: int) -> None:
+    rig.axes[("wheel", "belt", "press")[seed % 3]].local = True
+
+
 def _guard(rig: WheelRig, _seed: int) -> None:
     io = rig.axes["press"].io
     assert io is not None
@@ -231,5 +235,6 @@ MISTAKES: tuple[Mistake, ...] = (
     _named(
         "no such serial port", r"line load_cell: there is no serial port", computer=FakeComputer(ports={}, latency={})
     ),
+    _named("drive in local mode", r"(wheel|belt|press): in local mode", hands=_local),
     _named("full disk", r"run folder: the disk is full", computer=FakeComputer(free=1_000_000)),
 )
