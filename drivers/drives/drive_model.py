@@ -33,12 +33,12 @@ class Substitute:
     """Value of the object ``per_mille_of`` on the simulated drive."""
 
     def value(self, standard: int, reference: int) -> int:
-        """Return the value to write for a value of the standard object."""
+        """Convert a value of the standard object to the value to write to the maker's object."""
         scale = self.factor if self.per_mille_of is None else self.factor * reference / 1000.0
         return round(standard * scale)
 
     def standard(self, value: int, reference: int) -> int:
-        """Return the standard object's value for a value of the maker's object."""
+        """Convert a value of the maker's object to the standard object's value."""
         scale = self.factor if self.per_mille_of is None else self.factor * reference / 1000.0
         return round(value / scale)
 

@@ -57,7 +57,7 @@ logging.getLogger("pymodbus").addHandler(logging.NullHandler())
 
 
 class _Replies(DecodePDU):
-    """Decoder of the possible replies only: so garbage is seldom decoded as the head of a frame."""
+    """Decoder of the possible replies only, so that garbage is seldom decoded as the head of a frame."""
 
     pdu_table = {  # noqa: RUF012 - the library's own class attribute, narrowed
         READ_HOLDING: (ReadHoldingRegistersRequest, ReadHoldingRegistersResponse),

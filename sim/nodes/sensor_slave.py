@@ -234,5 +234,5 @@ class IrSlave(SensorSlave):
 
 
 def _most_counts(signal: Signal) -> float:
-    """Return the counts at the end of a load cell's channel; the limit of 32 bits if the profile states none."""
+    """Return the counts at a load cell channel's full scale; the greatest 32-bit value if the profile states none."""
     return float(round(signal.greatest / signal.scale)) if signal.greatest < inf else LIMITS["i32"][1]

@@ -110,11 +110,11 @@ class Arming(Generic[DevicesT, RigT]):
         return f"{CAN_SILENT.name}: {CAN_SILENT.cause}"
 
     def lift(self) -> Lifting:
-        """Begin to prove that nothing is loaded."""
+        """Return the proof that nothing is loaded; it begins with its first step."""
         return Lifting()
 
     def prove(self) -> WatchdogProof:
-        """Begin to prove that the drives follow commands and stop."""
+        """Return the proof that the drives follow commands and stop; it begins with its first step."""
         raise NotImplementedError
 
 

@@ -191,7 +191,7 @@ class _Observers:
 
 
 def _on_doors(config: Rig, doors: Doors) -> Rig:
-    """Return the rig as its doors can serve it: a pseudo-terminal has no parity bit, so the rig's lines have none."""
+    """Return the rig with no parity on its lines if they are pseudo-terminals, which have no parity bit."""
     if doors.lines != "rtu":
         return config
     return replace(config, lines={name: replace(line, parity="N") for name, line in config.lines.items()})

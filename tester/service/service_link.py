@@ -185,7 +185,10 @@ class OwnerEnd:
 
 
 class GatewayEnd:
-    """The gateway's end. At most ``LINES_AT_ONCE`` lines are unread by the owner, and few more can wait here."""
+    """The gateway's end. It sends while fewer than ``LINES_AT_ONCE`` of its lines are unread by the owner.
+
+    Further messages wait here: each client's latest STOP, the latest presence, and a few orders of each client.
+    """
 
     def __init__(self, write: Callable[[bytes], None]) -> None:
         """``write`` sends a line to the owner."""

@@ -36,7 +36,7 @@ class StopWish:
 
 
 class StopLane:
-    """Keeps the door open, and keeps each STOP until it is carried out."""
+    """Keeps the process that accepts STOP running, and stores each STOP until it is carried out."""
 
     def __init__(self) -> None:
         """Open nothing yet."""

@@ -39,8 +39,8 @@ class Denominator:
     """Scatter that is independent between conditions: standard deviations of ln mu, root mean squares over the
     conditions.
 
-    ``repeats`` of means of repeats, ``own`` of further terms that differ between conditions, ``between`` of the scatter
-    of conditions beyond any smooth law; ``df``: degrees of freedom of all together.
+    ``repeats``: scatter of the means of repeats. ``own``: further terms that differ between conditions. ``between``:
+    scatter of conditions about any smooth law. ``df``: degrees of freedom of the three together.
     """
 
     repeats: float
@@ -56,7 +56,7 @@ class Denominator:
 
 
 def denominator_of(points: Sequence[FitPoint]) -> Denominator | None:
-    """Return the independent scatter of conditions; None where nothing is known of their repeats."""
+    """Return the scatter that is independent between conditions; None if no condition has a known repeatability."""
     known = [point for point in points if isfinite(point.type_a) and point.type_a > 0.0]
     if not known:
         return None

@@ -41,7 +41,7 @@ WIDE_K: Final = 40.0
 
 
 class Verdict(StrEnum):
-    """Whether a set is one curve."""
+    """Whether the conditions of a set lie on one master curve."""
 
     COLLAPSES = "collapses"
     DOES_NOT = "does not collapse"

@@ -29,7 +29,7 @@ class LoadedSurface:
     """Notes on the reading of a scan."""
 
     def holds(self) -> str:
-        """Return the source of its heights, in words."""
+        """Return the source of the surface's heights, in words."""
         parts: list[str] = []
         if self.model.spectrum is not None:
             s = self.model.spectrum

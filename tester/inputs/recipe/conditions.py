@@ -68,7 +68,7 @@ class MergedConditions(NamedTuple):
     """Setpoints without a compound."""
 
     def sentence(self) -> str:
-        """Return the merged conditions, and the key that measures them again, for people."""
+        """Return a sentence that lists the merged conditions and names the recipe key that measures them again."""
         count = len(self.conditions)
         what, them = ("1 condition", "it") if count == 1 else (f"{count} conditions", "them")
         listed = [condition_words(condition, compound=False) for condition in self.conditions[:MERGED_SHOWN]]
