@@ -83,6 +83,9 @@ class LineScan:
         self._quiet_s = -inf
         self._buffer = b""
         self._transaction = 0
+        self._frame = b""
+        self.hears_itself = False
+        """Whether the adapter returns what it sends: the request of a read is never an answer to it."""
         self.answer: LineAnswer | None = None
 
     def ask(self, question: RegisterQuestion, timeout_s: float) -> None:
@@ -118,7 +121,7 @@ class LineScan:
             self._transaction = self._transaction % 0xFFFF + 1
             frame = self._transaction.to_bytes(2, "big") + frame[2:]
         port.write(frame, now)
-        self._sent_s = now
+        self._frame, self._sent_s = frame, now
         self._request_s = len(frame) * self._character_s
 
     def _reply_s(self, question: RegisterQuestion) -> float:
@@ -126,6 +129,9 @@ class LineScan:
 
     def _examine(self, question: RegisterQuestion, t: float) -> None:
         """Find the answer in the bytes received; the rest is kept, and reported as noise when the time is over."""
+        if self.framing == "rtu" and self._buffer.startswith(self._frame):
+            self.hears_itself = True
+            self._buffer = self._buffer.removeprefix(self._frame)
         at, data = 0, self._buffer
         while at < len(data):
             used, unit_id, transaction, pdu = codec.next_frame(self.framing, data[at:])

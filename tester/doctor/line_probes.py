@@ -32,6 +32,8 @@ def lines(e: Examination) -> Iterator[Finding]:
         config = e.rig.lines[name]
         settings = f"{config.baud} baud, parity {config.parity}" if config.framing == "rtu" else config.port
         subject = f"line {name}"
+        if line.hears_itself:
+            yield note(subject, "the adapter hears itself (RS-485 echo); its echo is removed here and in a run")
         if line.lost:
             yield fault(subject, line.lost, "the adapter, its name in the rig file, whether another program uses it")
         elif line.answers_at is not None:

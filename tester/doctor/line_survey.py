@@ -80,6 +80,8 @@ class LineSurvey:
     """Answers of units that are not in the rig file, by unit number."""
     looks_like: dict[int, str] = field(default_factory=dict[int, str])
     """For each of these that has the registers of a device of the rig file, that device."""
+    hears_itself: bool = False
+    """Whether the adapter returns every request that it sends."""
     answers_at: LineConfig | None = None
     """The settings at which a device answers, if they are not the rig file's."""
 
@@ -103,6 +105,7 @@ def survey_line(rig: Rig, name: str, wires: Wires, *, everybody: bool = True) ->
                 if answer is not None and answer.there:
                     survey.others[other] = answer
             _compare(scan, port, wires, survey)
+        survey.hears_itself = scan.hears_itself
     except BusLost as lost:
         survey.lost = str(lost)
         return survey

@@ -114,3 +114,20 @@ def test_over_tcp_the_transaction_number_tells_the_answer() -> None:
     scan.feed([(0.02, bytes.fromhex("00 01 00 00 00 05 01 03 02 46 58"))], 0.02)
     assert scan.answer is not None
     assert scan.answer.data == b"\x46\x58"
+
+
+@pytest.mark.parametrize("size", range(1, 9))
+def test_the_echo_of_an_adapter_that_hears_itself_is_removed_in_any_pieces(size: int) -> None:
+    _, scan = asked()
+    echo_and_answer = REQUEST + GOOD
+    for at in range(0, len(echo_and_answer), size):
+        scan.feed([(0.02, echo_and_answer[at : at + size])], 0.02)
+    assert scan.hears_itself
+    assert scan.answer is not None and scan.answer.data == b"\x46\x58"
+
+
+def test_an_echo_alone_is_no_answer() -> None:
+    line, scan = asked()
+    scan.feed([(0.02, REQUEST)], 0.02)
+    scan.service(line, 1.0)
+    assert scan.answer is not None and not scan.answer.there and scan.answer.noise == b""
