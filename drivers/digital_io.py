@@ -46,7 +46,7 @@ class DigitalWiring:
         return 0xFFFF_0000 if self == USUAL_WIRING else 1 << self.request
 
     def from_drive(self, word: int) -> int:
-        """Return the drive's input word in the program's arrangement."""
+        """Return a drive's input word with its bits in the program's order."""
         if self == USUAL_WIRING:
             return word
         found = (word >> self.safety_chain & 1) * SAFETY_CHAIN | (word >> self.guard & 1) * GUARD
@@ -59,14 +59,14 @@ class DigitalWiring:
         return int(bool(outputs & REQUEST)) << self.request
 
     def inputs_shown(self, inputs: int) -> int:
-        """Return a simulated drive's input word for ``inputs`` in the program's arrangement."""
+        """Return a simulated drive's input word: ``inputs``, in the program's order, moved to the drive's bits."""
         if self == USUAL_WIRING:
             return inputs
         found = bool(inputs & SAFETY_CHAIN) << self.safety_chain | bool(inputs & GUARD) << self.guard
         return found | (bool(inputs & CONTACTOR) ^ self.contactor_inverted) << self.contactor
 
     def outputs_meant(self, word: int) -> int:
-        """Return a simulated drive's output word in the program's arrangement."""
+        """Return an output word received by a simulated drive, with its bits in the program's order."""
         if self == USUAL_WIRING:
             return word
         return (word >> self.request & 1) * REQUEST

@@ -1,8 +1,8 @@
-"""A law of friction as a table, because a simulated rig needs its value in every step, within microseconds.
+"""A friction law as a table, because a simulated rig needs the law's value in every step, within microseconds.
 
 ln mu, and adhesion's share of mu, are cubic B-splines over ln v, -1 / (T + 150 degC) and the root of the load, each in
-equal steps. A rubber's logarithmic shift of time by temperature is nearly linear in the second; under light
-loads friction hardly depends on the load.
+equal steps. Temperature enters as -1 / (T + 150 degC), because the logarithm of a rubber's WLF shift is nearly linear
+in it. Load enters as its root, because friction hardly depends on a light load.
 """
 
 from __future__ import annotations

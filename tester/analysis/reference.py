@@ -304,7 +304,10 @@ class ReferenceWatch:
     charts: tuple[ControlChart, ...]
 
     def lines(self, worn: str) -> Iterator[str]:
-        """Yield the result, for people; ``worn``: the kind's word for a piece."""
+        """Yield lines of text: the counterface's drift, then each compound's control limits and the references outside.
+
+        ``worn``: the kind's word for the part that wears.
+        """
         if self.drift is not None:
             yield self.drift.sentence(worn)
         else:

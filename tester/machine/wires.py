@@ -142,7 +142,7 @@ STALE_CAN_S: Final = Parameter(
 def drive_data_allowed_s(v: Any) -> float:
     """Return the greatest permitted age of the drives' data, s."""
     # Drives answer a scan's SYNC. The data seen in a scan answer the scan before, or, where that answer was lost, the
-    # one before that. So they are older by the lateness of these two scans ("scan late" judges that).
+    # one before that. So the lateness of these two scans adds to the data's age ("scan late" limits it).
     p = v.parameters
     late_s = v.late_before_s + (v.late_s if v.late_s > 0.0 else 0.0)
     allowed = p[STALE_CAN_SCANS] * v.scan_s + late_s

@@ -117,7 +117,7 @@ def trend_chart(rung: Sequence[Rung], ages: Sequence[float]) -> Chart:
 
 
 def _half(ring: RingRun) -> float:
-    """Return half the length of the bar of a run's share, errors in 1000 requests."""
+    """Return half the width of the confidence interval of a run's share of errors, in errors per 1000 requests."""
     share = ring.errors / ring.requests
     half = 1e3 * COVERAGE * sqrt(share * (1.0 - share) / ring.requests)
     return half if isfinite(half) else 0.0

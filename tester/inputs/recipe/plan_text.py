@@ -56,10 +56,10 @@ def json_chunks(
     merged: Sequence[MergedConditions] = (),
     uncertainty: Mapping[str, object] | None = None,
 ) -> Iterator[str]:
-    """Yield the plan as JSON text, piece by piece, a step a line: a plan may have hundreds of thousands.
+    """Yield the plan as JSON text in pieces, one line per step, because a plan may have hundreds of thousands of steps.
 
-    ``merged``: conditions that are steps of the plan once, and occur in several grids of its recipe. ``uncertainty``:
-    the prediction for it (``tester.inputs.recipe.foreseen``).
+    ``merged``: conditions that several grids of the recipe list and the plan measures once. ``uncertainty``: the
+    plan's predicted uncertainty (``tester.inputs.recipe.foreseen``).
     """
     head: dict[str, object] = {
         "recipe": plan.name,

@@ -95,7 +95,7 @@ class BeltSlips(Effect):
         self.share = 0.01 * percent
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Begin to slip."""
+        """Let the belt slip on its roller."""
         rig = scene.machine(WheelRig)
         rig.belt_slip = self.share
         sensor = rig.plant.belt_speed
@@ -117,7 +117,7 @@ class BeltTorn(Effect):
     every_step = True
 
     def begin(self, scene: Scene, now: float) -> None:
-        """Tear."""
+        """Tear the belt: the contact loses its grip."""
         plant = scene.machine(WheelRig).plant
         self._factor = plant.belt_speed.factor
         plant.set_grip(0.0)
