@@ -44,7 +44,10 @@ def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[A
             data_old,
             lambda v: Compared(v.readings.now_s - min(heard_s(v.readings)), drive_data_allowed_s(v), "s"),
         ),
-        applies=lambda v: v.demand.enabled and v.readings.drives_enabled,
+        # A drive that is to come into operation answers every scan from the first, so its data are soon fresh.
+        applies=lambda v: v.demand.enabled and (
+            v.readings.drives_enabled or v.readings.now_s - v.wanted_since_s > v.parameters[STALE_CAN_S]
+        ),
         parameters=(STALE_CAN_SCANS, STALE_CAN_S),
         reset=ACK,
     )

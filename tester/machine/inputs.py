@@ -57,6 +57,8 @@ class ScanInputs:
     """Every drive has been in operation since the drives were last demanded, and something commands them. The kind
     writes it in every scan.
     """
+    wanted_since_s: float = inf
+    """Time since when something commands the drives; inf while nothing does. The kind writes it in every scan."""
     attended: bool = False
     """A person was asked to come near; the person's effect on sensors is no fault."""
 
@@ -88,10 +90,14 @@ class ScanInputs:
         self.resting = mode is _IDLE or mode is _LATCHED or mode is _ARMED
 
     def note_drives(self, mode: Mode, demand: BaseDemand, readings: BaseReadings) -> bool:
-        """Update ``confirmed`` and ``unpowered``; return whether all drives have just come into operation."""
+        """Update what follows from the drives; return whether all of them have just come into operation."""
         working, before = mode is _RUN or mode is _HOLD, self.confirmed
         commanded = (working or mode is _COOLDOWN) and demand.enabled
         self.confirmed = commanded and (before or readings.drives_enabled)
+        if not commanded:
+            self.wanted_since_s = inf
+        elif self.wanted_since_s == inf:
+            self.wanted_since_s = readings.now_s
         if self.confirmed or not working:
             self.unpowered = False
         elif not demand.enabled and readings.drives_disabled:
