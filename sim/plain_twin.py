@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
-from sim.faults.common import plain_language
+from sim.faults.common import plain_language, with_sensors
 from sim.faults.kinds import FaultKind
 from sim.faults.language import FaultLanguage
 from sim.machines import SimulatedMachine
@@ -102,6 +102,7 @@ def plain_machine(
         return PlainTwin(spec, plant(parameters, seed), shows, can_wire)
 
     def language(spec: RigSpec) -> FaultLanguage:
-        return plain_language(spec.axes, [title_of(name) for name in shows if name in spec.devices], *faults)
+        sensors = [title_of(name) for name in shows if name in spec.devices]
+        return with_sensors(plain_language(spec.axes, sensors, *faults), spec)
 
     return SimulatedMachine(world, language, log_columns, log_row, log_decimals)

@@ -66,6 +66,8 @@ class RigSpec:
     """Devices by the names in the rig file's section ``devices``."""
     nodes: tuple[NodeConfig, ...] = ()
     """Further nodes on the CAN bus, which measure."""
+    further: tuple[str, ...] = ()
+    """Sensors besides the machine's own devices, by the same names."""
 
 
 class SimRig:
@@ -100,6 +102,12 @@ class SimRig:
     def drive(self, name: str, config: AxisConfig) -> Cia402Slave:
         """Return the drive of an axis; by default it turns without a load."""
         return Cia402Slave(config, self.can, serial_number=config.node_id)
+
+    def slave(self, title: str) -> ModbusSlave:
+        """Return a device or a further sensor by its name for people; raises KeyError."""
+        if title in self.devices:
+            return self.devices[title]
+        return {title_of(name): slave for name, slave in self.sensors.items()}[title]
 
     def own_devices(self, spec: RigSpec) -> dict[str, ModbusSlave]:
         """Return the machine's own devices by their keys in the wiring."""

@@ -13,9 +13,10 @@ from functools import partial
 from typing import Final
 
 from drivers.canopen import objects as o
-from sim.faults import cabinet, can, drives, modbus
+from sim.faults import cabinet, can, drives, modbus, sensors
 from sim.faults.kinds import Expected, Exposure, FaultKind
 from sim.faults.language import FaultLanguage
+from sim.rig import DeviceSpec, RigSpec, title_of
 
 OVERCURRENT: Final = 0x2310
 SCAN_S: Final = 0.05
@@ -88,6 +89,26 @@ def device_rows(
     by_phrase = {row.phrase: row for row in known}
     for row in rows_of(device, (by_phrase[phrase] for phrase in which or by_phrase)):
         yield replace(row, note=row.note or note)
+
+
+_OWN_ROWS: Final = "nothing trips without a row of a laboratory's own that looks at it"
+
+
+def further_rows(sensor: str, device: DeviceSpec) -> Iterator[FaultKind]:
+    """Yield the faults of a further sensor; ``sensor``: its name for people."""
+    for row in device_rows(sensor, ALWAYS, 0.0):
+        yield replace(row, reaction=MAY, note=_OWN_ROWS)
+    for signal in device.profile.blocks[0].signals:
+        if signal.name != "status":
+            make = partial(sensors.Shows, sensor, signal.name)
+            yield FaultKind(f"{sensor} shows {signal.name}", make, ALWAYS, MAY, unit="", value=signal.greatest,
+                            note=_OWN_ROWS)  # fmt: skip
+
+
+def with_sensors(language: FaultLanguage, spec: RigSpec) -> FaultLanguage:
+    """Return a machine's language with the faults of a wiring's further sensors."""
+    rows = (row for name in spec.further for row in further_rows(title_of(name), spec.devices[name]))
+    return replace(language, catalogue={row.phrase: row for row in rows} | dict(language.catalogue))
 
 
 BUS: Final = (

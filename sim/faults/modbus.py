@@ -12,7 +12,7 @@ REBOOT_S = 2.0
 
 def slave_of(scene: Scene, device: str) -> ModbusSlave:
     """Return the simulated device of this name."""
-    return scene.rig.devices[device]
+    return scene.rig.slave(device)
 
 
 def line_of(scene: Scene, device: str) -> ModbusWire:

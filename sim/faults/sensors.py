@@ -11,7 +11,7 @@ from typing import Final, cast
 
 from sim.faults.scene import Effect, Scene, switched
 from sim.nodes.controller_slave import ControllerSlave, TemperatureSource
-from sim.nodes.sensor_slave import FORCES, CellSlave, ForceSource, IrSlave, SensorSlave, SurfaceSource
+from sim.nodes.sensor_slave import FORCES, CellSlave, ForceSource, IrSlave, Quantity, SensorSlave, SurfaceSource
 from sim.noise import NormalStream
 
 SLOW: Final = ("lag", "delay")
@@ -21,6 +21,26 @@ SEED: Final = 402
 """Key of the random numbers of noisy sensors: the same in every run."""
 _OFF_SCALE_N: Final = 1e5
 """A force beyond the range of every load cell here, N: the transmitter shows the end of its range."""
+
+
+class Shows(Effect):
+    """One channel of a further sensor shows a number, whatever is there."""
+
+    def __init__(self, sensor: str, channel: str, value: float) -> None:
+        """Take the sensor's name for people, the channel's in its profile, and the number in the channel's unit."""
+        self._sensor, self._channel, self._value = sensor, channel, value
+        self._sound: Quantity | float = nan
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Replace the channel's source."""
+        self._sound = self._slave(scene).show(self._channel, self._value)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Put the source back."""
+        self._slave(scene).show(self._channel, self._sound)
+
+    def _slave(self, scene: Scene) -> SensorSlave:
+        return cast("SensorSlave", scene.rig.slave(self._sensor))
 
 
 class Slow:

@@ -88,6 +88,12 @@ class SensorSlave(ModbusSlave):
         self._shown = bytes(2 * block.count)
         self.blocks = {(block.address, block.count): 0}
 
+    def show(self, channel: str, source: Quantity | float) -> Quantity | float:
+        """Let a channel of the first read show another source; return the one before."""
+        before = self._quantities[channel]
+        self._quantities[channel] = source
+        return before
+
     def measure(self, t: float) -> list[float]:
         """Return the values of the first read's signals at ``t`` s, in their units; any value for the status."""
         return [

@@ -14,6 +14,7 @@ from tester.base.source import InvalidSource, Problem
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import DeviceConfig, Rig
+from tester.inputs.rig.further_sensors import further_sensors
 from tester.inputs.rig.profiles import profile_of
 from tester.machine.rig_ports import Ports
 from tester.run.bus_log import BusLog
@@ -56,6 +57,7 @@ def spec_of(rig: Rig) -> RigSpec:
         lines={name: LineSpec(line.baud, line.parity, held_s) for name, line in rig.lines.items()},
         devices={name: _device(config) for name, config in rig.devices.items()},
         nodes=tuple(rig.can.nodes.values()),
+        further=tuple(further_sensors(rig)),
     )
 
 

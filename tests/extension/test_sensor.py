@@ -11,6 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim import machines
+from sim.faults.common import SILENCES
+from sim.machines.wheel_on_belt.faults.catalogue import CATALOGUE
 from sim.nodes.sensor_slave import SensorSlave
 from tester.base.screen import Value
 from tester.cli.main import invoke
@@ -18,6 +21,7 @@ from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds import load_rig, packaged_text
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.run.kind_lookup import served_kind
+from tester.run.simulated import spec_of
 from tester.service.values import ValueView, unknown_values
 from tester.store.run_reader import RunReader
 from tester.tui.playback import load
@@ -96,6 +100,33 @@ def test_a_run_records_exports_and_replays_them(folder: Path, capfd: pytest.Capt
     assert invoke(["verify", str(run)]) == 0
     replay = load(run)
     assert [spec.label for spec in replay.specs][-2:] == ["Humidity", "Air"]
+
+
+def test_its_faults_are_those_of_a_script_by_its_key(folder: Path) -> None:
+    script = '["t=10 s: hygrometer shows humidity_percent 80 for 5 s", "t=20 s: hygrometer silent for 5 s"]'
+    faulty = ["--set", f"sim.faults={script}", "--set", "sim.noise=0"]
+    assert invoke(["run", "short.yaml", "--rig", "my-rig.yaml", "--yes", *faulty]) == 0
+    (run,) = (path for path in (folder / "runs").iterdir() if (path / "run.db").exists())
+    with closing(RunReader(run)) as reader:
+        blocks = [block.columns for block in reader.sample_blocks()]
+    time_s, humidity = (np.concatenate([block[name] for block in blocks]) for name in ("time_s", "humidity_percent"))
+
+    def during(begin_s: float, end_s: float) -> np.ndarray:
+        return humidity[(time_s > begin_s) & (time_s < end_s)]
+
+    assert during(12.5, 15.0) == pytest.approx(80.0, abs=0.11)
+    assert during(17.5, 20.0) == pytest.approx(45.5, abs=0.11)
+    assert during(24.0, 25.0).size and np.isnan(during(24.0, 25.0)).all()
+    assert during(30.0, 40.0) == pytest.approx(45.5, abs=0.11)
+
+
+def test_a_further_sensor_does_not_replace_a_fault_of_the_machine() -> None:
+    rig = load_rig("my-rig.yaml")
+    found = machines.find("wheel_on_belt").language(spec_of(rig)).catalogue
+    assert {name for name in found if "hygrometer" in name} == {
+        f"hygrometer {fault}" for fault in (*SILENCES, "shows humidity_percent", "shows air_c")
+    }
+    assert all(found[name] is row for name, row in CATALOGUE.items())
 
 
 def test_its_values_stand_on_the_screen_with_unit_and_range() -> None:

@@ -23,9 +23,10 @@ def log_row(rig: TrackRig) -> tuple[float, ...]:
 
 
 def _language(spec: RigSpec) -> FaultLanguage:
+    from sim.faults.common import with_sensors
     from sim.machines.specimen_on_track.faults import LANGUAGE
 
-    return LANGUAGE
+    return with_sensors(LANGUAGE, spec)
 
 
 MACHINE = SimulatedMachine(TrackRig, _language, LOG_COLUMNS, log_row, LOG_DECIMALS)

@@ -29,9 +29,10 @@ def log_row(rig: WheelRig) -> tuple[float, ...]:
 
 
 def _language(spec: RigSpec) -> FaultLanguage:
+    from sim.faults.common import with_sensors
     from sim.machines.wheel_on_belt.faults import LANGUAGE
 
-    return LANGUAGE
+    return with_sensors(LANGUAGE, spec)
 
 
 MACHINE = SimulatedMachine(WheelRig, _language, LOG_COLUMNS, log_row, LOG_DECIMALS)
