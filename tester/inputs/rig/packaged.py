@@ -170,8 +170,8 @@ HEADER = """\
 #
 # Every number below is the simulated rig's. Go through all of them before the first run: [A] marks an engineering
 # assumption, the axes' increments and the devices' profiles are those of your drives and transmitters. Limits and
-# interlocks are operational; what must hold when this software fails is up to the drives, the jacket controller's own
-# limit and the machine's hard-wired emergency stop.
+# interlocks are operational; what must hold when this software fails is up to the drives, the limits that devices have
+# of their own and the machine's hard-wired emergency stop.
 #
 # A number may stand bare: it then counts in the unit that the comment names. With a unit (1100 mm/s) it is converted.
 # An unknown key is an error. `tester rig show --rig THIS_FILE` checks the file and prints it with everything resolved.
