@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from math import nan
+from typing import ClassVar
 
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.plain_recipe import Mount, PlainPart
@@ -38,6 +39,8 @@ class PlainRuns(KindRun):
 
     part: PlainPart
     table: InterlockTable
+    compound: ClassVar[str] = "1#"
+    """Of a specimen that no recipe mounts: in manual mode, and on a twin in a process of its own."""
 
     def readings(self, rig: PlainRig) -> PlainReadings:
         """Return the kind's readings before anything has been read."""
@@ -69,5 +72,5 @@ class PlainRuns(KindRun):
         return run_of(setup.plan, devices, control, ctx, arming, procedures, quantities, own.arming.listen_s)
 
     def mount(self, attendant: PlainAttendant, compound: str) -> None:
-        """Mount a new specimen."""
-        attendant.install(0, compound)
+        """Mount a new specimen; "" is the kind's ``compound``."""
+        attendant.install(0, compound or self.compound)

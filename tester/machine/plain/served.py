@@ -61,14 +61,11 @@ class PlainServed(ServedKind):
         quantities: Quantities,
         drives: Mapping[str, str],
         plots: tuple[PlotView, ...] = (),
-        compound: str = "1#",
     ) -> None:
-        """``drives``: each drive's name for people; ``plots``: trends to draw; ``compound``: of a specimen in manual
-        mode.
-        """
+        """``drives``: each drive's name for people; ``plots``: trends to draw."""
         self.runs = runs
         self.quantities = quantities
-        self.compound = compound
+        self.compound = runs.compound
         step = f"a {STEPS_TO_TOP}th of its greatest speed a step"
         self.machine = MachineView(
             kind,

@@ -116,6 +116,13 @@ def test_a_drive_that_cannot_show_it_is_told() -> None:
     assert "the left drive did not stop with EMCY 0x8130" in bench.run.reason
 
 
+def test_a_twin_of_its_own_has_the_kinds_rubber_unless_another_is_named() -> None:
+    bench, runs = Bench(), BenchRuns()
+    runs.mount(bench.twin, "")
+    runs.mount(bench.twin, "B")
+    assert bench.plant.installed == [(0, "1#"), (0, "B")]
+
+
 def test_a_person_gives_drives_speeds_in_bounded_steps() -> None:
     rig = bench_rig()
     bench = Bench()
