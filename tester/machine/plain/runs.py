@@ -41,6 +41,8 @@ class PlainRuns(KindRun):
     table: InterlockTable
     compound: ClassVar[str] = "1#"
     """Of a specimen that no recipe mounts: in manual mode, and on a twin in a process of its own."""
+    context: ClassVar[type[PlainContext]] = PlainContext
+    """A kind with gates of its own extends it."""
 
     def readings(self, rig: PlainRig) -> PlainReadings:
         """Return the kind's readings before anything has been read."""
@@ -65,7 +67,7 @@ class PlainRuns(KindRun):
         readings = self.readings(own)
         readings.channels = [nan] * len(quantities.further)
         control = PlainControl(own, self.table, readings)
-        ctx = PlainContext(own, readings, setup.prompts, setup.recorder, setup.attendant, quantities, devices.own)
+        ctx = self.context(own, readings, setup.prompts, setup.recorder, setup.attendant, quantities, devices.own)
         results = StoredResults[PlainContext](setup.recorder, point=setup.point)
         procedures = PlainProcedures(self.part, results, self.speeds)
         arming = PlainArming(devices, own)

@@ -154,7 +154,8 @@ class Bench:
     """A run on the wires, ticked by hand."""
 
     def __init__(
-        self, plan: Plan | None = None, rig: BenchRig | None = None, can_wire: type[CanWire] = CanWire
+        self, plan: Plan | None = None, rig: BenchRig | None = None, can_wire: type[CanWire] = CanWire,
+        runs: BenchRuns | None = None,
     ) -> None:
         """Nothing is sent yet."""
         self.rig = rig or bench_rig()
@@ -162,7 +163,7 @@ class Bench:
         assert isinstance(twin, PlainTwin) and isinstance(twin.plant, BenchPlant)
         self.twin, self.plant = twin, twin.plant
         self.prompts = Prompts(automatic=True)
-        self.run: Run = BenchRuns().build(RunSetup(
+        self.run: Run = (runs or BenchRuns()).build(RunSetup(
             self.rig, plan or bench_plan(), Ports(twin.can, dict(twin.lines)), twin, NullRecorder(), self.prompts
         ))  # fmt: skip
         self.now = 0.0

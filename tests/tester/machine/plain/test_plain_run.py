@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import pytest
 
 from sim import machines
@@ -9,6 +12,7 @@ from sim.faults import FaultScript
 from sim.faults.can import FaultyCanWire
 from tester.base.source import InvalidSource
 from tester.machine.manual import ManualExecutor
+from tester.machine.plain.context import PlainContext
 from tester.machine.plain.served import PlainServed, SpeedHand
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Outcome
@@ -114,6 +118,28 @@ def test_a_drive_that_cannot_show_it_is_told() -> None:
     bench = Bench(rig=bench_rig(text)).until(lambda b: b.run.finished, 30.0)
     assert bench.run.outcome is Outcome.UNREACHABLE
     assert "the left drive did not stop with EMCY 0x8130" in bench.run.reason
+
+
+class GatedContext(PlainContext):
+    """Samples count in the first half of each second."""
+
+    gate_bits: ClassVar[Mapping[str, int]] = {"speed": 1, "half": 2}
+
+    def closed_gates(self) -> int:
+        return super().closed_gates() | (2 if self.now % 1.0 >= 0.5 else 0)
+
+
+class GatedRuns(BenchRuns):
+    context: ClassVar[type[PlainContext]] = GatedContext
+
+
+def test_a_kind_adds_a_gate_of_its_own() -> None:
+    bench = Bench(runs=GatedRuns()).sliding()
+    panel = PlainServed("bench", GatedRuns(), BenchPart.axes, QUANTITIES, {"left": "Left"}).panel(bench.run.engine)
+    bench.until(lambda b: b.ctx.burst > 0 and 0.1 < b.ctx.now % 1.0 < 0.4)
+    assert [(gate.key, gate.open) for gate in panel.gates()] == [("speed", True), ("half", True)]
+    bench.until(lambda b: b.ctx.now % 1.0 > 0.6)
+    assert [(gate.key, gate.open) for gate in panel.gates()] == [("speed", True), ("half", False)]
 
 
 def test_a_twin_of_its_own_has_the_kinds_rubber_unless_another_is_named() -> None:
