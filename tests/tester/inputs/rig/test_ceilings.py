@@ -38,8 +38,9 @@ def refused(path: Path | str, *overrides: str, accept_risk: str = "") -> str:
 def machine(tmp_path: Path) -> Path:
     """Return the file of a real rig, whose drives are not the simulator's."""
     text = packaged_text().replace("simulated: true", "simulated: false")
-    for before, after in (("interface: sim ", "interface: socketcan "), ("port: sim", "port: /dev/ttyUSB0")):
-        text = text.replace(before, after)
+    text = text.replace("interface: sim ", "interface: socketcan ")
+    for port in range(text.count("port: sim")):
+        text = text.replace("port: sim", f"port: /dev/ttyUSB{port}", 1)
     path = tmp_path / "rig.yaml"
     path.write_text(text.replace(f"0x{VENDOR_ID:08X}", "0x00000123"), encoding="utf-8")
     return path
