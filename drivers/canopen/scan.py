@@ -44,7 +44,7 @@ class ObjectAnswer:
 
     @property
     def silent(self) -> bool:
-        """Whether nothing came in time."""
+        """Whether no reply came in time."""
         return self.code == TIMED_OUT
 
     @property

@@ -214,7 +214,7 @@ class ModbusLink(LineType):
         return self._active is not None and self.deadline == self._give_up_s
 
     def _wait(self, now: float) -> None:
-        """Set the deadline while a reply is awaited: if others wait, it is fetched when it should have arrived."""
+        """Set the deadline for an awaited reply: the time-out, or, if requests wait, the reply's expected arrival."""
         deadline = self._give_up_s
         active = self._active
         if active is not None and self._backlog_s < deadline:

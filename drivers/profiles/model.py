@@ -60,9 +60,9 @@ class Signal:
         return SIZES[self.type]
 
     def words(self, value: float, word_order: WordOrder) -> tuple[int, ...]:
-        """Return the registers that hold ``value``, in the order of sending: the nearest number of the type.
+        """Return the registers for ``value``, in the order of sending; the value is rounded to the register's type.
 
-        Raises ValueError unless it is finite, and for more than an f32 can hold.
+        Raises ValueError for a value that is not finite, or greater than an f32 can hold.
         """
         if not isfinite(value):
             raise ValueError(f"{self.name} must be a finite number, not {value}")

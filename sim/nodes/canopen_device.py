@@ -278,7 +278,7 @@ class CanopenDevice:
         self.emergencies.add(code, t)
 
     def recovered(self, code: int, t: float) -> None:
-        """Report that an error has gone."""
+        """Report that an error no longer exists."""
         self.emergencies.remove(code, t)
 
     def deadline_missed(self, t: float) -> None:

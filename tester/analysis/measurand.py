@@ -138,10 +138,11 @@ def with_budget(result: ConditionResult, by: Surroundings) -> ConditionResult:
 def with_budget_of_replicates(
     result: ConditionResult, replicates: Sequence[ConditionResult], by: Surroundings
 ) -> ConditionResult:
-    """Return the result that represents replicates, each with its budget, with budgets of its own.
+    """Return the combined result of replicates, with budgets made from the replicates' budgets.
 
-    For the measured pieces: their mean, with the repeatability of each. For the compound: with the scatter between
-    them, combined with the stated one at ``STATED_DF`` degrees of freedom; that scatter includes the repeats.
+    The budget for the mean of the measured pieces has the repeatability of each piece. The budget for the compound has
+    the scatter between pieces instead, which includes that of the repeats. This scatter is combined with the stated
+    one, which counts as known to ``STATED_DF`` degrees of freedom.
     """
     kept = [replicate for replicate in replicates if replicate.ok and replicate.budget is not NO_BUDGET]
     mu, n = result.mu_resultant, len(kept)

@@ -150,7 +150,7 @@ class RingRun:
         return 1e3 * self.errors / self.requests if self.requests else nan
 
     def by_speed(self) -> list[tuple[str, int, int]]:
-        """Return for each class of speed: words, requests, errors."""
+        """Return a row for each class of speed: its name, requests, errors."""
         return [
             (
                 speed_words(place),

@@ -46,7 +46,7 @@ class UnitWatch:
 
 @dataclass(slots=True)
 class RigWatch:
-    """The results of a watch."""
+    """What the doctor found while it listened to the buses and lines of a rig."""
 
     seconds: float = 0.0
     can: Listened = field(default_factory=Listened)

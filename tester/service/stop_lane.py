@@ -91,7 +91,7 @@ class StopLane:
             self._listen(self._start(again))
 
     def close(self) -> None:
-        """Close the door."""
+        """Close the entrance for STOP and end its process."""
         self._settings = None
         if self._link is not None:
             with suppress(OSError):

@@ -1,1 +1,1 @@
-"""The operator's screen: a client of the service that owns nothing. Closing or losing it does not affect a run."""
+"""The operator's screen: a client of the service. It owns no part of the rig, so its end does not affect a run."""

@@ -151,7 +151,7 @@ class Chance:
         )
 
     def visible(self, tests: int) -> float:
-        """Return the length of a departure, in standard deviations, that the F test detects in ``SEEN`` of cases."""
+        """Return how far, in standard deviations, data must depart for the F test to detect it in ``SEEN`` of cases."""
         critical = float(np.quantile(self._f, 1.0 - LEVEL / tests))
         random = np.random.default_rng(SEED)
         along, across = random.standard_normal(self._f.size), random.chisquare(max(self._df - 1, 1), self._f.size)

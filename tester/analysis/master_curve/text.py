@@ -1,4 +1,4 @@
-"""A master curve in lines for people, and as plain data."""
+"""A master curve as lines of text, and as plain data."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class TableModel(Section, frozen=True):
 
 
 class TableFileModel(Section, frozen=True):
-    """Measured moduli, in a file of columns beside this one."""
+    """Measured moduli in a separate file: a table beside the compound's file."""
 
     name: Text
     """the file, relative to this one"""

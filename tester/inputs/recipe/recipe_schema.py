@@ -246,7 +246,7 @@ class GridModel(GridName, Made, frozen=True):
 
 @lru_cache
 def grid_model(axes: Axes, base: type[GridModel] = GridModel) -> type[GridModel]:
-    """Return the model of a grid over a kind's axes: its keys are their names, and what ``base`` has."""
+    """Return the model of a grid over a kind's axes: its keys are the names of the axes and the fields of ``base``."""
     fields: dict[str, Any] = {axis.name: _axis_field(axis) for axis in axes}
     due_first = dict(sorted(fields.items(), key=lambda entry: entry[1][1] is not ...))
     listed = create_model("GridAxes", __base__=GridName, **due_first)

@@ -79,7 +79,7 @@ class Estimator:
         raise NotImplementedError
 
     def range_s(self, plan: Plan, steps: Sequence[StepEstimate], down_s: float) -> tuple[float, float]:
-        """Return the range of the rig time, s, for 95 % of runs; ``down_s``: ``shut_down_s``."""
+        """Return the range of rig time, s, in which 95 % of runs end; ``down_s``: the value of ``shut_down_s``."""
         seconds = sum(step.seconds for step in steps) + down_s
         return (1.0 - self.spread) * seconds, (1.0 + self.spread) * seconds
 

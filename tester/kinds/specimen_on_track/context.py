@@ -25,7 +25,7 @@ SAMPLES = 40.0
 
 
 class TrackAttendant(PlainAttendant, Protocol):
-    """A person's work at the rig, beside mounting a specimen."""
+    """What a person does at the rig, in addition to mounting a specimen."""
 
     def put_on(self, weights_n: float) -> None:
         """Hang weights on the arm, N."""

@@ -77,7 +77,7 @@ class PlainServed(ServedKind):
         )
 
     def alone(self, rig: Rig) -> str:
-        """Return what the drives do without a program, in words."""
+        """Return, in words, what the drives do by themselves when this program has ended."""
         return drives_alone(rig)
 
     def hand(self, run: Run, left: Left | None) -> tuple[SpeedHand, str]:

@@ -66,7 +66,7 @@ class PrepareTrack(AskBesideTrack):
 
 
 class TemperAir(SoakWait):
-    """Bring the air to a temperature and let the specimen follow. Later conditions report a temperature not reached."""
+    """Bring the air to a temperature and let the specimen follow. If it is not reached, later conditions report it."""
 
     def __init__(self, step: Temper) -> None:
         """The step of the plan."""

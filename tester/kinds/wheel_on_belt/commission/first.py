@@ -76,7 +76,7 @@ def mounted(notes: Notes) -> str:
 
 
 def as_it_is_c(rig: RigConfig, done: Mapping[str, Mapping[str, Any]]) -> float:
-    """Return the temperature of a condition that needs no heating of a cold wheel, degC.
+    """Return the temperature, degC, at which a cold wheel can be measured without heating.
 
     It is the thermometer's reading of the tread after rolling, plus the offset by which slip pulses start colder.
     """

@@ -233,7 +233,7 @@ FROZEN_HUB_SHARE: Final = Parameter(
 
 
 def _still_most_k(v: Inputs) -> float:
-    """Return the heat that a constant reading may hide, K of hub: less when the hub is close to its limit."""
+    """Return by how many K the hub may have warmed while its reading is constant: fewer close to the hub's limit."""
     p = v.parameters
     away_k = v.limits.jacket_c - v.readings.hub_c
     return max(p[FROZEN_HUB_K], p[FROZEN_HUB_SHARE] * away_k)

@@ -30,7 +30,7 @@ ROLLING_M_S = 1e-9
 
 
 class ConditionMotion(NamedTuple):
-    """Speeds and times of a condition that do not depend on load and temperature: a grid has few of them."""
+    """The speeds and times of a condition. They depend on neither load nor temperature, so a grid has few of them."""
 
     model: laws.FrictionLaw | None
     cornering: float
