@@ -66,7 +66,8 @@ def test_a_rig_that_somebody_uses_is_left_alone(
 ) -> None:
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
     rig = load_rig("sim")
-    real = reached_over_tcp(rig, ("127.0.0.1", 1), dict.fromkeys(rig.lines, ("127.0.0.1", 1)))
+    doors = {name: ("127.0.0.1", port) for port, name in enumerate(rig.lines, 2)}
+    real = reached_over_tcp(rig, ("127.0.0.1", 1), doors)
     path = tmp_path / "rig.yaml"
     path.write_text(real.text, encoding="utf-8")
     with ExclusiveUse() as use:
