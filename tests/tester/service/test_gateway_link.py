@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tester.service import service_process
 from tester.service.address import CARD, TcpAddress, UnixAddress, new_tcp_address, read_card, stop_path
 from tester.service.client import Client, Gone, Link, Lost, NoServiceError
 from tester.service.commands import CheckRecipe, ListRecipes, RunRecipe
@@ -20,7 +21,6 @@ from tester.service.gateway_link import GatewayLink, LinkConfig
 from tester.service.hook import Hook
 from tester.service.protocol import Hello, Snapshot
 from tester.service.service import ServiceOptions
-from tester.service.service_process import host
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.service.views import state
 
@@ -57,12 +57,16 @@ async def connected(gateway: GatewayLink, address: UnixAddress | TcpAddress | No
 @posix
 @pytest.mark.parametrize("taken", [lambda path: path, stop_path], ids=["clients", "STOP"])
 def test_a_path_that_is_no_socket_ends_the_service_with_a_sentence(
-    taken: Callable[[Path], Path], tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    taken: Callable[[Path], Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
+    monkeypatch.setattr(service_process, "allow_only", lambda _: None)  # it holds for the rest of a process
     address = tmp_path / "service.sock"
     taken(address).write_text("a note", encoding="utf-8")
     options = ServiceOptions(runs=tmp_path)
-    assert host(options, f"unix:{address}", None, "") == 1
+    assert service_process.host(options, f"unix:{address}", None, "") == 1
     assert "exists and is not a socket: it is not replaced" in capfd.readouterr().err
     assert taken(address).read_text(encoding="utf-8") == "a note"
 
