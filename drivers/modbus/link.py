@@ -182,10 +182,7 @@ class ModbusLink(LineType):
             self.wants_s = give_up_s - _TINY_S
 
     def _contact(self, now: float) -> Request | None:
-        """Return a read to send before the first write, because the reply shows whether the adapter echoes.
-
-        None if no write is due, or if the last such read is too recent.
-        """
+        """Return a read, due before a write, whose reply shows whether the adapter echoes; None if none is needed."""
         request = self._schedule.write_due(now)
         if request is None:
             return None
