@@ -27,6 +27,12 @@ _SAME_SIZE_K: Final = 0.005
 class Plant(Rubbing):
     """The physics of one rig, with a wheel after ``install``. Deep-copyable; all randomness is from one seed."""
 
+    __slots__ = (
+        "_cold_factor", "_dt", "_flow", "_place", "_relaxation", "_rotating_above", "_seed", "_stiffness",
+        "_swing_mm", "_warm_c", "_warmth", "belt_speed", "hub_sensor", "hung", "ir", "load_cell", "size",
+        "wheel_angle_rev", "wheel_speed",
+    )  # fmt: skip
+
     def __init__(self, parameters: SimParameters, seed: int) -> None:
         """Build a rig at ambient temperature without a wheel; draw the numbers that stay for the session."""
         super().__init__(parameters, seed)

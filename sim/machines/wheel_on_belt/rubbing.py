@@ -27,6 +27,15 @@ _RUNNING_IN_LASTS: Final = 37.0
 class Rubbing:
     """A wheel that rubs on a belt: its forces, its wear, the belt's grip. ``Plant`` presses, heats and measures it."""
 
+    # Slots: CPython 3.11 keeps more than 30 attributes in a dictionary, and every step of the twin gets slower.
+    __slots__ = (
+        "_arm_m", "_blunts", "_compound", "_cornering", "_cos", "_deficit", "_deficit_keep", "_excess", "_friction",
+        "_grip", "_law", "_noise", "_run_in_m", "_run_in_scale_m", "_scatter", "_sideslip_deg", "_sin", "_stick_slip",
+        "_touch_mm", "_wear_per_width", "_within", "belt_grip", "cold_mm", "condition_factor", "diameter_mm",
+        "drive_torque_nm", "force_x_n", "force_y_n", "force_z_n", "mu", "parameters", "run_factor", "sliding_m",
+        "slip_m_s", "surface_c", "wheel_factor",
+    )  # fmt: skip
+
     def __init__(self, parameters: SimParameters, seed: int) -> None:
         """Begin with a new belt without contact."""
         p = parameters
