@@ -53,6 +53,14 @@ class TemperatureController(Device):
     never); ``counts`` is its bare register.
     """
 
+    __slots__ = (
+        "_asked", "_asked_c", "_expired_bits", "_invalid_bits", "_output", "_output_scale", "_pv", "_pv_greatest",
+        "_pv_least", "_pv_scale", "_range_bits", "_reads_at_once", "_register", "_run_wanted", "_run_write",
+        "_sensor_bits", "_setpoint_write", "_status_block", "_status_place", "_status_s", "_switch", "_unconfirmed",
+        "_unpack", "_wanted", "_working", "_working_scale", "counts", "ends_s", "has_lease", "lease_expired",
+        "measured_c", "out_of_range", "output_percent", "sensor_break", "setpoint_c", "status",
+    )  # fmt: skip
+
     def __init__(self, kind: ControllerKind, profile: DeviceProfile, unit_id: int, link: ModbusLink) -> None:
         """Put a controller of ``kind`` (jacket, chamber) on ``link``; its lease is written if the profile has one.
 

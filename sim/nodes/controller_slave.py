@@ -109,6 +109,13 @@ class ControllerSlave(ModbusSlave):
     is heat that flows at any output: a shorted relay, or an open line.
     """
 
+    __slots__ = (
+        "_blocks", "_break_bits", "_broken", "_cold_bits", "_coldest_c", "_cycle_s", "_expired_bits", "_falls_back_s",
+        "_hot_bits", "_latches", "_lease", "_pid", "_power_w", "_read_only", "_refuses", "_renewed_s", "_scales",
+        "_setpoint", "_setup", "_switch", "dither", "heater_w", "hottest_c", "lease_expired", "lease_s", "limited",
+        "output", "pv_c", "running", "sensor_broken", "setpoint_c", "source", "stuck_element", "stuck_output",
+    )  # fmt: skip
+
     def __init__(self, profile: DeviceProfile, unit_id: int, source: TemperatureSource) -> None:
         """Place the registers as in ``profile``. Raises ProfileError unless it can be simulated."""
         plant = _plant(profile)

@@ -49,6 +49,11 @@ class SensorSlave(ModbusSlave):
     measured sets the lowest status bit that makes a reading invalid.
     """
 
+    __slots__ = (
+        "_block", "_invalid", "_limits", "_overload", "_parameters", "_quantities", "_read_only", "_rows", "_shown",
+        "_signals", "_status_place", "dither", "frozen", "status_bits",
+    )  # fmt: skip
+
     def __init__(
         self, profile: DeviceProfile, unit_id: int, quantities: Mapping[str, Quantity | float] = _NOTHING
     ) -> None:
