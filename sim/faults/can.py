@@ -43,7 +43,7 @@ class FaultyCanWire(CanWire):
         self._counted = 0.0
 
     def note_faults(self) -> None:
-        """Update the bus after an attribute was changed: a bus without faults does not look at frames."""
+        """Update the bus after a change of its faults. A bus without faults does not inspect frames."""
         self.spoiled = bool(
             self.lost or self.frozen or self.late_s or self.loss or self.repeated or self.silent or self._cut
         )
@@ -239,7 +239,7 @@ class SecondMaster(Effect):
         self._at_s = now
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Send when it is time."""
+        """Send the frame when its period has passed."""
         if now >= self._at_s and scene.rig.can.connected:
             self._at_s = now + self.PERIOD_S
             node_id = scene.rig.axes[self.axis].node_id if self.axis else 0

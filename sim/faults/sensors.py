@@ -89,7 +89,7 @@ def spoiled(kind: str, value: float, size: float, age_s: float, noise: NormalStr
 
 
 class _Spoiled:
-    """A sensor's source with a fault, until it is no longer ``active``."""
+    """A faulty source of a sensor; when ``active`` is false, its readings are right again."""
 
     def __init__(self, kind: str, size: float, since_s: float, middle: float, name: str) -> None:
         """Take kind and size; shares count from ``middle`` (0 N, or degC); ``name`` keys the noise."""

@@ -1,11 +1,11 @@
-"""Two plain laws for rubber whose measured friction is not a bell over the reduced speed.
+"""Two simple laws, for rubber whose friction ``wlf_bell`` does not describe.
 
     power:      mu = a (v / v0)^n (load / n0)^m
     arrhenius:  mu = mu_0 + (mu_max - mu_0) exp(-(x / width)^2),  x = log10(aT v / v_ref)
 
-log10 aT = Ea / (R ln 10) (1 / T - 1 / T_ref), with T in K. In ``arrhenius`` the bell moves to higher speeds with
-rising temperature, by an activated process of one energy (Arrhenius); ``wlf_bell`` instead uses the free volume of a
-rubber above its glass transition.
+log10 aT = Ea / (R ln 10) (1 / T - 1 / T_ref), with T in K. In ``arrhenius`` the maximum of friction moves to higher
+speeds with rising temperature. The shift has one activation energy Ea. ``wlf_bell`` shifts by WLF instead, for a rubber
+above its glass transition.
 """
 
 from __future__ import annotations

@@ -199,8 +199,8 @@ class TrackParameters:
         return tabulated(self.law, compound, laws.NO_FIGURES, own, table_span(own, compound))
 
     def known_everywhere(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> None:
-        """Raise ValueError if the law of a rubber cannot be made, OutsideError if it is not known over the whole range
-        of the rig."""
+        """Raise ValueError if a rubber's law cannot be made, OutsideError if the law does not cover the rig's whole
+        range."""
         law = self.law_of(compound, setting)
         maker = laws.find(self.law)
         if isinstance(maker, laws.OfMaterials) and maker.slow:

@@ -63,7 +63,7 @@ def _block(burst: int, samples: int, t0: float, t1: float, position: float, mean
 class BlockCounter:
     """Collects the blocks of one repeat, sample by sample.
 
-    It takes the recorded rows, so the store reproduces the live count exactly.
+    Its input is the rows that are recorded, so a count from the stored rows equals the count of the run.
     """
 
     __slots__ = (

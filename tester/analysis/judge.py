@@ -72,7 +72,10 @@ def _refuse(
     blocks: Sequence[Sequence[Block]],
     window: Window,
 ) -> Drift:
-    """Put the drift of the repeats at some positions into their results, refuse those that drift; return the fit."""
+    """Write the drift of the repeats at ``positions`` into ``judged`` and refuse those that drift.
+
+    Return the fit.
+    """
     drift, refused = refusals([blocks[i] for i in positions], window)
     singles = iter(drift.repeats)
     for position, index in enumerate(positions):

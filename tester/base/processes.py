@@ -113,12 +113,13 @@ LEVEL = 10
 
 
 class RealTimePriority:
-    """Real-time priority of this process; ``refused`` is why it was not granted, "" where it was. ``close`` gives it
-    up."""
+    """Real-time priority of this process, until ``close``; ``refused``: why it was not granted, else ""."""
 
     def __init__(self) -> None:
-        """Request it for every running thread: a thread without it would keep the others waiting for the
-        interpreter."""
+        """Request the priority for every running thread.
+
+        A thread without it could hold the interpreter's lock, and the others would wait.
+        """
         self.refused = ""
         self._threads: list[int] = []
         if sys.platform != "linux":

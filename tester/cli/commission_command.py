@@ -100,7 +100,7 @@ def _summarise(outcome: CommissionOutcome) -> None:
 
 
 def _line_by_line(rig: Rig, options: CommissionOptions, twin: Person | None) -> CommissionOutcome:
-    """Commission with the simulated person, else with the one at this terminal."""
+    """Commission with the simulated person ``twin`` if there is one, else with the person at this terminal."""
     from tester.run.commissioning import commission
 
     if twin is not None:

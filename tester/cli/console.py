@@ -69,7 +69,7 @@ class Outlet:
         self.check()
 
     def check(self) -> None:
-        """Raise what has kept this stream from being written, once."""
+        """Raise the error that ended writing to this stream, if any; later calls do not raise it again."""
         if self._error is not None and not self._reported:
             self._reported = True
             raise self._error

@@ -1,4 +1,4 @@
-"""``tester show`` and ``tester export``: what a run holds, and how it leaves."""
+"""``tester show`` prints a run's results, ``tester export`` writes them to files."""
 
 from __future__ import annotations
 

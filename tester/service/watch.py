@@ -1,6 +1,4 @@
-"""A run as people see it: the parts of the state view that come from its engine, and the alarms that follow from
-them.
-"""
+"""A run as its screens show it: the state view's parts from the run itself, and the alarms that follow from them."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ _PERCENT: Final = re.compile(r"%|per\s?cent", re.I)
 
 
 def tell_unused(layout: DmaLayout, used: Set[int], result: Findings) -> None:
-    """Note the unused columns and a strain's range, and add a doubt for a table of several strains."""
+    """Note the unused columns and the range of a strain column; add a doubt if its strains differ."""
     unused = [(at, text) for at, text in enumerate(layout.headings) if text and at not in used]
     if unused:
         result.notes.append("columns not used: " + ", ".join(f'"{text}"' for _, text in unused))

@@ -69,7 +69,7 @@ def _with_keys(text: str, tree: Tree, packaged: Tree, missing: Sequence[Place]) 
 
 
 def _nearest_section(tree: Tree, place: Place) -> Place:
-    """Return the innermost section above a key that the file has; () is the file itself."""
+    """Return the innermost section around a key; only sections in the file count. () is the file itself."""
     return next(place[:n] for n in range(len(place) - 1, -1, -1) if n == 0 or place[:n] in tree.keys)
 
 

@@ -1,4 +1,7 @@
-"""Rows of the appendices for the checks of the paper's items: series over one variable, errors by compound."""
+"""Rows of the paper's appendices, for the checks of its items.
+
+The rows form series over one variable; the errors of Eqs 7 to 9 are given by compound.
+"""
 
 from __future__ import annotations
 

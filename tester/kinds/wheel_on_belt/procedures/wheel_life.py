@@ -33,7 +33,7 @@ def rubber_c(hub_c: float, surface_c: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class CheckReference:
-    """The first roll check of a wheel: its time, the press's position, and the estimated loss at that time."""
+    """The first roll check of a wheel: its time, the press's position, and the diameter lost until then (estimate)."""
 
     at_s: float
     press_mm: float
