@@ -87,7 +87,7 @@ class PdoSetting:
 
 @dataclass(slots=True)
 class DrivePlan:
-    """The writes of connecting an axis, the missing objects, and the refusals."""
+    """The writes at the connect of an axis, the objects that its drive lacks, and the reasons to refuse it."""
 
     settings: list[Setting] = field(default_factory=list[Setting])
     pdos: list[PdoSetting] = field(default_factory=list[PdoSetting])

@@ -24,7 +24,7 @@ _OFF_SCALE_N: Final = 1e5
 
 
 class Shows(Effect):
-    """One channel of a further sensor shows a number, whatever is there."""
+    """One channel of a further sensor shows a fixed number in place of its reading."""
 
     def __init__(self, sensor: str, channel: str, value: float) -> None:
         """Take the sensor's name for people, the channel's in its profile, and the number in the channel's unit."""

@@ -119,7 +119,7 @@ class Greta:
             )
 
     def hysteresis(self, pressure_pa: float, dynamic: Dynamic, friction: float) -> float:
-        """Return mu_hys (Eq 20) under a pressure; ``friction``: K, which counts only up to the limit."""
+        """Return mu_hys (Eq 20) under a pressure; ``friction``: K, cut at ``friction_limit``."""
         normal_m, shear_m = self.stress_m(pressure_pa / (dynamic.magnitude_pa * self.full_per_modulus))
         squares_m = normal_m + min(friction, self.parameters.friction_limit) ** 2 * shear_m
         return pi * dynamic.tan_delta * squares_m * pressure_pa / (self.coarse.wavelength_m * dynamic.magnitude_pa)

@@ -45,7 +45,7 @@ class WireDoor(Protocol):
 
     @property
     def due_s(self) -> float:
-        """Time when ``deliver`` has work, s of the rig; infinity while only a program can begin."""
+        """Time when ``deliver`` has work, s of the rig; infinity if it must wait for a program."""
         ...
 
     def sources(self) -> Sequence[Readable]:

@@ -1,8 +1,8 @@
 """The far end of a serial port on a simulated Modbus line; sans-IO.
 
-A pseudo-terminal transfers a whole frame at once; on the line its characters take their time. The end of a request is
-found as by a slave: by the silence after its last character, calculated from the line's baud rate. Replies leave
-after their last character, at the time that ``ModbusWire`` gives.
+A pseudo-terminal transfers a whole frame at once; on a real line its characters take time. So the time of each
+character is calculated from the line's baud rate. As for a real slave, a request ends with the silence after its last
+character. A reply leaves after its last character, at the time that ``ModbusWire`` gives.
 """
 
 from __future__ import annotations

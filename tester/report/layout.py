@@ -1,6 +1,6 @@
 """A report as data, before rendering: sections of paragraphs, facts, lists, tables and pictures.
 
-All text is as people and devices wrote it; the page makes it harmless (tester.report.page).
+Texts are unescaped, as people and devices wrote them; ``tester.report.page`` escapes them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""A client's end of the separate connection for STOP, which stays open: a request line, an answer line.
+"""A client's end of the separate connection for STOP. It stays open; each request and each answer is one line.
 
     with StopCall(None, "script") as call:
         call.stop()
 
-It needs no event loop, and blocks until the answer: a screen that draws should use it in a thread.
+``stop`` needs no event loop and blocks until the answer, so a screen should call it in a thread.
 """
 
 from __future__ import annotations

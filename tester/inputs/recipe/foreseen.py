@@ -112,7 +112,7 @@ def halved(prediction: Foreseen, estimator: Estimator, terms: Sequence[Term]) ->
 
 
 def _changes(prediction: Foreseen, estimator: Estimator) -> Iterator[tuple[str, Outlook, int]]:
-    """Yield the possible changes: in words, the resulting outlook, and the factor on the repeats."""
+    """Yield each possible change of the recipe: its words, the resulting outlook, the factor on the repeats."""
     step, outlook = prediction.step, prediction.outlook
     if not outlook.checked and outlook.loss_mm > 0.0:
         yield "measure: {wear_check: each_condition}", replace(outlook, checked=True), 1

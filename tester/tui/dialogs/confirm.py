@@ -40,7 +40,7 @@ class AbortDialog(Dialog):
     TITLE = "Abort the run"
 
     def content(self) -> Iterable[Widget]:
-        """Return the consequence of the stop, and the field for the word."""
+        """Return a line on what the stop does, and the field where a person types ``WORD``."""
         yield line("The rig makes a controlled stop. Committed repeats stay; `tester resume` continues later.")
         yield field(f"Type: {WORD}", entry("word"))
 

@@ -1,7 +1,8 @@
 """Cost of measuring one condition: closed formulas, cached by setpoint and settings.
 
-The length of a slip pulse follows from the rise of a half-space under friction, proportional to the square root of
-time (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 2nd ed., 2.9: 2 q sqrt(t / pi) / sqrt(k rho c)).
+The length of a slip pulse follows from the temperature rise of a half-space heated by friction. The rise is
+proportional to the square root of time: 2 q sqrt(t / pi) / sqrt(k rho c) (H. S. Carslaw, J. C. Jaeger, Conduction of
+Heat in Solids, 2nd ed., 2.9).
 """
 
 from __future__ import annotations
