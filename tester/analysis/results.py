@@ -167,8 +167,8 @@ class Burst:
 class SoakCheck:
     """Reading of the surface's thermometer at the end of a condition's soak, and its expected value.
 
-    Temperatures in degC: ``surface_c`` by the thermometer, ``hub_c`` by the heater's sensor, ``model_c`` expected of the
-    surface by a model of the heat flow from the hub. ``allowed_k``: largest difference that the uncertainties of
+    Temperatures in degC: ``surface_c`` by the thermometer, ``hub_c`` by the heater's sensor, ``model_c`` of the surface
+    by a model of the heat flow from the hub. ``allowed_k``: largest difference that the uncertainties of
     sensors and model explain, K.
     """
 
