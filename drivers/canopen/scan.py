@@ -133,7 +133,7 @@ class SdoScan:
                 self._go_on(can_id & _NODE, port, now)
 
     def service(self, port: CanPort, now: float) -> None:
-        """Ask the next questions, and give up the overdue ones at ``now`` s; raises BusLost."""
+        """Send the next requests; abort those that are overdue at ``now`` s. Raises BusLost."""
         for number in list(self._asked):
             abort = self._nodes[number].client.expire(now)
             if abort is not None:

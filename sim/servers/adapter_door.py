@@ -1,7 +1,7 @@
 """A door on a real CAN interface: the simulated nodes as nodes of that bus, over python-can.
 
-On SocketCAN any number of programs may use the bus with them: this door is for tests of a second master. The bus's
-own times add to the simulated ones, and frames of programs take their time on the simulated wire as well.
+On SocketCAN any number of programs may share the bus with these nodes, so the door is for tests of a second master. The
+transmission times of the real bus add to the simulated times; a program's frames also occupy the simulated wire.
 """
 
 from __future__ import annotations

@@ -61,10 +61,7 @@ class DiameterOff(Effect):
 
 @switched
 def rubber_detached(scene: Scene, on: bool, now: float, swing_mm: float) -> None:
-    """A part of the rubber has come off its hub: tread and force swing more, once a turn, by this travel.
-
-    ``swing_mm``: peak to peak.
-    """
+    """A part of the rubber has come off its hub: the runout of the tread grows by ``swing_mm``, peak to peak."""
     plant = scene.machine(WheelRig).plant
     plant.set_runout(plant.parameters.contact.runout + (swing_mm if on else 0.0))
 

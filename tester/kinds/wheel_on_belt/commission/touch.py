@@ -1,4 +1,4 @@
-"""The armed rig's cold steps: homing, first contact and tare, and the ratio of the speeds from rolling."""
+"""The armed rig's cold steps: homing, first contact and tare, and the ratio of the speeds at which the wheel rolls."""
 
 from __future__ import annotations
 
