@@ -96,6 +96,6 @@ class DeviceReset(Effect):
         slave_of(scene, self.device).power(False)
 
     def renew(self, scene: Scene, now: float) -> None:
-        """Switch the device on when it is time."""
+        """Switch the device on when its off time is over."""
         if now >= self._until_s and not slave_of(scene, self.device).powered:
             slave_of(scene, self.device).power(True)

@@ -94,7 +94,7 @@ class SensorSlave(ModbusSlave):
         self.blocks = {(block.address, block.count): 0}
 
     def show(self, channel: str, source: Quantity | float) -> Quantity | float:
-        """Let a channel of the first read show another source; return the one before."""
+        """Replace the source of a channel of the first read; return the previous source."""
         before = self._quantities[channel]
         self._quantities[channel] = source
         return before

@@ -92,7 +92,7 @@ class SplineTable:
         self._x, self._j, self._four = x, j, (q0, q1, q2, q3)
 
     def _turn_to(self, z: float) -> None:
-        """Calculate the weights of a place on the third axis."""
+        """Set the weights of the rows for a coordinate of the third axis."""
         k = min(int(z), len(self._rows) // self._between - 4)
         t = z - k
         s = 1.0 - t

@@ -40,22 +40,22 @@ DEPTHS: Final = 50
 
 
 def normal_z(u: Array) -> Array:
-    """Return -sz over P cos(kx), of pressure."""
+    """Return the part of -sz from pressure, divided by P cos(kx)."""
     return (1.0 + u) * np.exp(-u)
 
 
 def normal_x(u: Array) -> Array:
-    """Return -sx over P cos(kx), of pressure; -sy as well."""
+    """Return the part of -sx, and of -sy, from pressure, divided by P cos(kx)."""
     return (1.0 - u) * np.exp(-u)
 
 
 def shear_x(u: Array) -> Array:
-    """Return sx over K P sin(kx), of shear."""
+    """Return the part of sx from shear, divided by K P sin(kx)."""
     return (2.0 - u) * np.exp(-u)
 
 
 def shear_z(u: Array) -> Array:
-    """Return sz over K P sin(kx), of shear."""
+    """Return the part of sz from shear, divided by K P sin(kx)."""
     return u * np.exp(-u)
 
 

@@ -72,7 +72,7 @@ def _both(name: str, results: RunResults) -> tuple[str, str]:
 
 
 def _lines(table: Table[Pair], compounds: tuple[str, str] | None) -> Iterator[str]:
-    """Yield what all pairs share, then a row for each: what tells it from the others, and its figures."""
+    """Yield the setpoints that all pairs share, then a row for each pair with its own setpoints and its figures."""
     words = ListWords(one.either.info.setpoint for one in table.rows)
     common = words.common
     if compounds:

@@ -56,7 +56,7 @@ def components(run: str, as_json: bool) -> None:
 
 
 def _lines(pairs: Sequence[FilmPair], means: Sequence[SharesMean]) -> Iterator[str]:
-    """Yield the setpoints that all pairs share, a row for each pair, the means, and what the values rest on."""
+    """Yield the setpoints that all pairs share, a row for each pair, the means, and the assumptions."""
     from tester.results.columns import Column, Table
     from tester.results.components_table import FilmPair
 

@@ -63,7 +63,7 @@ class Outlet:
         self._try(lambda stream: stream.flush())
 
     def line(self, text: str) -> None:
-        """Write a line and flush it. Raises OSError for what keeps it from that, once."""
+        """Write a line and flush it. Raises OSError, once, if the stream cannot be written."""
         self.write(text + "\n")
         self.flush()
         self.check()
@@ -86,7 +86,7 @@ class Outlet:
         return None
 
     def _leave(self, error: OSError) -> None:
-        """Let the interpreter flush into nothing at its end: what is left in the buffer would fail once more."""
+        """Redirect the stream to nothing. Otherwise the interpreter's last flush of its buffer would fail again."""
         self._error = error
         with suppress(OSError, ValueError):
             nothing = os.open(os.devnull, os.O_WRONLY)

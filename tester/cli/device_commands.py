@@ -222,7 +222,7 @@ def _dump(rig_name: str) -> ParameterDump:
 
 
 def _before(rig_name: str, other: str, runs: Path) -> tuple[str, Parameters]:
-    """Return what is compared with, and how it is called. Raises DumpError, StoreError, OSError."""
+    """Return the name of the file or run to compare with, and its parameters. Raises DumpError, StoreError, OSError."""
     from tester.doctor.device_parameters import read_dump, stored_in
     from tester.kinds import load_rig
     from tester.run.set_up import last_good

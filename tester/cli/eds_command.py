@@ -67,7 +67,7 @@ def _say(name: str, profile: str, verdict: SheetVerdict) -> None:
 
 
 def _makers(sheet: DataSheet) -> str:
-    """Return the profile of the maker, of several the one that is refused least, of none the generic one."""
+    """Return the maker's profile: of several the profile with the fewest refusals; without any, the generic profile."""
     from drivers.drives.reader import GENERIC, drive_profile, drive_profile_names
     from drivers.sheet_check import check_sheet
 

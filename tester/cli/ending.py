@@ -56,7 +56,7 @@ def ending_table(results: RunResults, folder: Path) -> Iterator[str]:
 
 
 def tally_lines(results: RunResults, width: int = WIDTH) -> Iterator[str]:
-    """Yield how many conditions have a value and carry flags, then what each flag means and what to do about it."""
+    """Yield the numbers of conditions with a value and with flags, then the meaning and the remedy of each flag."""
     for line in (tally_of(results).sentence, *flag_lines(results)):
         yield from wrap(shown(line), width, subsequent_indent="    ")
 

@@ -193,7 +193,7 @@ def _print(
 
 
 def _errors(fit: GroupFit, rows: dict[str, list[FitPoint]] | None) -> Errors | None:
-    """Return how far a fit is off the conditions of its group that it has not seen."""
+    """Return the errors of a fit on those conditions of its group that were not fitted."""
     return fit.errors_on(rows.get(fit.group, [])) if rows is not None else None
 
 

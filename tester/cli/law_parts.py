@@ -54,7 +54,7 @@ def parts_chart(law: str, compound: str, surface: str, over: str, at: At) -> Cha
 
 
 def _axis(over: str, track: Surface, at: At) -> tuple[str, str, float, float, float]:
-    """Return name, unit and scale of what is drawn over, the middle of its range, and decades to either end."""
+    """Return name, unit and scale of the drawn variable, the middle of its range, and decades to either end."""
     if over == "speed":
         return "sliding speed", "mm/s", 1e3, at.speed_m_s, 3.0
     if over == "pressure":
@@ -65,7 +65,7 @@ def _axis(over: str, track: Surface, at: At) -> tuple[str, str, float, float, fl
 
 
 def _at(over: str, value: float, track: Surface, at: At) -> tuple[Surface, At]:
-    """Return the surface and the condition for a value of what is drawn over."""
+    """Return the surface and the condition for a value of the drawn variable."""
     if over == "speed":
         return track, at._replace(speed_m_s=value)
     if over == "pressure":

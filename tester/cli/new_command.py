@@ -82,7 +82,7 @@ class _Questions:
         self.yes = yes
 
     def __call__(self, question: str, option: str, typed: str, default: str, take: Callable[[str], Answer]) -> Answer:
-        """Return what ``take`` makes of the answer; ``take`` raises InvalidSource or ValueError for a wrong one."""
+        """Return the result of ``take`` for the answer; ``take`` raises InvalidSource or ValueError for a wrong one."""
         if typed or self.yes:
             if not (typed or default):
                 raise click.UsageError(f"{option}: this has no default, so --yes needs it")

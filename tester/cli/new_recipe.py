@@ -44,7 +44,7 @@ class Draft:
         return [axis for axis in self.part.axes if not axis.in_measure]
 
     def hint(self, axis: Axis) -> str:
-        """Return what an answer for an axis looks like: ``load (a load such as "100 N"; units accepted: N, kN)``."""
+        """Return an axis with the form of its answer: ``load (a load such as "100 N"; units accepted: N, kN)``."""
         return f"{axis.name} ({', '.join(axis.choices) if axis.choices else expected(axis.recipe_unit)})"
 
     def default_of(self, axis: Axis) -> str:
@@ -55,7 +55,7 @@ class Draft:
         return f"{default:g} {axis.recipe_unit}"
 
     def suggested_name(self) -> str:
-        """Return a name from what is varied."""
+        """Return a name made of the varied axes."""
         varied = [name.replace("_", " ") for name, values in self.values.items() if len(values) > 1]
         return f"{', '.join(self.compounds)}: {' and '.join(varied) or 'one condition'}"
 
@@ -77,7 +77,7 @@ class Draft:
         self.name = self._tried("name", text.strip(), "recipe:")
 
     def checked(self) -> Sequence[Problem]:
-        """Return what is doubtful about the whole recipe; raises InvalidSource for what the rig cannot do."""
+        """Return the doubts about the whole recipe; raises InvalidSource if the rig cannot run it."""
         from tester.run.kind_lookup import checked_recipe
 
         return checked_recipe(self.text(), self.rig, "the new recipe").doubts
@@ -115,7 +115,7 @@ class Draft:
 
 
 def _listed(text: str) -> list[str]:
-    """Return what is between commas; raises ValueError for nothing."""
+    """Return the texts between commas; raises ValueError if there are none."""
     found = [part.strip() for part in text.split(",") if part.strip()]
     if not found:
         raise ValueError("expected at least one value")

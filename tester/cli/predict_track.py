@@ -32,7 +32,7 @@ class TrackPoint:
 
 @dataclass(frozen=True, slots=True)
 class OnePair:
-    """A compound and a surface, read once: a modulus notes how far beyond its table a law has asked it."""
+    """A compound and a surface, read once, because a modulus records how far beyond its table a law has used it."""
 
     of_compound: Rubber
     of_surface: Surface
@@ -97,7 +97,7 @@ def _setting(point: TrackPoint) -> laws.LawSetting | None:
 
 
 def _caveats(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting | None) -> Iterator[str]:
-    """Yield where the law does not hold, and how far moduli are extrapolated beyond those measured."""
+    """Yield the law's caveats at this condition, and how far moduli are extrapolated beyond the measured range."""
     from sim.physics.moduli import TabulatedModulus
 
     yield from laws.caveats_of(law, point.temperature_c, point.load_n, point.slip_m_s)
@@ -115,7 +115,7 @@ def _caveats(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting 
 
 
 def _table(point: TrackPoint, law: laws.FrictionLaw, setting: laws.LawSetting) -> tuple[dict[str, float], bool]:
-    """Return what a table of the law takes and by how much it is off, and whether that is little enough."""
+    """Return size, CPU time and error of a table of the law, and whether the error is within its limit."""
     from sim.physics.tabulated import ALLOWED, build
 
     began_s = time.process_time()

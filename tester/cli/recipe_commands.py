@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def recipe_file(name_or_path: str) -> tuple[Path, str]:
-    """Return a recipe's file and what messages call it; a usage error where there is no such recipe."""
+    """Return a recipe's file and its name in messages; an unknown recipe is a usage error."""
     try:
         path = recipes.find(name_or_path)
     except recipes.UnknownRecipe as error:

@@ -199,7 +199,7 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
 
 
 def _worn(row: TableRow, results: RunResults) -> Iterator[str]:
-    """Yield what each replicate of a condition took off its wheel, where the wheel was checked."""
+    """Yield the wear by each replicate of a condition whose wheel was checked."""
     for measured in row.replicates:
         found = results.condition_wear(measured.info.condition)
         if found is not None and isfinite(found.rate.rate):
@@ -209,7 +209,7 @@ def _worn(row: TableRow, results: RunResults) -> Iterator[str]:
 
 
 def _table(results: RunResults) -> Iterator[str]:
-    """Yield the table of conditions, references behind them, then why some have no value, and what wore off."""
+    """Yield the table of conditions, references last, then the reasons for missing values, and the wear."""
     from tester.cli.text_table import table_lines
     from tester.results.columns import Output
     from tester.results.conditions_table import axis_keys, conditions_table

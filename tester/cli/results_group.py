@@ -87,7 +87,7 @@ def slip_ring(runs: Sequence[str], before: float, as_json: bool) -> None:
 
 
 def _ring_of(name: str) -> RingRun:
-    """Return what a run has on record; raises ClickException where its machine has no ring."""
+    """Return a run's record of the slip ring; raises ClickException if its machine has none."""
     from dataclasses import replace
 
     from tester.run.kind_lookup import ring_in

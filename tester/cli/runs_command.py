@@ -58,7 +58,7 @@ def runs(
 
 
 def standing(run: RunEntry, under: Path) -> str:
-    """Return a run's status and what goes with it, in words: by whom, how many values, how much is committed."""
+    """Return a run's status in words, with its process, its number of values, or its committed repeats."""
     from tester.results.catalogue.entries import origin_of
     from tester.store.run_folders import under_way
 

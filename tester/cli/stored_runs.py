@@ -59,7 +59,7 @@ def kind_of(info: RunInfo) -> Kind | None:
 
 
 def material_of(results: RunResults, law: str, published: bool) -> Material:
-    """Return what a run's figures may show; an unknown law is a usage error."""
+    """Return the material of a run's figures; an unknown law is a usage error."""
     from tester.report.charts import ChartValue, Material, values_of
 
     measured = values_of(results)
@@ -84,7 +84,9 @@ def material_of(results: RunResults, law: str, published: bool) -> Material:
 def of_one_kind(
     names: Sequence[str], packaged: Callable[[Kind, str], Read], stored: Callable[[Kind, Path], Read]
 ) -> tuple[Kind, list[Read]]:
-    """Return the kind of the sources of these names, and what the readers of packaged tables and runs make of each.
+    """Return the kind of the sources with these names, and for each source the result of its reader.
+
+    ``packaged`` reads a packaged table, ``stored`` a run.
 
     A name that is given twice, or sources of different kinds, are a usage error; a run that cannot be read a
     ClickException.

@@ -68,7 +68,7 @@ def plain_lines(table: Table[R]) -> Iterator[str]:
 
 
 def _two_lines(head: str, unit: str) -> tuple[str, str]:
-    """Return a heading in two lines: its unit below it, or what does not fit into half of it."""
+    """Return a heading in two lines: its unit in the second; without a unit, half of its words in each."""
     name = head.removesuffix(f"({unit})").removesuffix(unit).rstrip()
     if name != head:
         return name, unit

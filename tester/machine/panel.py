@@ -1,4 +1,4 @@
-"""The view of one run between two ticks, and what its drives do once nothing controls them."""
+"""The view of one run between two ticks, and the behaviour of its drives without a program that controls them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A row of the interlock table: one object with what is watched, for how long, and what follows.
+"""A row of the interlock table: one object with its condition, its delay and its reaction.
 
 ``tester.machine.watches`` makes the watch of a row. This module is not compiled, because mypyc cannot compile a
 dataclass of a generic class; the functions of the rows, which a scan calls, are compiled.

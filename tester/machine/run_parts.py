@@ -86,7 +86,7 @@ class NoHistory:
     """Lines of the pre-flight list."""
 
     def checks(self, rig: Rig, left: Left | None, now_utc: str) -> tuple[Check, ...]:
-        """Return these lines, whatever is on the rig."""
+        """Return ``lines``; the rig and its state do not matter."""
         return self.lines
 
 

@@ -24,7 +24,7 @@ def clean(text: str, limit: int = 2000) -> str:
 
 
 def clean_lines(text: str) -> str:
-    """Return a text of several lines with the same replacements, keeping its line ends."""
+    """Return a text of several lines with the replacements of ``clean``; line ends remain."""
     return "\n".join(clean(line) for line in text.split("\n"))
 
 

@@ -3,8 +3,8 @@
 A drive derives the torque that it shows (0x6077) from its current, so it has an error of gain.
 
 The belt's drive brakes against a wheel that pushes the belt, or pulls against a wheel that holds it back, as long as
-its roller grips the belt. Under a belt that something holds back the roller slips, and pulls with the full force of its
-wrap, whatever the wheel does (``capstan_n``).
+its roller grips the belt. If something else holds the belt back, the roller slips and
+pulls with the full force of its wrap (``capstan_n``); this force does not depend on the wheel.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ class Ended(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CommissionOutcome:
-    """How commissioning ended, at which step, and the text; ``took_s``: rig time of each step, s."""
+    """The end of a commissioning: its way, its step and its message; ``took_s``: rig time of each step, s."""
 
     ended: Ended
     step: str = ""

@@ -169,7 +169,7 @@ class TakeTare(ZeroOfCell):
         ctx.journal.tare(ctx.now, kind, dict(zip(CELL, new, strict=True)), ctx.repeat_key)
 
     def _wandered(self, ctx: Context, new: tuple[float, ...]) -> str:
-        """Return "", or a zero's excessive deviation from the reference; journal one that deserves a warning."""
+        """Return "", or a zero's excessive deviation from the reference; journal a deviation beyond ``zero_warn_n``."""
         limits = ctx.rig.interlocks
         self.drift_n = drift = max(abs(n - r) for n, r in zip(new[:3], self.reference[:3], strict=True))
         text = f"load cell zero drifted by {drift:.1f} N since the wheel's reference tare"
