@@ -219,8 +219,10 @@ class PdoExchange(SyncFollower):
     def _find_due(self) -> None:
         due = inf
         for awaited in self.rpdos:
-            due = min(due, awaited.deadline_at)
+            if awaited.deadline_at < due:
+                due = awaited.deadline_at
         for sent in self._event_tpdos:
-            due = min(due, sent.due_s)
+            if sent.due_s < due:
+                due = sent.due_s
         self.due_s = due
         self.owner.reschedule()

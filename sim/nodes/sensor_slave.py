@@ -132,7 +132,10 @@ class SensorSlave(ModbusSlave):
             if sign and count < 0.0:
                 status |= sign
                 count = -count
-            counts.append(min(max(int(count), least), most) if whole else count)
+            if whole:
+                count = int(count)
+                count = least if count < least else most if count > most else count
+            counts.append(count)
         if self._status_place >= 0:
             counts[self._status_place] = status
         self._shown = data = self._block.pack(*counts)

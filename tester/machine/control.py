@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 from typing import Any, Final
 
-from tester.machine.interlock_table import InterlockTable
+from tester.machine.interlock_table import InterlockTable, RigTable
 from tester.machine.mode_commands import DemandT, InputsT, ModeCommands, ReadingsT, StateT
 from tester.machine.row import Interlock, Reaction
 from tester.machine.state import ACKNOWLEDGED, ControlEvent, Mode, Trip
@@ -53,6 +53,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         self._held = held
         """The demand in HOLD."""
         self._hold_at_most_s, self._ack_wait_s = hold_at_most_s, ack_wait_s
+        self._rows = RigTable(table, view.parameters)
         self._delays = table.delays_s(view.parameters)
         state.pending_s = table.nothing_pending()
 
@@ -122,7 +123,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         demand = self._withdrawn
         demand.enabled = False
         self.look(demand, readings, 0.0, 0.0)
-        blocking = self.table.names_of(self.table.held(self.view) & ~self.table.warnings) + self.unfit(readings)
+        blocking = self.table.names_of(self._rows.held(self.view) & ~self.table.warnings) + self.unfit(readings)
         if blocking:
             return "not armed: " + ", ".join(blocking)
         state.enter(Mode.ARMED, now, "every level clear")
@@ -203,7 +204,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
     def _watch(self, demand: DemandT, readings: ReadingsT, scan_s: float, dt: float) -> None:
         """Evaluate every row of the table: a level that has held for its delay trips."""
         self.look(demand, readings, scan_s, dt)
-        now_held = self.table.held(self.view)
+        now_held = self._rows.held(self.view)
         if now_held or self.state.held:
             self._time(now_held, readings)
 

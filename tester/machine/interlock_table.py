@@ -26,7 +26,7 @@ def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
 
 
 class Group:
-    """Rows that are evaluated together, with their bits.
+    """Rows of a rig that are evaluated together, with their bits.
 
     A number costs one call a scan, and its limit at most one more. A number with a parameter as its limit is compared
     first, because that is cheap; every other condition is evaluated only where its row applies.
@@ -34,15 +34,16 @@ class Group:
 
     __slots__ = ("least", "members", "most", "numbers", "spans", "states")
 
-    def __init__(self, members: Iterable[tuple[int, Interlock[Any]]]) -> None:
-        """Take (bit, row) pairs."""
+    def __init__(self, members: Iterable[tuple[int, Interlock[Any]]], values: Values) -> None:
+        """Take (bit, row) pairs, and the rig's values of the parameters."""
         self.members: tuple[tuple[int, Interlock[Any]], ...] = tuple(members)
-        self.numbers: tuple[tuple[Read, Parameter, Applies], ...] = tuple(
-            (watch.parts[0], watch.parameters[0], applies)
+        # No scan looks a limit up: a rig's values never change.
+        self.numbers: tuple[tuple[Read, float, Applies], ...] = tuple(
+            (watch.parts[0], values[watch.parameters[0]], applies)
             for watch, applies in self._of(Form.AT_MOST)
             if watch.parameters
         )
-        """For each row: the number, the parameter that it may not exceed, and whether the row applies."""
+        """For each row: the number, the value that it may not exceed, and whether the row applies."""
         self.most: tuple[tuple[Read, Read, Applies], ...] = tuple(
             (watch.parts[0], watch.parts[1], applies)
             for watch, applies in self._of(Form.AT_MOST)
@@ -69,9 +70,8 @@ class Group:
         return self._which(v) if self._any(v) else 0
 
     def _any(self, v: ScanInputs) -> bool:
-        parameters = v.parameters
-        for number, parameter, applies in self.numbers:
-            if not (number(v) <= parameters[parameter]) and (applies is None or applies(v)):
+        for number, limit_value, applies in self.numbers:
+            if not (number(v) <= limit_value) and (applies is None or applies(v)):
                 return True
         for number, limit, applies in self.most:
             if (applies is None or applies(v)) and not (number(v) <= limit(v)):
@@ -97,8 +97,35 @@ class Group:
         return held
 
 
+class RigTable:
+    """The rows with the values of a rig: it evaluates a scan, and never changes."""
+
+    __slots__ = ("always", "while_ending", "while_loaded")
+
+    def __init__(self, table: InterlockTable, values: Values) -> None:
+        """Take the rows of ``table``, and the rig's value of each of its parameters."""
+
+        def group(when: When) -> Group:
+            return Group(((table.bit(row.name), row) for row in table.rows if row.when is when), values)
+
+        self.always, self.while_loaded, self.while_ending = group(ALWAYS), group(LOADED), group(ENDING)
+
+    def __deepcopy__(self, memo: dict[int, object]) -> RigTable:
+        """Return itself: copies of a running machine share its table."""
+        return self
+
+    def held(self, v: ScanInputs) -> int:
+        """Return the bits of the rows that hold in a scan; every row that can apply is evaluated."""
+        found = self.always.held(v)
+        if v.loaded and not v.unpowered:
+            found |= self.while_loaded.held(v)
+        if v.lifting_s >= 0.0 or v.resting or v.unpowered:
+            found |= self.while_ending.held(v)
+        return found
+
+
 class InterlockTable:
-    """The rows, the bounds that belong to no row, and the evaluation of a scan. A table never changes."""
+    """The rows, and the bounds that belong to no row. A table never changes."""
 
     def __init__(self, rows: Iterable[Interlock[Any]], operation: Iterable[Parameter] = ()) -> None:
         """Take the rows in their order; ``operation``: parameters of the section ``interlocks`` that belong to no
@@ -111,9 +138,6 @@ class InterlockTable:
         self.channels: tuple[str, ...] = tuple(dict.fromkeys(name for row in self.rows for name in row.channels))
         """Channels of further sensors that rows read."""
         self._bits = {row.name: 1 << i for i, row in enumerate(self.rows)}
-        self.always = self._group(ALWAYS)
-        self.while_loaded = self._group(LOADED)
-        self.while_ending = self._group(ENDING)
         self._unseen = tuple(
             (self.bit(row.name), there) for row in self.rows if (there := row.still_there()) is not None
         )
@@ -126,9 +150,6 @@ class InterlockTable:
         """Return itself: copies of a running machine share its table."""
         return self
 
-    def _group(self, when: When) -> Group:
-        return Group((self.bit(row.name), row) for row in self.rows if row.when is when)
-
     def bit(self, name: str) -> int:
         """Return the bit of a row; raises KeyError for a name that is not in the table."""
         return self._bits[name]
@@ -136,15 +157,6 @@ class InterlockTable:
     def names_of(self, bits: int) -> list[str]:
         """Return the names of the rows whose bits are set."""
         return [row.name for i, row in enumerate(self.rows) if bits >> i & 1]
-
-    def held(self, v: ScanInputs) -> int:
-        """Return the bits of the rows that hold in a scan; every row that can apply is evaluated."""
-        found = self.always.held(v)
-        if v.loaded and not v.unpowered:
-            found |= self.while_loaded.held(v)
-        if v.lifting_s >= 0.0 or v.resting or v.unpowered:
-            found |= self.while_ending.held(v)
-        return found
 
     def still_there(self, v: ScanInputs) -> int:
         """Return the bits of rows that apply only while something is demanded, evaluated as if it were."""

@@ -59,7 +59,7 @@ _CONTACT = "tester/kinds/wheel_on_belt/procedures/first_contact.py"
 
 def _masked(name: str) -> Mutant:
     """Return the mutant in which a row of the table is never evaluated."""
-    old = "for row in self.rows if row.when is when)"
+    old = "for row in table.rows if row.when is when)"
     return Mutant(f"row masked: {name}", _TABLE, old, f"{old[:-1]} and row.name != {name!r})", name)
 
 
@@ -91,7 +91,7 @@ BY_HAND: tuple[Mutant, ...] = (
     Mutant("not a number passes: hub", _HUB,
            "_hub_answered_s, STALE_JACKET_S", "lambda v: max(0.0, _hub_answered_s(v)), STALE_JACKET_S"),
     Mutant("not a number passes: every limit that is a parameter", _TABLE,
-           "not (number(v) <= parameters[parameter])", "number(v) > parameters[parameter]"),
+           "not (number(v) <= limit_value)", "number(v) > limit_value"),
     Mutant("acknowledged without the cause gone", _CONTROL,
            "        holding = (state.held | table.still_there(self.view) & state.tripped) & ~table.warnings\n",
            "        holding = 0\n"),

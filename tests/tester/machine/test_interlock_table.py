@@ -11,7 +11,7 @@ import pytest
 
 from tester.inputs.rig.parameter import Parameter
 from tester.machine.inputs import ScanInputs
-from tester.machine.interlock_table import Group, InterlockTable, parameters_of
+from tester.machine.interlock_table import Group, InterlockTable, RigTable, parameters_of
 from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always
 from tester.machine.watches import at_most, condition
 
@@ -39,12 +39,14 @@ TABLE = InterlockTable(
     ],
     [OPERATION],
 )
+VALUES = {LEVEL: 3.0, DELAY: 0.03}
+ROWS = RigTable(TABLE, VALUES)
 
 
 def scan(**what: object) -> ScanInputs:
     """Return a scan of a run in contact, in which nothing ends."""
     inputs = ScanInputs(resting=False)
-    inputs.parameters = {LEVEL: 3.0}
+    inputs.parameters = VALUES
     for name, value in what.items():
         setattr(inputs, name, value)
     return inputs
@@ -62,7 +64,7 @@ def scan(**what: object) -> ScanInputs:
     ids=["in contact", "lifted", "without power", "lifting", "at rest"],
 )
 def test_a_row_is_evaluated_in_the_scans_in_which_it_can_apply(inputs: ScanInputs, names: list[str]) -> None:
-    assert TABLE.names_of(TABLE.held(inputs)) == names
+    assert TABLE.names_of(ROWS.held(inputs)) == names
 
 
 def test_a_cause_that_is_only_watched_while_something_is_wanted_is_asked_for_by_itself() -> None:
@@ -90,18 +92,18 @@ def test_a_row_is_timed_by_its_delay() -> None:
 
 def test_a_group_tells_every_condition_that_holds() -> None:
     rows = [replace(ROW, watch=NEVER), ROW, replace(ROW, applies=never), LATE, replace(LATE, applies=never)]
-    group = Group((1 << i, row) for i, row in enumerate(rows))
+    group = Group(((1 << i, row) for i, row in enumerate(rows)), VALUES)
     assert group.held(scan(late_s=4.0)) == 0b1010 and group.held(scan(late_s=3.0)) == 0b0010
 
 
 def test_a_number_that_is_not_known_is_beyond_its_limit() -> None:
-    assert [Group([(1, LATE)]).held(scan(late_s=late_s)) for late_s in (-inf, 3.0, 3.1, nan)] == [0, 0, 1, 1]
+    assert [Group([(1, LATE)], VALUES).held(scan(late_s=late_s)) for late_s in (-inf, 3.0, 3.1, nan)] == [0, 0, 1, 1]
 
 
 def test_every_row_is_in_exactly_one_group() -> None:
-    bits = [one for group in (TABLE.always, TABLE.while_loaded, TABLE.while_ending) for one, _ in group.members]
+    bits = [one for group in (ROWS.always, ROWS.while_loaded, ROWS.while_ending) for one, _ in group.members]
     assert sorted(bits) == [1 << i for i in range(len(TABLE.rows))]
 
 
 def test_copies_of_a_machine_share_its_table() -> None:
-    assert copy.deepcopy([TABLE])[0] is TABLE
+    assert copy.deepcopy([TABLE])[0] is TABLE and copy.deepcopy([ROWS])[0] is ROWS

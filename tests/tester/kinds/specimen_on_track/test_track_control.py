@@ -9,6 +9,7 @@ import pytest
 
 from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs, WayMonitor
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
+from tester.machine.interlock_table import RigTable
 from tester.machine.state import Mode
 from tests.tester.kinds.specimen_on_track.bench import TrackBench
 
@@ -23,7 +24,7 @@ def sliding() -> TrackBench:
 def held(bench: TrackBench) -> list[str]:
     """Return the names of the rows that hold now."""
     view = bench.run.engine.control.view
-    return TABLE.names_of(TABLE.held(view))
+    return TABLE.names_of(RigTable(TABLE, view.parameters).held(view))
 
 
 def test_no_row_holds_while_it_slides(sliding: TrackBench) -> None:
