@@ -28,7 +28,7 @@ class SheetVerdict:
 
 
 def check_sheet(config: AxisConfig, sheet: DataSheet) -> SheetVerdict:
-    """Return what connecting the axis would refuse and do without, on a drive that matches its data sheet."""
+    """Return the refusals and the missing functions of a connect of the axis, with a drive as in its data sheet."""
     absent = [key for key in tried(config) if key not in sheet.objects]
     made = plan(config, absent)
     refused: dict[str, str] = {}             # once for each object, with the first reason

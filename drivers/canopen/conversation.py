@@ -113,7 +113,7 @@ def _type_of(request: SdoRead | SdoWrite) -> DataType:
 class Dialogue:
     """One conversation with one device: turns its requests into frames and replies into results.
 
-    ``due`` is the time (s) at which ``step`` wants to be called next, whatever arrives.
+    ``due`` is the latest time (s) of the next call of ``step``.
     """
 
     def __init__(self, peer: Peer, conversation: Conversation, sdo_timeout_s: float) -> None:

@@ -55,7 +55,7 @@ class FurtherObject:
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """Counts of other objects for each count of 0x60FF; units of torque and rated torque besides."""
+    """Counts of other objects for each count of 0x60FF; also the units of torque and rated torque."""
 
     acceleration: float = 1.0
     """0x6083, 0x6084, 0x6085, 0x609A."""

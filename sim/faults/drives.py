@@ -186,7 +186,7 @@ def sdo_spoiled(scene: Scene, on: bool, now: float, axis: str, kind: SdoFault) -
 
 
 class ModeRefused(_OnAxis):
-    """A drive refuses every mode of operation: a wrong firmware, or a drive that takes itself for moving."""
+    """A drive refuses every mode of operation: a wrong firmware, or a drive that wrongly considers itself in motion."""
 
     def refuse(self, sub: int, value: int) -> None:
         """Refuse a write to 0x6060."""

@@ -252,8 +252,8 @@ def _with_mean(
 ) -> ConditionResult:
     """Return ``shell`` with mean and scatter of ``items``, and their greatest swing; a single item shows no scatter.
 
-    ``used``: positions of those in the mean, where not all are; the scatter is that of all. ``flagged``: positions of
-    outliers.
+    ``used``: positions of the items in the mean, if some are left out; the scatter is that of all items. ``flagged``:
+    positions of outliers.
     """
     values, n = [item.mu_resultant for item in items], len(items)
     used = range(n) if used is None else used

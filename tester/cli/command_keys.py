@@ -12,7 +12,7 @@ from typing import TextIO
 
 
 class Keys:
-    """A keyboard that can be asked, and left alone while a person types a line. This one has no terminal."""
+    """A keyboard read key by key between ``begin`` and ``end``. This class has no terminal and reports no keys."""
 
     def begin(self) -> None:
         """Take single keys from now on; pressing one shows nothing."""
@@ -59,7 +59,7 @@ else:
 
         @contextmanager
         def as_os_error() -> Generator[None]:
-            """A terminal that is gone is an OSError like any other: termios has an exception of its own."""
+            """Raise an error of termios, such as a lost terminal, as an OSError."""
             try:
                 yield
             except termios.error as error:

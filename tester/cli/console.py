@@ -136,7 +136,7 @@ class Console(ReportScreen):
             self._progress.start()
 
     def show(self, now_s: float, run: RunProgress, at: RunPosition) -> None:
-        """Show where the run is, or one of its parts where they run side by side."""
+        """Show the progress of the run, or of one of several parallel parts."""
         of_part = {"part": at.part} if at.parts > 1 else {}
         label = f"part {at.part} of {at.parts}  " if at.parts > 1 else ""
         if run.title != self._titles.get(at.part):
@@ -209,7 +209,7 @@ class Console(ReportScreen):
     # -- prompts ----------------------------------------------------------------------------------------------
 
     def attend(self, prompts: Prompts) -> None:
-        """Put the waiting question; never blocks the scan. Keys typed before it are no answer to it."""
+        """Ask the waiting question without blocking the scan. Keys typed before the question do not answer it."""
         waiting = prompts.waiting
         if waiting is None or waiting is self._question:
             return

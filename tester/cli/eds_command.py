@@ -81,7 +81,7 @@ def _makers(sheet: DataSheet) -> str:
 
 
 def _axes_of(rig_name: str, axis: str, profile: str) -> dict[str, AxisConfig]:
-    """Return the axes of a rig that are meant, with another profile if one is asked for."""
+    """Return the requested axes of a rig, with another profile if one is named."""
     from tester.kinds import load_rig
 
     drives = dict(load_rig(rig_name).drives())
@@ -94,7 +94,7 @@ def _axes_of(rig_name: str, axis: str, profile: str) -> dict[str, AxisConfig]:
 
 
 def _usual_axes(profile: str) -> dict[str, AxisConfig]:
-    """Return an axis of each sort, of no machine: identities are not compared, numbers are of usual size."""
+    """Return an axis of each sort for no particular machine: identities are not compared, numbers are of usual size."""
     from drivers.axis import AxisConfig
     from drivers.screw import Screw
 

@@ -80,7 +80,7 @@ def _next_lines(results: RunResults, folder: Path) -> Iterator[str]:
 
 
 def _near(program: str) -> str:
-    """Return a program's path from here where that is shorter; on the search path, its name."""
+    """Return a program's path, relative to the working folder if the program is below it."""
     path = Path(program)
     if path.is_absolute() and path.is_relative_to(Path.cwd()):
         return str(path.relative_to(Path.cwd()))

@@ -19,7 +19,7 @@ from tester.inputs.materials.setting import law_setting
 
 @dataclass(frozen=True, slots=True)
 class TrackPoint:
-    """A condition of a specimen on a track, and the law that is asked."""
+    """A condition of a specimen on a track, and the law to evaluate."""
 
     law: str
     compound: str
@@ -47,7 +47,7 @@ class OnePair:
 
 
 def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_json: bool) -> int:
-    """Print the value, and what else is asked; return the exit code: 1 where a table is not right enough.
+    """Print the coefficient and the requested further results; return the exit code: 1 if a table's error is too large.
 
     Raises ValueError, InvalidSource for a file that cannot be used.
     """

@@ -93,7 +93,7 @@ def _doors(listen: str, slcan: bool, rtu: bool, can: str, links: Path | None) ->
 
 
 class StatusLine:
-    """The last line of the terminal, kept for how the rig is; commands are typed and answered above it."""
+    """The last line of the terminal shows the rig's state; commands are typed and answered above it."""
 
     def __init__(self) -> None:
         """Nothing is shown yet."""

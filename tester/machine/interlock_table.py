@@ -159,7 +159,7 @@ class InterlockTable:
         return [row.name for i, row in enumerate(self.rows) if bits >> i & 1]
 
     def still_there(self, v: ScanInputs) -> int:
-        """Return the bits of rows that apply only while something is demanded, evaluated as if it were."""
+        """Return the bits of rows that apply only to a demand and whose cause remains, evaluated without it."""
         return sum(bit for bit, there in self._unseen if there(v))
 
     def delays_s(self, values: Values) -> tuple[float, ...]:

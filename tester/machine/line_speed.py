@@ -22,7 +22,7 @@ READINGS: Final = 2.0
 
 
 def needed_s(period_s: float, exchange_s: float, others_s: float) -> float:
-    """Return the age that a device's readings need, s.
+    """Return the smallest limit of age that a device's readings can keep, s.
 
     ``period_s``: between two readings; ``exchange_s``: of one of them; ``others_s``: of the line's other devices.
     """

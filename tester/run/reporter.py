@@ -26,7 +26,7 @@ class ReportScreen:
         """Show that a run has begun."""
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Show where the run is, or where one of its parts is when they run side by side."""
+        """Show the progress of the run, or of one of several parallel parts."""
 
     def attend(self, prompts: Prompts) -> None:
         """Ask and answer prompts without blocking."""

@@ -44,7 +44,7 @@ class SweepFiles:
         _append(self._conditions, sweep_tables.condition_rows(result))
 
     def finish(self) -> None:
-        """Write every table in order, so that the same results give the same files, in whatever order they arrived."""
+        """Write every table in order, so that the files do not depend on the order in which results arrived."""
         results, axes = sorted(self.results, key=sweep_tables.case_of), self.axes
         self._runs.close()
         self._conditions.close()
