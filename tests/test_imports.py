@@ -54,6 +54,16 @@ def test_simulator_does_not_load_the_application() -> None:
     assert "tester" not in loaded_by(EVERY_MODULE.format(names=["sim"]))
 
 
+def test_stop_loads_only_what_sends_it() -> None:
+    code = """
+from tester.cli.main import invoke
+from tester.service.stop_call import StopCall
+StopCall.stop = lambda self, *, fast=False: None
+assert invoke(["stop"]) == 0
+"""
+    assert not loaded_by(code) & {"pydantic", "asyncio", "numpy", "yaml", "websockets"}
+
+
 @pytest.mark.parametrize("arguments", ['["--help"]', "[]"], ids=["help", "next steps"])
 def test_help_and_next_steps_load_nothing_heavy(
     arguments: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

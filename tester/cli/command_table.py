@@ -82,7 +82,7 @@ SECTIONS: Mapping[str, Mapping[str, Listed]] = {
         "hold": CommandEntry("service_commands", "hold", "HOLD: lift, wait, keep the temperature."),
         "release": CommandEntry("service_commands", "release", "End a HOLD."),
         "ack": CommandEntry("service_commands", "ack", "Acknowledge alarms; this moves nothing."),
-        "stop": CommandEntry("service_commands", "stop", "STOP the rig."),
+        "stop": CommandEntry("stop_command", "stop", "STOP the rig."),
     },
     "Files": {
         "export": CommandEntry("result_commands", "export", "Write a run's results as a table."),

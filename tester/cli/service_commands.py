@@ -1,4 +1,4 @@
-"""``tester serve`` and its controls: ``status``, ``hold``, ``release``, ``ack``, ``stop``."""
+"""``tester serve`` and its controls: ``status``, ``hold``, ``release``, ``ack``; ``stop`` is in ``stop_command``."""
 
 from __future__ import annotations
 
@@ -11,18 +11,15 @@ import click
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_UNREACHABLE
 from tester.base.words import conditions_done, duration
 from tester.cli.options import RigChoice, command, json_option, print_json, rig_options, runs_option
+from tester.cli.stop_command import address_named, connect_option, name_here
 from tester.cli.text_table import shown
 
 if TYPE_CHECKING:
-    from tester.service.address import Address
     from tester.service.client import Client
     from tester.service.commands import Action
     from tester.service.state_view import StateView
 
 NO_SERVICE = "no service is running: start one with `tester serve`"
-connect_option = click.option(
-    "--connect", "address", default="", metavar="URL", help="The service: unix:PATH or ws://127.0.0.1:PORT."
-)
 take_option = click.option("--take", is_flag=True, help="Take control from the client that has it.")
 
 
@@ -100,22 +97,6 @@ def ack(address: str, take: bool) -> int:
     return give(address, Acknowledge(), take)
 
 
-@command()
-@connect_option
-@click.option("--fast", is_flag=True, help="Quick stop of both drives instead of a controlled stop.")
-def stop(address: str, fast: bool) -> int:
-    """STOP: heat off, lift, both drives to standstill. From any shell, with or without control. No emergency stop."""
-    from tester.service.commands import Stop
-    from tester.service.stop_call import NotTakenError, StopCall
-
-    try:
-        with StopCall(address_named(address), _name()) as call:
-            call.stop(fast=fast)
-    except NotTakenError:  # without the lane for STOP it goes the way of any other command
-        return give(address, Stop(fast=fast), take=False, control=False)
-    return EXIT_DONE
-
-
 def give(address: str, action: Action, take: bool, *, control: bool = True, show_folder: bool = False) -> int:
     """Give the service one command and return the exit code; ``show_folder``: print the run's folder."""
     from tester.service.client import LostError, NoServiceError, RefusedError
@@ -148,24 +129,10 @@ def _with_client(address: str, work: Callable[[Client], Awaitable[None]], *, con
     from tester.service.client import Client
 
     async def session() -> None:
-        async with await Client.connect(address_named(address), name=_name(), control=control) as client:
+        async with await Client.connect(address_named(address), name=name_here(), control=control) as client:
             await work(client)
 
     asyncio.run(session())
-
-
-def address_named(text: str) -> Address | None:
-    """Return the address that was typed, None for the user's own service; raises AddressError."""
-    from tester.service.address import address_of
-
-    return address_of(text) if text else None
-
-
-def _name() -> str:
-    """Return a command's name at the service."""
-    import os
-
-    return f"command of process {os.getpid()}"
 
 
 def _show(state: StateView, as_json: bool) -> None:

@@ -9,21 +9,20 @@
 from __future__ import annotations
 
 import socket
+import struct
+import sys
 from contextlib import suppress
 
 from tester.base import clock
 from tester.base.trouble import in_words
 from tester.service.address import Address, AddressError, UnixAddress, default_address, stop_path
-from tester.service.stop_door import TAKEN
 
+TAKEN = b"taken\n"
+"""The door's answer."""
 WITHIN_S = 3.0
 """Time without an answer after which STOP has failed, s."""
-
-
 AGAIN_S = 0.005
-"""Time between two attempts to connect while the queue is full, s: the door accepts some hundred connections a
-second.
-"""
+"""Time between two attempts to connect while the queue is full, s, on a system where a full queue refuses at once."""
 
 
 class NotTakenError(Exception):
@@ -125,7 +124,6 @@ def _connected(address: Address) -> socket.socket:
     if isinstance(address, UnixAddress):
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
-            connection.settimeout(WITHIN_S)
             _queue_up(connection, str(stop_path(address.path)))
         except OSError:
             connection.close()
@@ -137,12 +135,17 @@ def _connected(address: Address) -> socket.socket:
 
 
 def _queue_up(connection: socket.socket, path: str) -> None:
-    """Connect, and retry while the door's queue is full: a Unix socket then fails at once. Raises OSError."""
+    """Connect, and wait while the door's queue is full. Raises OSError, TimeoutError."""
+    if sys.platform == "linux":
+        # The kernel lets those who wait in connect in by their turn. Whoever tries again later loses every race.
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("@ll", int(WITHIN_S), 0))
+    else:
+        connection.settimeout(WITHIN_S)
     end_s = clock.monotonic() + WITHIN_S
     while True:
         try:
             connection.connect(path)
-        except BlockingIOError:
+        except BlockingIOError:  # the queue is full, or was for the whole time
             if clock.monotonic() >= end_s:
                 raise TimeoutError("too many others are calling") from None
             clock.sleep_until(clock.monotonic() + AGAIN_S)

@@ -25,26 +25,24 @@ from pydantic import TypeAdapter
 from tester.base import clock
 from tester.service.address import peer_of, peer_text, unlink_socket, with_peer
 from tester.service.child_process import link_to_owner
+from tester.service.stop_call import TAKEN
 
 MOST_CALLERS = 256
 """Greatest number of connections at a time. Above it, the oldest connection of the process with the most connections is
 closed.
 """
-ACCEPTED_AT_ONCE = 64
-"""Greatest number of new connections accepted before the existing ones are handled."""
-PAUSE_S = 0.03
-"""Pause after accepting new connections, s: it limits the CPU time that a caller can use by reconnecting without
-end.
+WORK_S = 0.002
+"""Longest time for which the door accepts new connections before it handles the existing ones, s."""
+PAUSE_SHARE = 4.0
+"""Length of the pause that follows, as a multiple of the time that accepting took: callers who reconnect without end
+cannot use more than a fifth of a core.
 """
 LONGEST = 512
 """Upper limit of a line's length, bytes."""
 NAME_LENGTH, NAMES_LENGTH = 100, 400
 """Greatest length of a caller's name, and of the list of names in a line, characters."""
-TAKEN = b"taken\n"
-BACKLOG = ACCEPTED_AT_ONCE
-"""Length of the listening queue. The door accepts a full queue at once, so that no caller waits longer than the
-pause.
-"""
+BACKLOG = 64
+"""Length of the listening queue: the door accepts all of it at a time, so no caller in it waits longer than a pause."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +64,6 @@ class Caller:
     connection: socket.socket
     process: int
     admitted: bool
-    peer: str
     received: bytes = b""
 
 
@@ -94,7 +91,8 @@ class StopDoor:
         """``uid``: the only permitted user on a Unix socket; ``token``: the token required on TCP."""
         self.uid, self.token = uid, token
         self.owner = owner
-        self.callers: list[Caller] = []
+        self.callers: dict[Caller, None] = {}
+        """The connections, oldest first."""
         self.ended = False
         self._listener = listener
         self._selector = selectors.DefaultSelector()
@@ -134,23 +132,31 @@ class StopDoor:
     # -- callers ----------------------------------------------------------------------------------------------
 
     def _admit(self) -> None:
-        for _ in range(ACCEPTED_AT_ONCE):
+        began_s = now_s = clock.monotonic()
+        while now_s - began_s < WORK_S:
             try:
                 connection, _ = self._listener.accept()
             except OSError:  # the queue is empty, or the caller has disconnected
-                return
-            connection.setblocking(False)
-            process, uid = peer_of(connection)
-            if not self.token and uid is not None and uid != self.uid:
-                connection.close()
-                continue
-            caller = Caller(connection, process, not self.token, peer_text(connection))
-            self.callers.append(caller)
+                break
+            self._welcome(connection)
+            now_s = clock.monotonic()
+        self._selector.unregister(self._listener)
+        self._admits_s = now_s + PAUSE_SHARE * (now_s - began_s)
+
+    def _welcome(self, connection: socket.socket) -> None:
+        process, uid = peer_of(connection)
+        if not self.token and uid is not None and uid != self.uid:
+            connection.close()
+            return
+        connection.setblocking(False)
+        caller = Caller(connection, process, not self.token)
+        self.callers[caller] = None
+        # Nearly always its first line is already here. A flood's connections have already ended: they cost little.
+        self._receive(caller)
+        if caller in self.callers:
             self._selector.register(connection, selectors.EVENT_READ, caller)
             if len(self.callers) > MOST_CALLERS:
                 self._make_room()
-        self._selector.unregister(self._listener)
-        self._admits_s = clock.monotonic() + PAUSE_S
 
     def _make_room(self) -> None:
         """Close the oldest connection of the process that has the most connections."""
@@ -161,8 +167,9 @@ class StopDoor:
         self._let_go(next(caller for caller in self.callers if caller.process == most))
 
     def _let_go(self, caller: Caller) -> None:
-        self.callers.remove(caller)
-        self._selector.unregister(caller.connection)
+        del self.callers[caller]
+        with suppress(KeyError):  # its first line was its last: it was never registered
+            self._selector.unregister(caller.connection)
         caller.connection.close()
 
     def _receive(self, caller: Caller) -> None:
@@ -189,7 +196,7 @@ class StopDoor:
         if word not in ("stop", "fast"):
             return False
         plain = "".join(c for c in name if c.isprintable())[:NAME_LENGTH] or "a client"
-        self._want(caller, word == "fast", with_peer(plain, caller.peer))
+        self._want(caller, word == "fast", with_peer(plain, peer_text(caller.connection)))
         return True
 
     # -- the owner --------------------------------------------------------------------------------------------

@@ -148,20 +148,24 @@ class Place:
         sent_s, answered_s = await asyncio.to_thread(say)
         return name, sent_s, answered_s
 
-    async def tries(self, count: int, kept: bool = False) -> list[Try]:
+    async def tries(self, count: int, kept: bool = False, fresh: bool = False) -> list[Try]:
         """STOP so many times at random moments, over a connection that stays open as a screen's does.
 
-        ``kept``: where nothing ticks it is enough that nothing begins any more.
+        ``kept``: where nothing ticks it is enough that nothing begins any more. ``fresh``: connect anew each time, as
+        a command or a script does; the time to connect counts.
         """
-        return self.judged(await self.stops(count), kept)
+        return self.judged(await self.stops(count, fresh), kept)
 
-    async def stops(self, count: int) -> list[tuple[str, float, float | None]]:
+    async def stops(self, count: int, fresh: bool = False) -> list[tuple[str, float, float | None]]:
         """As ``tries``, not judged yet."""
         made: list[tuple[str, float, float | None]] = []
         with StopCall(self.address, "probe") as call:
-            call.connect()
+            if not fresh:
+                call.connect()
             for _ in range(count):
                 made.append(await self.stop(call, 0.05 + 0.2 * self._random.random()))
+                if fresh:
+                    call.close()
         return made
 
     def judged(self, made: list[tuple[str, float, float | None]], kept: bool = False) -> list[Try]:

@@ -98,20 +98,25 @@ def at_rest(view: StateView) -> bool:
 
 async def sliding_and_resting(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
     """100 Hz and 10 Hz: a run that slides, then rests."""
-    quiet = await begin_to_slide(place, client, max(QUIET_S, 0.4 * count))
+    quiet = await begin_to_slide(place, client, max(QUIET_S, 0.8 * count))
     with attack(BY_FORCE):
         await asyncio.sleep(SETTLE_S)
         began_s = clock.monotonic()
         tries = await place.tries(count)
+        fresh = await place.tries(count, fresh=True)
         await asyncio.sleep(began_s + QUIET_S - clock.monotonic())
         loud = (began_s, clock.monotonic())
         yield holds("at 100 Hz: the run ticks as", True, place.scheduling(), "no limit")
         yield holds("at 100 Hz: the wheel still slides", slides(client.state), client.state.mode, "RUN")
         for figure in figures_of(place, "at 100 Hz", tries, began_s):
             yield figure
+        for figure in figures_of(place, "at 100 Hz, fresh", fresh, began_s):
+            yield figure
         await place.until(client, lambda view: view.tick.rate_hz <= 10.0, "a rest", 120.0)
         began_s = clock.monotonic()
         for figure in figures_of(place, "at 10 Hz", await place.tries(count), began_s):
+            yield figure
+        for figure in figures_of(place, "at 10 Hz, fresh", await place.tries(count, fresh=True), began_s):
             yield figure
         yield at_most("rate at a rest", client.state.tick.rate_hz, 10.0, "Hz", 1)
     yield await ended_by_the_operator(place, client)

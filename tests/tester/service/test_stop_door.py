@@ -60,6 +60,12 @@ class Bench:
             one.close()
 
 
+@pytest.fixture(autouse=True)
+def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the door accept connections at every turn."""
+    monkeypatch.setattr("tester.service.stop_door.PAUSE_SHARE", 0.0)
+
+
 @pytest.fixture
 def bench(tmp_path: Path) -> Iterator[Bench]:
     made = Bench(tmp_path)
@@ -113,8 +119,7 @@ def test_a_fast_stop_among_those_that_wait_makes_theirs_fast(bench: Bench) -> No
     assert bench.told() == ["fast b, c, d"]
 
 
-def test_a_process_with_too_many_connections_loses_its_oldest(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tester.service.stop_door.PAUSE_S", 0.0)
+def test_a_process_with_too_many_connections_loses_its_oldest(bench: Bench) -> None:
     first = bench.call()
     for _ in range(MOST_CALLERS):
         bench.call()
@@ -159,6 +164,30 @@ def test_where_there_is_a_token_it_is_shown_first(tmp_path: Path, text: str, tol
         assert bench.told() == told
     finally:
         bench.close()
+
+
+def test_a_connection_that_has_ended_is_never_kept(bench: Bench) -> None:
+    for _ in range(10):
+        caller = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        caller.connect(str(bench.path))
+        caller.close()
+    bench.turn()
+    assert not bench.door.callers
+
+
+def test_a_flood_of_connections_leaves_four_fifths_of_the_time(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    times = iter([0.0, 0.001, 0.0015, 0.0019, 0.00201])
+    monkeypatch.setattr("tester.service.stop_door.PAUSE_SHARE", 4.0)
+    monkeypatch.setattr("tester.service.stop_door.clock.monotonic", lambda: next(times))
+    callers = [socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) for _ in range(6)]
+    for caller in callers:
+        caller.connect(str(bench.path))
+    bench.callers += callers
+    bench.door.turn(0.0)
+    assert len(bench.door.callers) == 4
+    assert bench.door._admits_s == pytest.approx(0.00201 * 5)  # pyright: ignore[reportPrivateUsage]
 
 
 def test_the_door_ends_with_its_owner(bench: Bench) -> None:

@@ -12,7 +12,6 @@ from threading import Thread
 
 import pytest
 
-from tester.base import clock
 from tester.service.address import Address, TcpAddress, UnixAddress, new_tcp_address, stop_path
 from tester.service.stop_call import NotTakenError, StopCall
 from tester.service.stop_lane import StopLane, StopWish
@@ -117,15 +116,17 @@ def test_where_there_is_no_service_it_says_so(tmp_path: Path) -> None:
         call.stop()
 
 
-def test_a_queue_before_the_door_that_is_full_is_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_queue_before_the_door_that_is_full_is_waited_for(tmp_path: Path) -> None:
     address = UnixAddress(tmp_path / "service.sock")
     with socket.socket(socket.AF_UNIX) as door, socket.socket(socket.AF_UNIX) as other:
         door.bind(str(stop_path(address.path)))
         door.listen(0)
         other.connect(str(stop_path(address.path)))
         let_in: list[socket.socket] = []
-        monkeypatch.setattr(clock, "sleep_until", lambda _: let_in.append(door.accept()[0]))
         with StopCall(address, "me") as call:
+            accepting = Thread(target=lambda: let_in.append(door.accept()[0]))
+            accepting.start()
             call.connect()
+            accepting.join()
             assert call.open and len(let_in) == 1
         let_in[0].close()
