@@ -16,7 +16,9 @@ from drivers.drives.reader import GENERIC, drive_profile
 from drivers.profiles.model import ProfileError
 from drivers.screw import Screw
 
-_I32_MAX = 0x7FFF_FFFF
+_I32_MAX, _U32_MAX = 0x7FFF_FFFF, 0xFFFF_FFFF
+LEAST_COUNTS = 100
+"""Counts of 0x60FF at the greatest speed: with fewer a step of speed is more than 1 % of it [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +99,11 @@ class AxisConfig:
             problems.append("position mode needs position feedback")
         if self.software_limits is not None and not self.software_limits[0] < self.software_limits[1]:
             problems.append(f"software_limits {self.software_limits} are not in ascending order")
-        if self.max_speed * self.velocity_increments > _I32_MAX:
-            problems.append("max_speed x velocity_increments does not fit the 32 bits of 0x60FF")
+        if not LEAST_COUNTS <= self.max_speed * self.velocity_increments <= _I32_MAX:
+            problems.append(f"max_speed x velocity_increments is {self.max_speed * self.velocity_increments:g} counts:"
+                            f" expected {LEAST_COUNTS} (steps of 1 %) to 2^31 - 1, the 32 bits of 0x60FF")
+        if not problems:
+            self._check_counts(problems)
         for name in ("heartbeat_s", "consumer_heartbeat_s"):
             value = getattr(self, name)
             if not 0.001 <= value <= 65.535:
@@ -112,6 +117,32 @@ class AxisConfig:
         if self.digital_io and not 0.01 <= self.inputs_period_s <= 65.535:
             problems.append(f"inputs_period is {self.inputs_period_s} s, possible are 0.01..65.535 s")
         return problems
+
+    def _check_counts(self, problems: list[str]) -> None:
+        """Note values that do not fit the objects of the drive that they are written to."""
+        for name in ("acceleration", "deceleration", "quick_stop_deceleration"):
+            counts = getattr(self, name) * self.acceleration_counts
+            if not 1.0 <= counts <= _U32_MAX:
+                problems.append(f"{name} is {counts:g} counts, possible are 1..2^32 - 1 (0x6083 to 0x6085)")
+        counts = self.max_speed * self.max_speed_counts
+        if not 1.0 <= counts <= _U32_MAX:
+            problems.append(f"max_speed is {counts:g} counts, possible are 1..2^32 - 1 (0x6080)")
+        places = {"home_offset": (self.home_offset,), "software_limits": self.software_limits or ()}
+        for name, values in places.items():
+            if not all(abs(value * self.position_increments) <= _I32_MAX for value in values):
+                problems.append(f"{name} x position_increments does not fit the 32 bits of its object")
+        for name in ("homing_speed", "homing_zero_speed"):
+            if not 0.0 <= getattr(self, name) <= self.max_speed:
+                problems.append(f"{name} is {getattr(self, name)}, possible are 0..max_speed")
+        if not -128 <= self.homing_method <= 127:
+            problems.append(f"homing_method is {self.homing_method}, possible are -128..127 (0x6098)")
+        if not 0.0 < self.home_timeout_s <= 3600.0:
+            problems.append(f"home_timeout is {self.home_timeout_s} s, possible are up to 3600 s")
+        if not 0.0 <= self.rpdo_deadline_s <= 65.535:
+            problems.append(f"rpdo_deadline is {self.rpdo_deadline_s} s, possible are 0..65.535 s (0x1400:05)")
+        for name in ("vendor_id", "product_code", "serial_number"):
+            if not 0 <= getattr(self, name) <= _U32_MAX:
+                problems.append(f"{name} is {getattr(self, name)}, possible are 0..2^32 - 1 (0x1018)")
 
     def _check_profile(self, problems: list[str]) -> None:
         """Raise ProfileError where there is no such profile; note parameters that the profile does not have."""
