@@ -9,21 +9,42 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from tester.inputs.rig.ceilings import ceiling_table
+from tester.inputs.rig.key_classes import class_of
+from tester.inputs.rig.key_table import ceiling_table, classed
+from tester.inputs.rig.parameter import SECTION, Parameter
+from tester.inputs.rig.plain_rig import PlainRig
 from tester.kinds import PACKAGED, find
 from tester.kinds.kind import Kind
+from tester.machine import wires
 from tester.machine.interlock_table import HEADER
 
 ROOT = Path(__file__).resolve().parents[1]
+EVERY_KIND = list(classed(PlainRig))
+EVERY_KIND += [
+    ([f"{SECTION}.{one.key}"], bound)
+    for one in vars(wires).values()
+    if isinstance(one, Parameter)
+    for bound in class_of(one)
+]
+"""The classes of the keys that every kind has."""
 
 
 def page_text(kind: Kind, text: str) -> str:
     """Return a kind's page with its tables anew."""
-    for name, table in (("interlocks", kind.interlocks().table()), ("ceilings", ceiling_table(kind.rig().ceilings))):
-        begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->"
-        before, _, rest = text.partition(begin)
-        text = before + begin + table + end + rest.partition(end)[2]
-    return text
+    text = _with(text, "interlocks", kind.interlocks().table())
+    return _with(text, "ceilings", ceiling_table(classed(kind.rig()), EVERY_KIND))
+
+
+def _with(text: str, name: str, table: str) -> str:
+    """Return a page with one table anew, between its two marks."""
+    begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->"
+    before, _, rest = text.partition(begin)
+    return before + begin + table + end + rest.partition(end)[2]
+
+
+def safety_text(text: str) -> str:
+    """Return the page of safety with the ceilings that every kind has."""
+    return _with(text, "ceilings", ceiling_table(EVERY_KIND))
 
 
 def rig_text(kind: Kind, text: str) -> str:
@@ -43,7 +64,10 @@ def outdated(kinds: tuple[str, ...] = PACKAGED) -> list[tuple[Path, str]]:
             text = path.read_text(encoding="utf-8")
             due = anew(kind, text)
             found += [(path, due)] * (due != text)
-    return found
+    safety = ROOT / "docs" / "safety.md"
+    text = safety.read_text(encoding="utf-8")
+    due = safety_text(text)
+    return found + [(safety, due)] * (due != text)
 
 
 def main(arguments: list[str]) -> int:

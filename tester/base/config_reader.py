@@ -54,6 +54,33 @@ class Range:
     le: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A field of a configuration class: its name, its key in the file, its type and its unit.
+
+    ``unit`` is "" for anything but a quantity. ``marks``: everything else that its ``Annotated`` type carries.
+    """
+
+    name: str
+    key: str
+    type: Any
+    unit: str
+    marks: tuple[object, ...]
+
+
+@cache
+def entries(kind: type[DataclassInstance]) -> tuple[Entry, ...]:
+    """Return the fields of a configuration class that a file sets, in their order."""
+    hints = _hints(kind)
+    return tuple(_entry(field.name, hints[field.name]) for field in fields(kind) if field.init)
+
+
+def _entry(name: str, hint: Any) -> Entry:
+    marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
+    bare: Any = get_args(hint)[0] if marks else hint
+    return Entry(name, _key(name, hint), bare, _unit(hint) or "", marks)
+
+
 def key_of(kind: type[DataclassInstance], name: str) -> str:
     """Return the key of a configuration class's field in the file."""
     return _key(name, _hints(kind)[name])
@@ -100,6 +127,11 @@ def _hints(kind: type[DataclassInstance]) -> dict[str, Any]:
 
 def _takes_rest(hint: object) -> bool:
     return get_origin(hint) is Annotated and FURTHER_KEYS in get_args(hint)
+
+
+def _without_marks(hint: Any) -> Any:
+    """Return the type of a field that is no quantity, without what marks it."""
+    return get_args(hint)[0] if get_origin(hint) is Annotated and _unit(hint) is None else hint
 
 
 def _may_be_empty(field: Field[Any]) -> bool:
@@ -195,6 +227,7 @@ def _type(hint: Any) -> Any:
     if unit is not None:
         bounds = next((argument for argument in get_args(hint) if isinstance(argument, Range)), Range())
         return Annotated[float, Quantity(unit, True, bounds.gt, bounds.ge, bounds.lt, bounds.le)]
+    hint = _without_marks(hint)
     if isinstance(hint, type) and is_dataclass(hint):
         return _built(hint)
     origin, arguments = get_origin(hint), get_args(hint)
@@ -214,10 +247,9 @@ def _plain(value: object, hint: object) -> object:
         return _number(value) if unit == "1" else Written(f"{_number(value)} {unit}")
     if is_dataclass(value) and not isinstance(value, type):
         return as_tree(value)
-    arguments = get_args(hint)
     if isinstance(value, Mapping):
-        entries = cast("Mapping[str, object]", value)
-        return {key: _plain(entry, arguments[1]) for key, entry in entries.items()}
+        of = get_args(_without_marks(hint))[1]
+        return {key: _plain(entry, of) for key, entry in cast("Mapping[str, object]", value).items()}
     if isinstance(value, tuple):
         items = cast("tuple[object, ...]", value)
         return [_plain(item, None) for item in items]

@@ -1,4 +1,4 @@
-"""`tester rig init`, `tester rig show` and `tester rig upgrade`."""
+"""`tester rig init`, `tester rig show`, `tester rig keys` and `tester rig upgrade`."""
 
 from __future__ import annotations
 
@@ -56,6 +56,25 @@ def show(rig: RigChoice, as_json: bool) -> None:
     else:
         click.echo(config.text, nl=False)
     rig.remark(config)
+
+
+@rig.command()
+@click.option("--kind", default=DEFAULT, show_default=True, metavar="KIND", help="Kind of rig.")
+def keys(kind: str) -> None:
+    """Print every key of a kind's rig file with its class: bounded, held against another, or free.
+
+    With the reason, or what contradicts a wrong value.
+    """
+    from tester.inputs.rig.key_table import classed, in_words
+    from tester.kinds import UnknownKindError, find
+
+    try:
+        found = find(kind).rig()
+    except UnknownKindError as error:
+        raise click.UsageError(str(error)) from error
+    for names, one in classed(found):
+        text, because = in_words(one)
+        click.echo(f"{', '.join(names)}: {text}; {because}")
 
 
 @rig.command()

@@ -13,11 +13,10 @@ from tester.base.axes import Axes, Axis
 from tester.base.screen import axis_views
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.rig import Rig
-from tester.inputs.rig.ceilings import ceilings_of
 from tester.inputs.rig.config import section_of
 from tester.inputs.rig.parameter import SECTION
 from tester.kinds import find
-from tester.machine.interlock_table import InterlockSheet, InterlockTable, parameters_of
+from tester.machine.interlock_table import InterlockSheet, InterlockTable
 from tester.machine.row import Interlock
 from tester.machine.served import ServedKind
 
@@ -51,7 +50,6 @@ def rig_with(name: str, base: Any, rows: Rows) -> type[Rig]:
         "table": table,
         "parameters": table.parameters,
         "watched": table.channels,
-        "ceilings": (*base.ceilings, *ceilings_of(SECTION, parameters_of(rows))),
         "section": section,
     }
     return dataclass(frozen=True, slots=True, kw_only=True)(type("ExtendedRig", (base,), members))

@@ -20,6 +20,7 @@ Seconds = Callable[[Any], float]
 
 ACK_WAIT_S: Final = Parameter(
     "ack_wait_s", "s", "1 s", "an acknowledged drive has reset its fault by then, or it is refused [A]",
+    because="a drive with a fault has no power meanwhile",
 )  # fmt: skip
 
 

@@ -88,7 +88,7 @@ CLOCK_JUMP: Final[Row] = Interlock(
     reset=ACK,
 )
 
-LATE_WARN_S: Final = Parameter("late_warn_s", "s", "50 ms", "a scan this late is a warning ...")
+LATE_WARN_S: Final = Parameter("late_warn_s", "s", "50 ms", "a scan this late is a warning ...", because="a warning")
 LATE_SCAN_S: Final = Parameter(
     "late_scan_s", "s", "150 ms", "... this late a trip",
     hardest="200 ms", because="the drives stop by themselves 200 ms after the PC's last heartbeat or setpoint",
@@ -116,7 +116,7 @@ GUARD_OPEN: Final[Row] = Interlock(
 STALE_INPUTS_S: Final = Parameter(
     "stale_inputs_s", "s", "250 ms", "age of the inputs (safety chain, guard): one in a row may be lost [A]",
     hardest="500 ms",
-    because="five periods of the drive's input word: four lost in a row are no noise, the drive no longer sends them",
+    because="after five periods of its input word a drive no longer sends it",
 )  # fmt: skip
 
 INPUTS_STALE: Final[Row] = Interlock(
@@ -130,7 +130,7 @@ INPUTS_STALE: Final[Row] = Interlock(
 STALE_CAN_SCANS: Final = Parameter(
     "stale_can_scans", "1", "2.5", "age of the drives' data in scan periods ...", AT_LEAST_ONE,
     hardest="5",
-    because="the drives' own watch of the setpoints ends at 200 ms, twenty periods at 100 Hz: a quarter of that",
+    because="at 100 Hz a quarter of the 200 ms after which a drive stops without setpoints",
 )  # fmt: skip
 STALE_CAN_S: Final = Parameter(
     "stale_can_s", "s", "150 ms", "... and never more than this",
@@ -160,7 +160,7 @@ DEVICE_REFUSED: Final[Row] = Interlock(
 LINE_ERRORS: Final = Parameter(
     "line_errors", "1", "0.3", "share of failed requests to a Modbus device over 2 s or more ... [A]", SHARE,
     hardest="0.5",
-    because="a line on which every second request fails reaches its devices half as often as was planned",
+    because="its devices are then read half as often as planned",
 )  # fmt: skip
 LINE_ERRORS_DELAY_S: Final = Parameter(
     "line_errors_delay_s", "s", "3 s", "... for this long [A]", NOT_NEGATIVE,

@@ -22,7 +22,7 @@ from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.repeats_section import expected
 from tester.inputs.recipe.time_estimate import Estimator, StepEstimate
 from tester.inputs.rig import Rig
-from tester.inputs.rig.risks import value_at
+from tester.inputs.rig.rig_keys import value_at
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +147,7 @@ class PlainPart(SpecimenPart):
                         asked = Quantity(axis.recipe_unit).read(value)
                     except UnitError:
                         continue  # validation reports it
-                    if most is not None and abs(asked) > most:
+                    if isinstance(most, int | float) and abs(asked) > most:
                         at = ("grids", index, axis.name, *([place] if isinstance(listed, list) else []))
                         source = f'(limit {show(most, axis.recipe_unit)}: {axis.limit} of rig "{rig.name}")'
                         problem = f"{axis.name}: {show(asked, axis.recipe_unit)} is more than the rig allows {source}"

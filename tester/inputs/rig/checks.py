@@ -60,6 +60,8 @@ def _nodes(rig: Rig) -> _Found:
 def _drives(rig: Rig) -> _Found:
     """Yield faults that the profile of a drive reveals without a connection."""
     for name, axis in rig.drives().items():
+        if axis.name != name:
+            yield ("axes", name, "name"), f'"{axis.name}" (an axis is called as its section: expected {name})'
         for refused in plan(axis).refused:
             yield ("axes", name, "profile"), refused
 

@@ -17,13 +17,18 @@ from drivers.canopen.node_config import NodeConfig
 from tester.base.config_reader import FURTHER_KEYS, LEFT_OUT, Range, as_text, as_tree
 from tester.base.quantities import Quantities
 from tester.base.source import Location
-from tester.inputs.rig.ceilings import Ceiling
+from tester.inputs.rig.key_classes import HIGHER, LOWER, Bounded, Free, Held, Inside, class_of
 from tester.inputs.rig.parameter import SECTION, Parameter, Values
+from tester.inputs.rig.section_classes import NODE
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 _POSITIVE = Range(gt=0.0)
+_WIRE: Final = Free("which wire: nothing moves before every drive on it has answered with its identity")
+_ANSWER: Final = Held("the devices that answer there: nothing moves before all have, with plausible readings")
+PAPER: Final = Held("the certificates, and the record of the commissioning")
+NOT_REAL: Final = Free("the simulated machine: a real one does not use it")
 OneRig = TypeVar("OneRig", bound="Rig")
 
 
@@ -35,26 +40,42 @@ class WrongKindError(TypeError):
 class ScanConfig:
     """Scan rates: while sliding or moving, while any drive is enabled, with all drives disabled."""
 
-    sliding_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
-    enabled_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
-    idle_hz: Annotated[float, "Hz", Range(gt=0.0, le=200.0)]
+    sliding_hz: Annotated[
+        float, "Hz", Range(gt=0.0, le=200.0),
+        Bounded(HIGHER, "50 Hz", "a delay of 50 ms is two scans and a half: fewer are one reading"),
+    ]  # fmt: skip
+    enabled_hz: Annotated[
+        float, "Hz", Range(gt=0.0, le=200.0),
+        Bounded(HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
+    ]  # fmt: skip
+    idle_hz: Annotated[
+        float, "Hz", Range(gt=0.0, le=200.0),
+        Bounded(HIGHER, "5 Hz", "the inputs are too old after 250 ms: at least one scan must read them"),
+    ]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class CanConfig:
     """The drives' bus. ``interface`` is "sim" or a python-can interface; ``node`` is the PC's own."""
 
-    interface: str
-    channel: str
-    bitrate: Literal[125000, 250000, 500000, 800000, 1000000]
-    node: int
-    heartbeat_s: Annotated[float, "s", _POSITIVE]
+    interface: Annotated[str, _WIRE]
+    channel: Annotated[str, _WIRE]
+    bitrate: Annotated[Literal[125000, 250000, 500000, 800000, 1000000], _WIRE]
+    node: Annotated[int, _WIRE]
+    heartbeat_s: Annotated[
+        float, "s", _POSITIVE, Bounded(LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait")
+    ]
     """The PC's heartbeat period."""
-    drive_heartbeat_s: Annotated[float, "s", _POSITIVE]
+    drive_heartbeat_s: Annotated[
+        float, "s", _POSITIVE, Bounded(LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s")
+    ]
     """The drives' heartbeat period (0x1017)."""
-    consumer_heartbeat_s: Annotated[float, "s", _POSITIVE]
+    consumer_heartbeat_s: Annotated[
+        float, "s", _POSITIVE,
+        Bounded(LOWER, "250 ms", "without heartbeats a drive keeps its last command: 50 ms more at 400 W are 20 J"),
+    ]  # fmt: skip
     """How long a drive waits for the PC's heartbeat before it stops (0x1016)."""
-    nodes: Mapping[str, NodeConfig] = field(default_factory=dict[str, NodeConfig])
+    nodes: Annotated[Mapping[str, NodeConfig], Inside(NODE)] = field(default_factory=dict[str, NodeConfig])
     """Further nodes, which measure; ``drive_heartbeat`` is theirs too, unless they state one."""
 
 
@@ -62,10 +83,10 @@ class CanConfig:
 class LineConfig:
     """One Modbus line: a serial port, ``host:port`` (framing "socket"), or "sim"."""
 
-    port: str
-    baud: int
-    parity: Literal["N", "E", "O"]
-    framing: Literal["rtu", "socket"]
+    port: Annotated[str, _ANSWER]
+    baud: Annotated[int, _ANSWER]
+    parity: Annotated[Literal["N", "E", "O"], _ANSWER]
+    framing: Annotated[Literal["rtu", "socket"], _ANSWER]
 
 
 HEAT_OFF: Final = {
@@ -79,19 +100,26 @@ HEAT_OFF: Final = {
 class DeviceConfig:
     """One Modbus device: its profile in drivers/profiles, its line and its address there."""
 
-    profile: str
-    line: str
-    unit_id: int
-    channels: Mapping[str, str] = field(default_factory=dict[str, str])
+    profile: Annotated[str, _ANSWER]
+    line: Annotated[str, _ANSWER]
+    unit_id: Annotated[int, _ANSWER]
+    channels: Annotated[Mapping[str, str], _ANSWER] = field(default_factory=dict[str, str])
     """Other names for channels of the profile, where two sensors of a kind are on the rig."""
-    simulated: Mapping[str, str | float] = field(default_factory=dict[str, str | float])
+    simulated: Annotated[Mapping[str, str | float], Free("a real device measures")] = field(
+        default_factory=dict[str, str | float]
+    )
     """Simulated values of channels: a quantity of the plant by name, or a number in the channel's unit."""
-    part_of: str = field(default="", metadata=LEFT_OUT)
+    part_of: Annotated[str, _ANSWER] = field(default="", metadata=LEFT_OUT)
     """The machine's own device that contains this one: a load cell of several transmitters."""
-    heat_off: str = field(default="", metadata=LEFT_OUT)
+    heat_off: Annotated[str, Held("the heat that must end in the commissioning when the PC is silent")] = field(
+        default="", metadata=LEFT_OUT
+    )
     """Safeguard of a controller that heats and has no lease: it removes the heat when the PC is silent
     (``HEAT_OFF``)."""
-    parameters: Annotated[Mapping[str, float], FURTHER_KEYS] = field(default_factory=dict[str, float])
+    parameters: Annotated[
+        Mapping[str, float], FURTHER_KEYS,
+        Held("the hub's sensor, with which a thermometer must agree at each start with a cold wheel"),
+    ] = field(default_factory=dict[str, float])  # fmt: skip
     """Values written to a sensor at every connect, by the profile's names (``emissivity``), in its units."""
 
 
@@ -121,7 +149,7 @@ class CalibrationConfig:
     """
 
     certificates: ClassVar[tuple[str, ...]] = ()
-    overdue: str = "warn"
+    overdue: Annotated[str, PAPER] = "warn"
 
     def __post_init__(self) -> None:
         """Raise ValueError for a text that is no date, and for an unknown ``overdue``."""
@@ -150,7 +178,10 @@ def section_of(name: str, parameters: tuple[Parameter, ...], module: str) -> Any
     """Return the class of a section with a field for each parameter: a kind's ``interlocks``."""
     return make_dataclass(
         name,
-        [(parameter.name, Annotated[float, parameter.unit, parameter.bounds]) for parameter in parameters],
+        [
+            (parameter.name, Annotated[(float, parameter.unit, parameter.bounds, *class_of(parameter))])
+            for parameter in parameters
+        ],
         frozen=True,
         slots=True,
         namespace={"__module__": module, "__doc__": "A section of the rig file: a field for each parameter."},
@@ -189,19 +220,17 @@ class Rig:
     quantities: ClassVar[Quantities]
     """The kind's table of channels, without those of further sensors
     (tester.inputs.rig.further_sensors.quantities_on)."""
-    ceilings: ClassVar[tuple[Ceiling, ...]] = ()
-    """Every safety key, in the order of the kind's safety page."""
     real: ClassVar[tuple[tuple[str, str], ...]] = ()
     """(text of the packaged file, its replacement for a real machine), beside those common to all kinds
     (tester.inputs.rig.packaged); each must occur exactly once."""
 
-    rig: str
+    rig: Annotated[str, Held("the rig's past runs, whose evidence goes by this name")]
     """Name of the rig."""
-    kind: str
+    kind: Annotated[str, Held("the sections of the file: only the file sets it")]
     """Kind of the machine."""
-    like: str = ""
+    like: Annotated[str, Held("the build of the machine: safety keys are compared with that rig's")] = ""
     """Name of the packaged rig of the same build; "" is the first of its kind."""
-    simulated: bool
+    simulated: Annotated[bool, Held("the wires, which are all simulated or all real")]
     scan: ScanConfig
     can: CanConfig
     lines: Mapping[str, LineConfig] = field(default_factory=dict[str, LineConfig])

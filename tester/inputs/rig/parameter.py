@@ -50,7 +50,7 @@ class Parameter:
     """The loosest value with which a row still serves its purpose, as text like ``default``; "" where no harm depends
     on it. On a real machine anything looser is a risk that a person must accept."""
     because: str = ""
-    """Reason for ``hardest``."""
+    """Reason for ``hardest``, or why no harm depends on it."""
 
     def __post_init__(self) -> None:
         """Raise UnitError for a unit that the table lacks."""

@@ -13,39 +13,29 @@ from typing import Annotated, ClassVar, Final, TypeVar
 from drivers.axis import AxisConfig
 from tester.base.config_reader import Range
 from tester.base.source import Location
-from tester.inputs.rig.ceilings import AXES, HIGHER, LOWER, TRUE, Ceiling
-from tester.inputs.rig.config import Rig
+from tester.inputs.rig.config import NOT_REAL, Rig
+from tester.inputs.rig.key_classes import HIGHER, TRUE, Bounded, Free, Inside
 from tester.inputs.rig.parameter import SECTION
+from tester.inputs.rig.section_classes import AXIS
 
 OneRig = TypeVar("OneRig", bound="PlainRig")
 
-PLAIN_CEILINGS: Final = (
-    Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
-            "without it there is no proof that the drives stop when this program does"),
-    Ceiling("arming.listen", "s", HIGHER, "0.5 s", "another master sends twice a second or oftener [A]"),
-    Ceiling("arming.withhold", "s", HIGHER, "300 ms",
-            "half as long again as the 200 ms after which a drive must report the missing heartbeat"),
-    Ceiling("scan.enabled", "Hz", HIGHER, "10 Hz", "two setpoints within the 200 ms after which a drive stops"),
-    Ceiling("scan.idle", "Hz", HIGHER, "5 Hz", "the inputs are too old after 250 ms: at least one scan must read them"),
-    Ceiling("can.heartbeat", "s", LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait"),
-    Ceiling("can.drive_heartbeat", "s", LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s"),
-    Ceiling("can.consumer_heartbeat", "s", LOWER, "300 ms", "without heartbeats a drive keeps its last command"),
-    Ceiling(f"{AXES}heartbeat", "s", LOWER, "100 ms", "as can.drive_heartbeat"),
-    Ceiling(f"{AXES}consumer_heartbeat", "s", LOWER, "300 ms", "as can.consumer_heartbeat"),
-    Ceiling(f"{AXES}proves_watchdog", "", HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
-)  # fmt: skip
-"""Safety keys of a plain machine beside the interlocks' own."""
+LISTEN: Final = Bounded(HIGHER, "0.5 s", "another master sends twice a second or oftener [A]")
+WATCHDOG_PROOF: Final = Bounded(HIGHER, TRUE, "else nothing proves that the drives stop without this program")
+WITHHOLD: Final = Bounded(
+    HIGHER, "300 ms", "a drive reports the missing heartbeat after 200 ms"
+)
 
 
 @dataclass(frozen=True, slots=True)
 class ArmingSection:
     """Proofs before a run may move anything (tester.machine.proof)."""
 
-    listen_s: Annotated[float, "s", Range(ge=0.0)]
+    listen_s: Annotated[float, "s", Range(ge=0.0), LISTEN]
     """Time of silence at first, in which another master on the bus is detected."""
-    watchdog_proof: bool
+    watchdog_proof: Annotated[bool, WATCHDOG_PROOF]
     """Withhold the PC's heartbeat with the drives enabled at standstill: every drive must report it and drop out."""
-    withhold_s: Annotated[float, "s", Range(gt=0.0)]
+    withhold_s: Annotated[float, "s", Range(gt=0.0), WITHHOLD]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +55,12 @@ class PlainRig(Rig):
     may_lack: ClassVar[tuple[str, ...]] = (
         *Rig.may_lack, "axes.*.rpdo_deadline", "axes.*.inputs_period", "arming", SECTION,
     )  # fmt: skip
-    ceilings: ClassVar[tuple[Ceiling, ...]] = PLAIN_CEILINGS
 
-    air_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
+    air_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0), Free("it is recorded, and moves nothing")]
     """Temperature of the air around the rig."""
-    axes: Mapping[str, AxisConfig]
+    axes: Annotated[Mapping[str, AxisConfig], Inside(AXIS)]
     arming: ArmingSection
-    sim: PlainSim = field(default_factory=PlainSim)
+    sim: Annotated[PlainSim, NOT_REAL] = field(default_factory=PlainSim)
     """The simulated rig's physics; without effect on a real one."""
 
     @property

@@ -15,22 +15,24 @@ from tester.inputs.rig.checks import problems_of
 from tester.inputs.rig.config import Rig
 from tester.inputs.rig.packaged import complete, new_tree, resolve
 from tester.inputs.rig.profiles import extension_drive, extension_law
-from tester.inputs.rig.risks import Risk, beyond, counts_as_simulated, loosened
+from tester.inputs.rig.risks import Risk, apart, beyond, counts_as_simulated, loosened, redescribed
 
 OneRig = TypeVar("OneRig", bound=Rig)
 laws.look_up_with(extension_law)
 reader.look_up_with(extension_drive)
 MISSING = "only those who built the machine know it: no packaged value can replace it"
 """Message for a key that must be in the file."""
+_MAY_TIGHTEN = "and --set may only tighten the file of a real rig"
+_DESCRIBES = "and only the file of a real rig describes the machine"
 
 
 def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_risk: str = "") -> OneRig:
     """Return the rig of a file's tree; changes the tree.
 
     ``overrides`` are ``a.b.c=value`` texts, each replacing one key of the file; the value is read as in the file.
-    ``accept_risk``: why safety keys may be looser than allowed (``risks_of``), "" = they may not. On a real rig only
-    its file may loosen them: ``overrides`` can only tighten. Raises InvalidSource with every problem; a problem of an
-    override carries its name.
+    ``accept_risk``: why keys may be as ``risks_of`` lists them, "" = they may not. On a real rig only its file loosens
+    safety keys and describes the machine: ``overrides`` can tighten, and set what is free. Raises InvalidSource with
+    every problem; a problem of an override carries its name.
     """
     texts = tuple(overrides)
     if not texts:
@@ -48,11 +50,14 @@ def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_r
 
 
 def risks_of(rig: Rig) -> tuple[Risk, ...]:
-    """Return the safety keys for which a rig needs a person's acceptance: those looser than the packaged values.
+    """Return the keys that a person must accept: looser than the packaged values, or too far from them (``Held``).
 
     On a harmless rig (``counts_as_simulated``) only those looser than their hardest values.
     """
-    return beyond(rig) if counts_as_simulated(rig) else loosened(rig, _packaged(type(rig), rig.like))
+    if counts_as_simulated(rig):
+        return beyond(rig)
+    packaged = _packaged(type(rig), rig.like)
+    return (*loosened(rig, packaged), *apart(rig, packaged))
 
 
 @cache
@@ -63,22 +68,21 @@ def _packaged(kind: type[OneRig], like: str) -> OneRig:
 
 def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> OneRig:
     """Return a rig whose risks are accepted; ``stated``: the file's rig without overrides."""
-    real = not counts_as_simulated(rig)
-    loose = loosened(rig, stated) if real and stated is not None else ()
+    if stated is None or (counts_as_simulated(rig) and counts_as_simulated(stated)):
+        stated = rig
+    loose, another = loosened(rig, stated), redescribed(rig, stated)
+    refusals = [(risk, _MAY_TIGHTEN, ", and run with --accept-risk REASON") for risk in loose]
+    refusals += [(risk, _DESCRIBES, "") for risk in another]
     problems = [
-        tree.problem(
-            risk.location,
-            f"{risk.key}: {risk.compared}, and --set may only tighten the file of a real rig"
-            f" ({risk.ceiling.because}): write it there, and run with --accept-risk REASON",
-        )
-        for risk in loose
+        tree.problem(risk.location, f"{risk.key}: {risk.compared}, {why} ({risk.because}): write it there{further}")
+        for risk, why, further in refusals
     ]
-    reported = {risk.location for risk in loose}
+    reported = {risk.location for risk in (*loose, *another)}
     if not reason:
         problems += [
             tree.problem(
                 risk.location,
-                f"{risk.key}: {risk.compared} ({risk.ceiling.because}): tighten it, or accept it: --accept-risk REASON",
+                f"{risk.key}: {risk.compared} ({risk.because}): change it, or accept it: --accept-risk REASON",
             )
             for risk in risks_of(rig)
             if risk.location not in reported

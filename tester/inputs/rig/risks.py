@@ -1,19 +1,16 @@
-"""Safety keys of a rig that are looser than those of another rig, or than their ceilings: a person must accept them."""
+"""Values of a rig that a person must accept, and those that only its file sets (tester.inputs.rig.key_classes)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
-from functools import cache
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf
+from typing import Final
 
 from drivers.canopen.dictionary import PRODUCT_CODE, VENDOR_ID
-from tester.base.config_reader import key_of
-from tester.inputs.rig.ceilings import Ceiling
 from tester.inputs.rig.config import Rig
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
+from tester.inputs.rig.key_classes import Ceiling, Held
+from tester.inputs.rig.rig_keys import Place, RigKey, value_at, values_of
 
 _SAID_ONCE = {"heartbeat": "drive_heartbeat", "consumer_heartbeat": "consumer_heartbeat"}
 """Keys of an axis that the section ``can`` sets for all: their risk is reported once."""
@@ -21,12 +18,12 @@ _SAID_ONCE = {"heartbeat": "drive_heartbeat", "consumer_heartbeat": "consumer_he
 
 @dataclass(frozen=True, slots=True)
 class Risk:
-    """A value of a rig that is looser than allowed without a person's acceptance."""
+    """A value of a rig that needs a person's acceptance."""
 
-    ceiling: Ceiling
-    location: tuple[str, ...]
-    value: float
-    limit: float
+    location: Place
+    compared: str
+    """The value and what it is compared with, in words."""
+    because: str
 
     @property
     def key(self) -> str:
@@ -36,17 +33,6 @@ class Risk:
     def __str__(self) -> str:
         """Return key, value and limit."""
         return f"{self.key} {self.compared}"
-
-    @property
-    def compared(self) -> str:
-        """Return value and limit in words."""
-        ceiling = self.ceiling
-        hardest = (
-            f" and than {ceiling.hardest}"
-            if ceiling.looser(self.value, ceiling.limit) and self.limit != ceiling.limit
-            else ""
-        )
-        return f"{ceiling.text(self.value)} is looser than {ceiling.text(self.limit)}{hardest}"
 
 
 def counts_as_simulated(rig: Rig) -> bool:
@@ -62,50 +48,73 @@ def counts_as_simulated(rig: Rig) -> bool:
 def loosened(rig: Rig, than: Rig) -> tuple[Risk, ...]:
     """Return the safety keys that are looser in one rig than in another; axes that only one has are left out."""
     risks: list[Risk] = []
-    for ceiling, location, value in _values(rig):
-        limit = value_at(than, location)
+    for ceiling, place, value in _bounded(rig):
+        limit = _number(value_at(than, place))
         if limit is not None and ceiling.looser(value, limit):
-            risks.append(Risk(ceiling, location, value, limit))
+            beyond_too = ceiling.looser(value, ceiling.limit) and limit != ceiling.limit
+            hardest = f" and than {ceiling.bound.hardest}" if beyond_too else ""
+            compared = f"{ceiling.text(value)} is looser than {ceiling.text(limit)}{hardest}"
+            risks.append(Risk(place, compared, ceiling.bound.because))
     return tuple(risks)
 
 
 def beyond(rig: Rig) -> tuple[Risk, ...]:
     """Return the safety keys that are looser than their hardest values."""
     return tuple(
-        Risk(ceiling, location, value, ceiling.limit)
-        for ceiling, location, value in _values(rig)
+        Risk(place, f"{ceiling.text(value)} is looser than {ceiling.text(ceiling.limit)}", ceiling.bound.because)
+        for ceiling, place, value in _bounded(rig)
         if ceiling.looser(value, ceiling.limit)
     )
 
 
-def _values(rig: Rig) -> Iterator[tuple[Ceiling, tuple[str, ...], float]]:
-    """Yield every safety key that a rig has, with its place and its value (1 and 0 for a switch)."""
-    for ceiling in rig.ceilings:
-        names = rig.drives() if "*" in ceiling.key else ("",)
-        for name in names:
-            location = tuple(ceiling.key.replace("*", name).split("."))
-            value = value_at(rig, location)
-            common = value_at(rig, ("can", _SAID_ONCE.get(location[-1], ""))) if name else None
-            # A value that `can` sets for all axes is reported once, there.
-            if value is not None and value != common:
-                yield ceiling, location, value
+def apart(rig: Rig, than: Rig) -> tuple[Risk, ...]:
+    """Return the held keys that differ from another rig's by more than their share (``Held.within``)."""
+    risks: list[Risk] = []
+    for key, place, value in values_of(rig):
+        held = key.classes[0] if key.classes else None
+        if isinstance(held, Held) and held.within < inf:
+            number, expected = _number(value), _number(value_at(than, place))
+            if number is not None and expected is not None and not abs(number - expected) <= held.within * expected:
+                unit = f" {key.unit}".removesuffix(" 1").rstrip()
+                share = f"is not within {100.0 * held.within:.0f} % of {expected:g}{unit}"
+                risks.append(Risk(place, f"{number:g}{unit} {share}", f"held against {held.against}"))
+    return tuple(risks)
 
 
-def value_at(rig: Rig, location: tuple[str, ...]) -> float | None:
-    """Return the value at a place of the file, None where the rig has no such axis."""
-    node: Any = rig
-    for key in location:
-        if isinstance(node, Mapping):
-            node = cast("Mapping[str, Any]", node).get(key)
-            continue
-        name = _names(type(node)).get(key) if node is not None else None
-        if name is None:
-            return None
-        node = getattr(node, name)
-    return float(node)
+def redescribed(rig: Rig, than: Rig) -> tuple[Risk, ...]:
+    """Return the keys that describe the machine and differ between two rigs, also if only one of them has the key."""
+    ours, theirs = _described(rig), _described(than)
+    risks: list[Risk] = []
+    for place in {**ours, **theirs}:
+        value, key = ours.get(place, _NOTHING)
+        expected, other = theirs.get(place, _NOTHING)
+        classes = (key or other).classes
+        if value != expected:
+            against = f"held against {classes[0].against}" if classes and isinstance(classes[0], Held) else "no class"
+            risks.append(Risk(place, f"{_text(value)} replaces {_text(expected)}", against))
+    return tuple(risks)
 
 
-@cache
-def _names(kind: type[DataclassInstance]) -> dict[str, str]:
-    """Return the fields of a section by their keys."""
-    return {key_of(kind, field.name): field.name for field in fields(kind)}
+_NOTHING: Final = (None, RigKey((), "", ()))
+
+
+def _described(rig: Rig) -> dict[Place, tuple[object, RigKey]]:
+    return {place: (value, key) for key, place, value in values_of(rig) if key.described}
+
+
+def _text(value: object) -> str:
+    return "nothing" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _bounded(rig: Rig) -> Iterator[tuple[Ceiling, Place, float]]:
+    """Yield every bound of a safety key that a rig has, with its place and its value (1 and 0 for a switch)."""
+    for key, place, value in values_of(rig):
+        number = _number(value)
+        if number is None or (place[0] == "axes" and number == value_at(rig, ("can", _SAID_ONCE.get(place[-1], "")))):
+            continue  # a value that `can` sets for all axes is reported once, there
+        for ceiling in key.ceilings:
+            yield ceiling, place, number
+
+
+def _number(value: object) -> float | None:
+    return float(value) if isinstance(value, int | float) else None

@@ -11,9 +11,11 @@ from sim.physics.track import TrackParameters
 from tester.base.config_reader import Range
 from tester.base.quantities import Quantities
 from tester.base.source import Location
-from tester.inputs.rig.ceilings import AXES, HIGHER, LOWER, TRUE, Ceiling, ceilings_of
-from tester.inputs.rig.config import CalibrationConfig, OwnDevice, Rig, section_of
-from tester.inputs.rig.parameter import SECTION, Parameter
+from tester.inputs.rig.config import NOT_REAL, PAPER, CalibrationConfig, OwnDevice, Rig, section_of
+from tester.inputs.rig.key_classes import HIGHER, LOWER, TRUE, Bounded, Free, Held, Inside
+from tester.inputs.rig.parameter import Parameter
+from tester.inputs.rig.plain_rig import LISTEN, WATCHDOG_PROOF, WITHHOLD
+from tester.inputs.rig.section_classes import AXIS
 from tester.kinds.specimen_on_track import KIND
 from tester.kinds.specimen_on_track.interlocks.chamber import STALE_AIR_S, STALE_EXIT_S
 from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_S
@@ -27,50 +29,74 @@ METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
 """Metres per unit of length of the track's drive."""
 
 
+_ENDS: Final = Held("the end switches, which open the safety chain 5 mm before the stops")
+_TRACK: Final = {
+    **AXIS,
+    "rpdo_deadline": Bounded(LOWER, "250 ms", "a drive continues for this long without setpoints", zero_is_off=True),
+}
+
+
 @dataclass(frozen=True, slots=True)
 class TrackLimitsConfig:
     """Hard limits: no recipe and no procedure exceeds them."""
 
-    force_n: Annotated[float, "N", Range(gt=0.0, le=195.0)]
+    force_n: Annotated[
+        float, "N", Range(gt=0.0, le=195.0),
+        Bounded(LOWER, "195 N", "the cell ends at 200 N: it does not see a greater force"),
+    ]  # fmt: skip
     """At most 195 N: these rigs' cells end at 200 N."""
-    track_speed_m_s: Annotated[float, "m/s", _POSITIVE]
-    slowest_m_s: Annotated[float, "m/s", _POSITIVE]
-    air_low_c: Annotated[float, "degC", Range(ge=-55.0, le=60.0)]
-    air_high_c: Annotated[float, "degC", Range(ge=-55.0, le=105.0)]
-    travel_low_mm: Annotated[float, "mm", _NOT_NEGATIVE]
-    travel_high_mm: Annotated[float, "mm", _NOT_NEGATIVE]
+    track_speed_m_s: Annotated[
+        float, "m/s", _POSITIVE,
+        Bounded(LOWER, "2.1 m/s", "a disc at 2.1 m/s stops within 1.1 s; a disc that does not must lose its power 3 s"
+                                  " after a trip"),
+    ]  # fmt: skip
+    slowest_m_s: Annotated[float, "m/s", _POSITIVE, Free("a recipe that asks for a slower track is refused")]
+    air_low_c: Annotated[
+        float, "degC", Range(ge=-55.0, le=60.0),
+        Bounded(HIGHER, "-50 degC", "the chamber's own limiter acts at -55 degC"),
+    ]  # fmt: skip
+    air_high_c: Annotated[
+        float, "degC", Range(ge=-55.0, le=105.0),
+        Bounded(LOWER, "100 degC", "the chamber's own limiter acts at 105 degC"),
+    ]  # fmt: skip
+    travel_low_mm: Annotated[float, "mm", _NOT_NEGATIVE, _ENDS]
+    travel_high_mm: Annotated[float, "mm", _NOT_NEGATIVE, _ENDS]
 
 
 @dataclass(frozen=True, slots=True)
 class TrackAxes:
     """The drives; the lift is None for an arm that is moved by hand (``manual: true`` in the file)."""
 
-    track: AxisConfig
-    lift: AxisConfig | None
+    track: Annotated[AxisConfig, Inside(_TRACK)]
+    lift: Annotated[AxisConfig | None, Inside(_TRACK)]
 
 
 @dataclass(frozen=True, slots=True)
 class ArmConfig:
     """The arm: its raised place, and its tolerance."""
 
-    raised_mm: Annotated[float, "mm", _POSITIVE]
-    within_mm: Annotated[float, "mm", _POSITIVE]
+    raised_mm: Annotated[float, "mm", _POSITIVE, Held("the cell, which shows no force with the arm raised")]
+    within_mm: Annotated[
+        float, "mm", _POSITIVE, Bounded(LOWER, "1 mm", "the specimen touches 1 mm above its lowered place")
+    ]
 
 
 @dataclass(frozen=True, slots=True)
 class TrackGates:
     """When a sample counts. A recipe sets the temperature band."""
 
-    speed_percent: Annotated[float, "%", _POSITIVE]
-    stationary_percent: Annotated[float, "%", _POSITIVE]
-    settle_s: Annotated[float, "s", _NOT_NEGATIVE]
+    speed_percent: Annotated[float, "%", _POSITIVE, Bounded(LOWER, "5 %", "a sample at another speed counts")]
+    stationary_percent: Annotated[
+        float, "%", _POSITIVE, Bounded(LOWER, "2 %", "friction that still grows counts as that of sliding")
+    ]
+    settle_s: Annotated[float, "s", _NOT_NEGATIVE, Bounded(HIGHER, "1 s", "the arm still swings")]
 
 
 @dataclass(frozen=True, slots=True)
 class HeatConfig:
     """Assumed heating by friction, for checks and plans."""
 
-    rise: Annotated[float, "K/W", _NOT_NEGATIVE]
+    rise: Annotated[float, "K/W", _NOT_NEGATIVE, Free("checks and plans warn by it; nothing is heated by it")]
     """Final warming of the specimen's contact per power of friction."""
 
 
@@ -78,12 +104,17 @@ class HeatConfig:
 class TrackArmingConfig:
     """The proofs before a run may move anything."""
 
-    listen_s: Annotated[float, "s", _NOT_NEGATIVE]
-    bump_test: bool
-    watchdog_proof: bool
-    withhold_s: Annotated[float, "s", _POSITIVE]
-    creep_m_s: Annotated[float, "m/s", _POSITIVE]
-    unloaded_n: Annotated[float, "N", Range(gt=0.0, le=20.0)]
+    listen_s: Annotated[float, "s", _NOT_NEGATIVE, LISTEN]
+    bump_test: Annotated[bool, Bounded(HIGHER, TRUE, "without it the track may turn the wrong way, or not at all")]
+    watchdog_proof: Annotated[bool, WATCHDOG_PROOF]
+    withhold_s: Annotated[float, "s", _POSITIVE, WITHHOLD]
+    creep_m_s: Annotated[
+        float, "m/s", _POSITIVE, Bounded(LOWER, "0.1 m/s", "nothing is proven yet: a person can step back")
+    ]
+    unloaded_n: Annotated[
+        float, "N", Range(gt=0.0, le=20.0),
+        Bounded(LOWER, "10 N", "half of the least weight: an arm that is down must not pass"),
+    ]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +123,9 @@ class TrackCertificatesConfig(CalibrationConfig):
 
     certificates: ClassVar[tuple[str, ...]] = ("load_cell", "weights", "temperature")
 
-    load_cell: str = ""
-    weights: str = ""
-    temperature: str = ""
+    load_cell: Annotated[str, PAPER] = ""
+    weights: Annotated[str, PAPER] = ""
+    temperature: Annotated[str, PAPER] = ""
 
 
 if TYPE_CHECKING:
@@ -109,22 +140,6 @@ if TYPE_CHECKING:
 
 else:
     TrackInterlocksConfig = section_of("TrackInterlocksConfig", TABLE.parameters, __name__)
-
-CEILINGS: Final = (
-    Ceiling("limits.force", "N", LOWER, "195 N", "the cell ends at 200 N: it does not see a greater force"),
-    Ceiling("limits.track_speed", "m/s", LOWER, "2.1 m/s",
-            "a disc at 2.1 m/s stops within 1.1 s; a disc that does not must lose its power 3 s after a trip"),
-    Ceiling("limits.air_low", "degC", HIGHER, "-50 degC", "the chamber's own limiter acts at -55 degC"),
-    Ceiling("limits.air_high", "degC", LOWER, "100 degC", "the chamber's own limiter acts at 105 degC"),
-    Ceiling("arming.watchdog_proof", "", HIGHER, TRUE,
-            "without it there is no proof that the drives stop when this program does"),
-    Ceiling("arming.unloaded", "N", LOWER, "10 N", "half of the least weight: an arm that is down must not pass"),
-    Ceiling("can.consumer_heartbeat", "s", LOWER, "250 ms", "a drive continues for this long without this program"),
-    Ceiling(f"{AXES}rpdo_deadline", "s", LOWER, "250 ms",
-            "a drive continues for this long without setpoints", zero_is_off=True),
-    *ceilings_of(SECTION, TABLE.parameters),
-)  # fmt: skip
-"""Every safety key, in the order of the kind's page."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,14 +162,13 @@ class TrackConfig(Rig):
     table: ClassVar[InterlockTable] = TABLE
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
     watched: ClassVar[tuple[str, ...]] = TABLE.channels
-    ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS
     real: ClassVar[tuple[tuple[str, str], ...]] = (("# air around a real rig; the simulated one's is sim.ambient",
                                                     "# air around the rig"),)  # fmt: skip
 
-    track: Literal["linear", "disc"]
-    weights: tuple[float, ...]
+    track: Annotated[Literal["linear", "disc"], Held("axes.track and limits.travel; a disc has no end switches")]
+    weights: Annotated[tuple[float, ...], Held("the weights on the arm, which a person puts there and confirms")]
     """The arm's possible loads, N, lightest first."""
-    ambient: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
+    ambient: Annotated[float, "degC", Range(ge=-40.0, le=60.0), Free("it is recorded, and moves nothing")]
     limits: TrackLimitsConfig
     axes: TrackAxes
     arm: ArmConfig
@@ -163,7 +177,7 @@ class TrackConfig(Rig):
     interlocks: TrackInterlocksConfig
     arming: TrackArmingConfig
     calibration: TrackCertificatesConfig = field(default_factory=TrackCertificatesConfig)
-    sim: TrackParameters = field(default_factory=TrackParameters)
+    sim: Annotated[TrackParameters, NOT_REAL] = field(default_factory=TrackParameters)
     """The simulated rig's physics; unused on a real rig."""
 
     @property

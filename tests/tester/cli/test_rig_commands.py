@@ -64,6 +64,15 @@ def test_show_says_which_keys_take_the_packaged_value(tmp_path: Path, capsys: py
     assert "packaged values count for interlocks.pushed\n" in shown.err and f"tester rig upgrade {path}" in shown.err
 
 
+def test_keys_have_their_class_and_the_reason(capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["rig", "keys"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert any(line.startswith("limits.load: not above 450 N; the press still comes") for line in shown)
+    assert "axes.*.rated_torque: held; 0x6076 of the drive, within 2 %" in shown
+    assert any(line.startswith("sim.*: free; ") for line in shown)
+    assert invoke(["rig", "keys", "--kind", "none"]) == 2
+
+
 def test_upgrade_writes_the_keys_that_a_file_lacks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text(hardware_text().replace("  pushed: ", "  # pushed: "), encoding="utf-8")

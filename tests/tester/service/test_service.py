@@ -31,7 +31,7 @@ from tester.service.service_link import Presence
 from tester.service.state_view import StateView
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
-from tests.tester.inputs.rig.test_ceilings import NONSENSE
+from tests.tester.inputs.rig.test_key_classes import NONSENSE
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 from tests.tester.run.test_session import Screen
 from tests.tester.service.stage import Script, Stage, play

@@ -16,7 +16,7 @@ from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readin
 from tester.kinds.wheel_on_belt.interlocks.contact_force import STIFFNESS_EXPONENT, UNLOADED_N, Contact
 from tester.kinds.wheel_on_belt.interlocks.inputs import StopStart
 from tester.kinds.wheel_on_belt.rig import RigConfig
-from tester.kinds.wheel_on_belt.rig.sections import HeatLoopConfig, LoadLoopConfig
+from tester.kinds.wheel_on_belt.rig.loop_sections import HeatLoopConfig, LoadLoopConfig
 from tester.machine.state import ControlState
 
 _INF: Final = inf

@@ -128,10 +128,15 @@ HEATER_STUCK: Final[Row] = Interlock(
     reaction=CONTROLLED,
 )
 
-OPEN_OUTPUT_PERCENT: Final = Parameter("open_output_percent", "%", "80 %", "output at least this ...")
-OPEN_S: Final = Parameter("open_s", "s", "60 s", "... for this long ...")
-OPEN_BELOW_K: Final = Parameter("open_below_k", "K", "5 K", "... with the hub this far below its setpoint ...")
-OPEN_RISE_K: Final = Parameter("open_rise_k", "K", "2 K", "... and rising by less than this: the heater's line is open")
+_COLD: Final = "a heater that does not heat does no harm"
+OPEN_OUTPUT_PERCENT: Final = Parameter("open_output_percent", "%", "80 %", "output at least this ...", because=_COLD)
+OPEN_S: Final = Parameter("open_s", "s", "60 s", "... for this long ...", because=_COLD)
+OPEN_BELOW_K: Final = Parameter(
+    "open_below_k", "K", "5 K", "... with the hub this far below its setpoint ...", because=_COLD
+)
+OPEN_RISE_K: Final = Parameter(
+    "open_rise_k", "K", "2 K", "... and rising by less than this: the heater's line is open", because=_COLD
+)
 
 HEATER_LINE_OPEN: Final[Row] = Interlock(
     name="heater line open",

@@ -22,13 +22,14 @@ START_K: Final = Parameter(
 )  # fmt: skip
 COLD_K: Final = Parameter(
     "cold_k", "K", "3 K", "... cold is a hub this near to the air around it: its rubber is, too [A]",
+    because="it decides when thermometer and stiffness are compared at arming; the rows of a run watch both",
 )  # fmt: skip
 HOLD_AT_MOST_S: Final = Parameter(
     "hold_at_most_s", "s", "60 min", "a hold ends in a controlled stop after this [A]",
     hardest="120 min", because="no operator attends a hot, turning wheel for longer than that",
 )  # fmt: skip
 ZERO_WARN_N: Final = Parameter(
-    "zero_warn_n", "N", "5 N", "the unloaded cell is off its reference zero by this: a warning",
+    "zero_warn_n", "N", "5 N", "the unloaded cell is off its reference zero by this: a warning", because="a warning",
 )  # fmt: skip
 ZERO_STOP_N: Final = Parameter(
     "zero_stop_n", "N", "20 N", "... by this: the run stops",
@@ -51,6 +52,7 @@ COOLDOWN_SPEED_M_S: Final = Parameter(
 )  # fmt: skip
 COOLDOWN_AT_MOST_S: Final = Parameter(
     "cooldown_at_most_s", "s", "45 min", "... and this long at most [A]",
+    because="the wheel turns unloaded and without heat for longer, or stands with less than cooldown_hub soon",
 )  # fmt: skip
 
 FIRST_CONTACT_LOAD_N: Final = Parameter(

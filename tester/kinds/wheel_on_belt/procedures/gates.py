@@ -11,7 +11,7 @@ from math import inf, isfinite
 from typing import Final
 
 from tester.kinds.wheel_on_belt.image.process_image import Readings
-from tester.kinds.wheel_on_belt.rig.sections import GatesConfig
+from tester.kinds.wheel_on_belt.rig.loop_sections import GatesConfig
 
 GATES: Final = {"load": 1, "speed": 2, "slip": 4, "temperature": 8, "settling": 32}
 """Bits of the gates in the channel ``gate``, by name: set while the gate is closed."""

@@ -13,9 +13,13 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
 from drivers.axis import AxisConfig
 from sim.physics.parameters import ThermalParameters, WheelParameters
 from tester.base.config_reader import Range
-from tester.inputs.rig.config import CalibrationConfig, section_of
+from tester.inputs.rig.config import PAPER, CalibrationConfig, section_of
+from tester.inputs.rig.key_classes import HIGHER, LOWER, TRUE, Bounded, Free, Held, Inside
+from tester.inputs.rig.plain_rig import LISTEN, WATCHDOG_PROOF, WITHHOLD
+from tester.inputs.rig.section_classes import AXIS
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
+from tester.kinds.wheel_on_belt.rig import axis_classes
 
 HARMFUL_N: Final = 500.0
 """A force on the wheel from this value up counts as harm (sim.harm)."""
@@ -25,18 +29,21 @@ VELOCITY_AXES: Final = {"wheel": "rad/s", "belt": "m/s", "press": "mm/s"}
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)
-_SHARE = Range(gt=0.0, le=1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class GeometryConfig:
     """Sizes of the machine."""
 
-    wheel_diameter_mm: Annotated[float, "mm", _POSITIVE]
+    wheel_diameter_mm: Annotated[
+        float, "mm", _POSITIVE, Held("observer.wheel, the ramps of wheel and belt, and the place of each first contact")
+    ]
     """Outer diameter of a new wheel, at ``wear.reference``."""
-    wheel_width_mm: Annotated[float, "mm", _POSITIVE]
-    belt_roller_diameter_mm: Annotated[float, "mm", _POSITIVE]
-    touch_mm: Annotated[float, "mm", _POSITIVE]
+    wheel_width_mm: Annotated[float, "mm", _POSITIVE, Held("observer.wheel.width")]
+    belt_roller_diameter_mm: Annotated[
+        float, "mm", _POSITIVE, Held("friction: the belt drive's torque is compared with it in every contact")
+    ]
+    touch_mm: Annotated[float, "mm", _POSITIVE, Held("the place of each first contact")]
     """Press travel from fully lifted to touching a new wheel."""
 
     def touch_at_mm(self, diameter_mm: float) -> float:
@@ -51,18 +58,36 @@ def _with(base: type, further: Iterable[tuple[str, object]]) -> Any:
     return make_dataclass(name, list(further), bases=(base,), frozen=True, slots=True, namespace=namespace)
 
 
+_RUNAWAY: Final = Bounded(
+    LOWER, "1.5 m/s",
+    "at 1.5 m/s a drive that does not stop loses its power after 2.5 s; no step of a stop may begin later",
+)  # fmt: skip
+
+
 @dataclass(frozen=True, slots=True)
 class _LimitsConfig:
     """Hard limits: no recipe and no loop exceeds them."""
 
-    load_n: Annotated[float, "N", Range(gt=0.0, le=HARMFUL_N)]
+    load_n: Annotated[
+        float, "N", Range(gt=0.0, le=HARMFUL_N),
+        Bounded(LOWER, "450 N", "the press still comes for some 50 ms after the trip: harm begins at 500 N"),
+    ]  # fmt: skip
     """At most 500 N: above it is harm (docs/kinds/wheel-on-belt.md)."""
-    wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE]
-    belt_speed_m_s: Annotated[float, "m/s", _POSITIVE]
-    slip_power_w: Annotated[float, "W", _POSITIVE]
-    jacket_c: Annotated[float, "degC", Range(gt=0.0, le=155.0)]
+    wheel_speed_m_s: Annotated[float, "m/s", _POSITIVE, _RUNAWAY]
+    belt_speed_m_s: Annotated[float, "m/s", _POSITIVE, _RUNAWAY]
+    slip_power_w: Annotated[
+        float, "W", _POSITIVE,
+        Bounded(LOWER, "400 W", "the wheel's drive gives 400 W at its rated torque: 16 N m at 25 rad/s"),
+    ]  # fmt: skip
+    jacket_c: Annotated[
+        float, "degC", Range(gt=0.0, le=155.0),
+        Bounded(LOWER, "150 degC", "3 K of margin and 2 K of rise after the heat is off make 155 degC, which harms"),
+    ]  # fmt: skip
     """At most 155 degC: above it is harm (docs/kinds/wheel-on-belt.md)."""
-    surface_c: Annotated[float, "degC", Range(gt=0.0, le=130.0)]
+    surface_c: Annotated[
+        float, "degC", Range(gt=0.0, le=130.0),
+        Bounded(LOWER, "100 degC", "the contact is some 20 K hotter than the surface [A]; harm begins at 130 degC"),
+    ]  # fmt: skip
     """At most 130 degC: above it is harm (docs/kinds/wheel-on-belt.md)."""
 
     def positions(self) -> dict[str, float]:
@@ -74,9 +99,9 @@ class _LimitsConfig:
 class _AxesConfig:
     """The drives; None for an axis that is set by hand (``manual: true`` in the file)."""
 
-    wheel: AxisConfig
-    belt: AxisConfig
-    press: AxisConfig
+    wheel: Annotated[AxisConfig, Inside(axis_classes.WHEEL)]
+    belt: Annotated[AxisConfig, Inside(axis_classes.BELT)]
+    press: Annotated[AxisConfig, Inside(axis_classes.PRESS)]
 
     def driven(self) -> dict[str, AxisConfig]:
         """Return the axes that have a drive, by name."""
@@ -101,74 +126,17 @@ if TYPE_CHECKING:
             ...
 
 else:
-    _LIMITS = ((axis.field, Annotated[float, axis.recipe_unit, Range(ge=0.0, le=axis.most)]) for axis in POSITIONED)
+    _LIMITS = (
+        (
+            axis.field,
+            Annotated[
+                float, axis.recipe_unit, Range(ge=0.0, le=axis.most), Bounded(LOWER, axis.hardest, axis.because)
+            ],
+        )
+        for axis in POSITIONED
+    )  # fmt: skip
     LimitsConfig = _with(_LimitsConfig, _LIMITS)
-    AxesConfig = _with(_AxesConfig, ((axis.name, AxisConfig | None) for axis in POSITIONED))
-
-
-@dataclass(frozen=True, slots=True)
-class LoadLoopConfig:
-    """Press control: approach, touch, hold (tester.kinds.wheel_on_belt.control.loops)."""
-
-    bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
-    rolling_bandwidth_hz: Annotated[float, "Hz", _POSITIVE]
-    """Bandwidth while holding in band: too slow to follow the wheel's runout."""
-    error_filter_s: Annotated[float, "s", _POSITIVE]
-    """Averaging time of the load error that decides between the two bandwidths."""
-    stiffness_n_per_mm: Annotated[float, "N/mm", _POSITIVE]
-    """Tangent stiffness of the contact at 200 N."""
-    integral_s: Annotated[float, "s", _POSITIVE]
-    touch_load_n: Annotated[float, "N", _POSITIVE]
-    open_share: Annotated[float, "1", _SHARE]
-    """Share of the touching force below which the contact was open: only then is the next touch a first touch."""
-    follow_rate_n_s: Annotated[float, "N/s", _POSITIVE]
-    """Least expected rate of following a change of load: the interlocks' limits of the load move at it."""
-    touch_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
-    loading_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
-    lift_speed_mm_s: Annotated[float, "mm/s", _POSITIVE]
-    acceleration_mm_s2: Annotated[float, "mm/s2", _POSITIVE]
-    """Acceleration of profiles to a position: at most ``axes.press.acceleration``, which a lift uses."""
-    clearance_mm: Annotated[float, "mm", _POSITIVE]
-    """Distance of the lifted position from the last contact."""
-
-
-@dataclass(frozen=True, slots=True)
-class HeatLoopConfig:
-    """Outer heat loop: surface error to hub setpoint (tester.kinds.wheel_on_belt.control.loops)."""
-
-    outer_gain: Annotated[float, "1", _NOT_NEGATIVE]
-    """Kelvin of hub setpoint per kelvin of surface error."""
-    outer_integral_s: Annotated[float, "s", _POSITIVE]
-    integral_band_k: Annotated[float, "K", _POSITIVE]
-    """The integral changes only within this error."""
-    integral_limit_k: Annotated[float, "K", _NOT_NEGATIVE]
-    hub_min_c: Annotated[float, "degC"]
-    hub_max_c: Annotated[float, "degC"]
-    period_s: Annotated[float, "s", _POSITIVE]
-    rolling_offset_k: Annotated[float, "K", _NOT_NEGATIVE]
-    """Distance of the target below the setpoint while rolling between slip pulses."""
-
-
-@dataclass(frozen=True, slots=True)
-class LoopsConfig:
-    """Gains and times of the loops."""
-
-    load: LoadLoopConfig
-    heat: HeatLoopConfig
-
-
-@dataclass(frozen=True, slots=True)
-class GatesConfig:
-    """When a sample counts (tester.kinds.wheel_on_belt.procedures.gates)."""
-
-    load_percent: Annotated[float, "%", _POSITIVE]
-    load_filter_s: Annotated[float, "s", _POSITIVE]
-    speed_percent: Annotated[float, "%", _POSITIVE]
-    slip_percent: Annotated[float, "%", _POSITIVE]
-    slip_floor_mm_s: Annotated[float, "mm/s", _NOT_NEGATIVE]
-    slip_filter_s: Annotated[float, "s", _POSITIVE]
-    ir_lag_s: Annotated[float, "s", _NOT_NEGATIVE]
-    contact_transient_s: Annotated[float, "s", _NOT_NEGATIVE]
+    AxesConfig = _with(_AxesConfig, ((axis.name, Annotated[AxisConfig | None, Inside(AXIS)]) for axis in POSITIONED))
 
 
 if TYPE_CHECKING:
@@ -189,20 +157,31 @@ else:
 class ArmingConfig:
     """The proofs before a run may move anything (tester.kinds.wheel_on_belt.procedures.arming)."""
 
-    listen_s: Annotated[float, "s", _NOT_NEGATIVE]
+    listen_s: Annotated[float, "s", _NOT_NEGATIVE, LISTEN]
     """Time of listening before anything is sent, to detect another master on the bus."""
-    bump_test: bool
+    bump_test: Annotated[
+        bool, Bounded(HIGHER, TRUE, "without it wheel and belt may be exchanged, or turn the wrong way")
+    ]
     """Turn wheel and belt a little, one after the other: each must follow alone."""
-    watchdog_proof: bool
+    watchdog_proof: Annotated[bool, WATCHDOG_PROOF]
     """Withhold the PC's heartbeat with the drives enabled and creeping: every drive must report it and stop."""
-    withhold_s: Annotated[float, "s", _POSITIVE]
-    creep_m_s: Annotated[float, "m/s", _POSITIVE]
+    withhold_s: Annotated[float, "s", _POSITIVE, WITHHOLD]
+    creep_m_s: Annotated[
+        float, "m/s", _POSITIVE, Bounded(LOWER, "0.1 m/s", "nothing is proven yet: a wheel turns once in three seconds")
+    ]
     """Speed of wheel and belt, unloaded, in the bump test and in the watchdog proof."""
-    unloaded_n: Annotated[float, "N", Range(gt=0.0, le=50.0)]
+    unloaded_n: Annotated[
+        float, "N", Range(gt=0.0, le=50.0),
+        Bounded(LOWER, "30 N", "450 N, the greatest load, and 30 N of a wrong zero are 480 N; harm begins at 500 N"),
+    ]  # fmt: skip
     """Greatest normal force and friction of an unloaded cell without tare, at connecting and at a reference tare.
 
     At most 50 N: a greater contact force must not be taken for the cell's zero.
     """
+
+
+_WEAR: Final = Held("the place of each touch, and a caliper in a wear check")
+_BUDGET: Final = Held("certificates and repeated checks; nothing moves by it, the budget names it")
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,23 +191,23 @@ class WearConfig:
     The section also has the parameters of a diameter check (procedures.wear_check); uncertainties are standard.
     """
 
-    rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE]
-    growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE]
+    rate_mm3_per_n_m: Annotated[float, "mm3/(N m)", _NOT_NEGATIVE, _WEAR]
+    growth_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE, _WEAR]
     """Growth of the diameter, rubber and hub together, per K of the rubber's mean temperature."""
-    reference_c: Annotated[float, "degC", Range(ge=0.0, le=40.0)]
+    reference_c: Annotated[float, "degC", Range(ge=0.0, le=40.0), _WEAR]
     """Temperature of cold diameters: of a new wheel, of every check and of the record."""
-    growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE]
-    check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE]
+    growth_uncertainty_mm_per_k: Annotated[float, "mm/K", _NOT_NEGATIVE, _BUDGET]
+    check_press_mm: Annotated[float, "mm", _NOT_NEGATIVE, _BUDGET]
     """Uncertainty of the press's position in a roll check, without the effects of load and heat."""
-    check_load_n: Annotated[float, "N", _NOT_NEGATIVE]
+    check_load_n: Annotated[float, "N", _NOT_NEGATIVE, _BUDGET]
     """Uncertainty of the mean load in a roll check, between checks."""
-    check_stiffness_percent: Annotated[float, "%", _NOT_NEGATIVE]
+    check_stiffness_percent: Annotated[float, "%", _NOT_NEGATIVE, _BUDGET]
     """Uncertainty of the contact's stiffness, which corrects for a load off its nominal value."""
-    check_rubber_k: Annotated[float, "K", _NOT_NEGATIVE]
+    check_rubber_k: Annotated[float, "K", _NOT_NEGATIVE, _BUDGET]
     """Uncertainty of the rubber's mean temperature, taken as half hub and half surface."""
-    gauge_mm: Annotated[float, "mm", _NOT_NEGATIVE]
+    gauge_mm: Annotated[float, "mm", _NOT_NEGATIVE, _BUDGET]
     """Uncertainty of a diameter that a person measures on rubber."""
-    rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE]
+    rate_uncertainty_percent: Annotated[float, "%", _NOT_NEGATIVE, _BUDGET]
     """Uncertainty of a wear rate from load, slip and width of the tread."""
 
     def growth_mm(self, rubber_c: float) -> float:
@@ -242,13 +221,19 @@ class CertificatesConfig(CalibrationConfig):
 
     certificates: ClassVar[tuple[str, ...]] = ("load_cell", "thermometer", "jacket")
 
-    load_cell: str = ""
-    thermometer: str = ""
-    jacket: str = ""
-    cell_sensitivity: Annotated[float, "1", Range(ge=0.0, le=0.05)] = 0.0
+    load_cell: Annotated[str, PAPER] = ""
+    thermometer: Annotated[str, PAPER] = ""
+    jacket: Annotated[str, PAPER] = ""
+    cell_sensitivity: Annotated[float, "1", Range(ge=0.0, le=0.05), PAPER] = 0.0
     """Measured error of Fx over Fz, with its standard uncertainty (commission.weights); 0: not in the budget."""
-    record: str = ""
+    record: Annotated[str, PAPER] = ""
     """Name of the entry with that value: the SHA-256 of the step ``cell`` in the record of the commissioning."""
+
+
+_MODEL: Final = Held("the thermometer: a surface off the model trips (interlocks.model)")
+_HEATED: Final = Held(
+    "the heat put in: a heating off by more than 30 % is no evidence, and hides a sensor's drift", within=0.3
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,11 +243,13 @@ class ObserverConfig:
     The simulated wheel has parameters of its own (``sim``), so that a wrong belief can be tested.
     """
 
-    ambient_c: Annotated[float, "degC", Range(ge=-40.0, le=60.0)]
+    ambient_c: Annotated[
+        float, "degC", Range(ge=-40.0, le=60.0), Free("60 K off they are 9 W of the heat that the shaft takes")
+    ]
     """Air temperature around a real rig; a simulated rig has its own (``RigConfig.ambient_c``)."""
-    friction_heat_fraction: Annotated[float, "1", Range(ge=0.0, le=1.0)]
+    friction_heat_fraction: Annotated[float, "1", Range(ge=0.0, le=1.0), _MODEL]
     """The rubber's share of friction heat."""
-    belt_conductance: Annotated[float, "W/K", _NOT_NEGATIVE]
+    belt_conductance: Annotated[float, "W/K", _NOT_NEGATIVE, _MODEL]
     """Thermal conductance from rubber to belt, in contact."""
-    wheel: WheelParameters
-    thermal: ThermalParameters
+    wheel: Annotated[WheelParameters, _HEATED]
+    thermal: Annotated[ThermalParameters, _HEATED]

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import ceil
-from typing import ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 from drivers.axis import AxisConfig
 from drivers.profiles import ProfileError
 from sim.physics.parameters import SimParameters
 from tester.base.quantities import Quantities
 from tester.base.source import Location
-from tester.inputs.rig.ceilings import Ceiling
-from tester.inputs.rig.config import HEAT_OFF, OwnDevice, Rig
+from tester.inputs.rig.config import HEAT_OFF, NOT_REAL, OwnDevice, Rig
 from tester.inputs.rig.further_sensors import skew_problem
 from tester.inputs.rig.parameter import Parameter
 from tester.inputs.rig.profiles import profile_of
@@ -24,23 +23,25 @@ from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
 from tester.kinds.wheel_on_belt.interlocks.load import STALE_CELL_S
 from tester.kinds.wheel_on_belt.interlocks.surface import STALE_IR_S
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
+from tester.kinds.wheel_on_belt.rig.loop_sections import GatesConfig, LoopsConfig
 from tester.kinds.wheel_on_belt.rig.sections import (
     HARMFUL_N,
     VELOCITY_AXES,
     ArmingConfig,
     AxesConfig,
     CertificatesConfig,
-    GatesConfig,
     GeometryConfig,
     InterlocksConfig,
     LimitsConfig,
-    LoopsConfig,
     ObserverConfig,
     WearConfig,
 )
-from tester.kinds.wheel_on_belt.rig.wheel_ceilings import CEILINGS
 from tester.machine.interlock_table import InterlockTable
 
+EQUAL_SIZES = 0.05
+"""The same size in two sections may differ by this share: a wheel is ground before it is mounted [A]."""
+BEYOND = 0.5
+"""Software limits may be wider than what the machine needs by this share of it, to either side [A]."""
 EQUAL_DECELERATIONS = 0.05
 """Wheel and belt must decelerate alike, in m/s2, within this share [A]: otherwise one stops before the other."""
 
@@ -75,11 +76,38 @@ def _units(rig: RigConfig) -> _Found:
     for name, axis in rig.axes.driven().items():
         if axis.unit != due[name]:
             yield ("axes", name, "unit"), f"the {name} axis is in {due[name]}, not {axis.unit}"
+        mode = "velocity" if name in VELOCITY_AXES else "position"
+        if axis.mode != mode:
+            yield ("axes", name, "mode"), f"the {name} axis is driven by {mode}, not by {axis.mode}"
+        feedback = "velocity" if name in ("wheel", "belt") else "position"
+        if axis.feedback != feedback:
+            yield ("axes", name, "feedback"), f"the {name} axis reports its {feedback}, not its {axis.feedback}"
     if not rig.axes.press.digital_io:
         yield ("axes", "press", "digital_io"), "the press drive carries the safety chain's inputs (expected true)"
     if rig.interlocks.stale_inputs_s < 2.0 * rig.axes.press.inputs_period_s:
         message = "is less than two of axes.press.inputs_period: a single lost frame would stop the rig"
         yield ("interlocks", "stale_inputs"), message
+
+
+def _sizes(rig: RigConfig) -> _Found:
+    """Yield sizes of the wheel that two sections state differently, and software limits that the machine belies."""
+    wheel, geometry = rig.observer.wheel, rig.geometry
+    for key, believed, mm in (
+        ("outer_diameter", wheel.outer_diameter, geometry.wheel_diameter_mm),
+        ("width", wheel.width, geometry.wheel_width_mm),
+    ):
+        if abs(believed - mm) > EQUAL_SIZES * mm:
+            name = f"geometry.wheel_{key.removeprefix('outer_')}"
+            yield ("observer", "wheel", key), f"{believed:g} mm, and {name} is {mm:g} mm: expected within 5 %"
+    widest = {"press": (0.0, geometry.touch_mm + wheel.rubber_layer)}
+    widest |= {name: (-limit, limit) for name, limit in rig.limits.positions().items()}
+    for name, axis in rig.axes.driven().items():
+        if name in widest and axis.software_limits is not None:
+            (low, high), (first, last) = axis.software_limits, widest[name]
+            room = BEYOND * (last - first)
+            if low < first - room or high > last + room:
+                expected = f"{first - room:g} to {last + room:g}: what the machine needs, and half as much"
+                yield ("axes", name, "software_limits"), f"{low:g} to {high:g} (expected within {expected})"
 
 
 def _press(rig: RigConfig) -> _Found:
@@ -186,9 +214,7 @@ class RigConfig(Rig):
     stated: ClassVar[tuple[str, ...]] = ("observer.wheel",)
     manual: ClassVar[tuple[str, ...]] = tuple(axis.name for axis in POSITIONED)
     own: ClassVar[Mapping[str, OwnDevice]] = {
-        "load_cell": OwnDevice(
-            "load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True, stale=STALE_CELL_S
-        ),
+        "load_cell": OwnDevice("load cell", "load_cell", channels=("fx", "fy", "fz"), joined=True, stale=STALE_CELL_S),
         "jacket": OwnDevice("jacket", "jacket", stale=STALE_JACKET_S),
         "ir_thermometer": OwnDevice("infrared thermometer", "ir_thermometer", stale=STALE_IR_S, shown="thermometer"),
     }
@@ -197,7 +223,6 @@ class RigConfig(Rig):
     """The interlock rows that control evaluates; a laboratory's own kind may have more."""
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
     watched: ClassVar[tuple[str, ...]] = TABLE.channels
-    ceilings: ClassVar[tuple[Ceiling, ...]] = CEILINGS
     real: ClassVar[tuple[tuple[str, str], ...]] = (
         ("the estimates and the thermal interlocks believe of the wheel. The simulated wheel behaves by `sim`\n",
          "the estimates and the thermal interlocks believe of the wheel. All [A].\n"),
@@ -218,7 +243,7 @@ class RigConfig(Rig):
     wear: WearConfig
     observer: ObserverConfig
     calibration: CertificatesConfig = field(default_factory=CertificatesConfig)
-    sim: SimParameters = field(default_factory=SimParameters)
+    sim: Annotated[SimParameters, NOT_REAL] = field(default_factory=SimParameters)
     """The simulated rig's physics; unused on a real rig."""
 
     @property
@@ -240,5 +265,5 @@ class RigConfig(Rig):
 
     def problems(self) -> Iterator[tuple[Location, str]]:
         """Yield inconsistencies between the kind's sections, with their places."""
-        for check in (_speeds, _decelerations, _units, _press, _temperatures, _skew, _heat_off):
+        for check in (_speeds, _decelerations, _units, _sizes, _press, _temperatures, _skew, _heat_off):
             yield from check(self)

@@ -57,8 +57,8 @@ def test_packaged_bus_load_is_26_percent_at_100_hz(rig: RigConfig) -> None:
 
 
 def test_axes_get_their_heartbeats_from_the_bus_section() -> None:
-    rig = load_rig("sim", ["can.drive_heartbeat=80 ms", "can.consumer_heartbeat=300 ms"])
-    assert {(axis.heartbeat_s, axis.consumer_heartbeat_s) for axis in rig.axes.driven().values()} == {(0.08, 0.3)}
+    rig = load_rig("sim", ["can.drive_heartbeat=80 ms", "can.consumer_heartbeat=240 ms"])
+    assert {(axis.heartbeat_s, axis.consumer_heartbeat_s) for axis in rig.axes.driven().values()} == {(0.08, 0.24)}
 
 
 def test_axes_are_named_by_their_keys(rig: RigConfig) -> None:
@@ -141,6 +141,12 @@ def test_every_bad_override_is_told() -> None:
         ("axes.belt.max_speed=1", "less than limits.belt_speed"),
         ("axes.belt.unit=mm/s", "the belt axis is in m/s"),
         ("axes.press.digital_io=false", "safety chain"),
+        ("axes.sideslip.mode=velocity", "driven by position"),
+        ("axes.belt.name=wheel", "expected belt"),
+        ("axes.press.software_limits=[-1, 40]", "expected within -9 to 27"),
+        ("axes.camber.software_limits=[-90, 11]", "expected within -20 to 20"),
+        ("observer.wheel.width=40 mm", "geometry.wheel_width is 30 mm"),
+        ("geometry.wheel_diameter=96 mm", "geometry.wheel_diameter is 96 mm"),
         ("can.bitrate=250000", "loads the CAN bus with 52 %"),
         ("devices.jacket.line=heet", "did you mean heat?"),
         ("devices.jacket.unit_id=2", "2 on line heat is jacket already"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from sim import machines
 from sim.plain_twin import PlainTwin, plain_machine
@@ -15,7 +15,7 @@ from tester.base.quantities import BURST, GATE, KEY, TIME, Channel, Quantities, 
 from tester.base.source import load_tree
 from tester.inputs.recipe.plain_recipe import PlainPart
 from tester.inputs.recipe.plan import Plan
-from tester.inputs.rig.config import OwnDevice, section_of
+from tester.inputs.rig.config import NOT_REAL, OwnDevice, section_of
 from tester.inputs.rig.parameter import Parameter
 from tester.inputs.rig.plain_rig import PlainRig, PlainSim
 from tester.inputs.rig.rig_files import checked
@@ -84,7 +84,7 @@ class BenchRig(PlainRig):
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
 
     interlocks: Interlocks
-    sim: PlainSim = field(default_factory=PlainSim)
+    sim: Annotated[PlainSim, NOT_REAL] = field(default_factory=PlainSim)
 
 
 class BenchPart(PlainPart):

@@ -8,9 +8,9 @@ from lab_sledge.image import QUANTITIES, SledgeReadings
 from lab_sledge.twin import SledgeSim
 from tester.base.config_reader import Range
 from tester.base.quantities import Quantities
-from tester.inputs.rig.ceilings import Ceiling, ceilings_of
-from tester.inputs.rig.config import OwnDevice, section_of
-from tester.inputs.rig.parameter import SECTION, Parameter
+from tester.inputs.rig.config import NOT_REAL, OwnDevice, section_of
+from tester.inputs.rig.key_classes import LOWER, Bounded, Held
+from tester.inputs.rig.parameter import Parameter
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.interlock_table import InterlockSheet
 from tester.machine.plain.rows import ABOUT, STALE_SENSOR_S, PlainInputs, plain_table
@@ -41,9 +41,9 @@ Interlocks: Any = section_of("Interlocks", TABLE.parameters, __name__)
 class SledgeSection:
     """What the laboratory has built."""
 
-    weight_n: Annotated[float, "N", Range(gt=0.0, le=50.0)]
+    weight_n: Annotated[float, "N", Range(gt=0.0, le=50.0), Held("a balance")]
     """Of the sledge with its rubber: the load."""
-    speed_mm_s: Annotated[float, "mm/s", Range(gt=0.0, le=50.0)]
+    speed_mm_s: Annotated[float, "mm/s", Range(gt=0.0, le=50.0), Bounded(LOWER, "50 mm/s", "the plate ends after 4 s")]
     """No recipe pulls faster."""
 
 
@@ -55,8 +55,7 @@ class SledgeRig(PlainRig):
     own: ClassVar[Mapping[str, OwnDevice]] = {"load_cell": OwnDevice("load cell", "load_cell", stale=STALE_SENSOR_S)}
     quantities: ClassVar[Quantities] = QUANTITIES
     parameters: ClassVar[tuple[Parameter, ...]] = TABLE.parameters
-    ceilings: ClassVar[tuple[Ceiling, ...]] = (*PlainRig.ceilings, *ceilings_of(SECTION, TABLE.parameters))
 
     sledge: SledgeSection
     interlocks: Interlocks
-    sim: SledgeSim = field(default_factory=SledgeSim)
+    sim: Annotated[SledgeSim, NOT_REAL] = field(default_factory=SledgeSim)

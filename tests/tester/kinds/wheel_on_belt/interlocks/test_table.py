@@ -10,9 +10,9 @@ from types import FunctionType
 import pytest
 
 from tester.base.config_reader import Range
-from tester.inputs.rig.ceilings import ceilings_of
 from tester.inputs.rig.config import values_of
-from tester.inputs.rig.parameter import SECTION, Direction, Parameter
+from tester.inputs.rig.key_classes import Bounded, Ceiling, class_of
+from tester.inputs.rig.parameter import Direction, Parameter
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS, TABLE
@@ -69,7 +69,9 @@ def test_a_parameter_says_what_it_is(one: Parameter) -> None:
 
 @pytest.mark.parametrize("one", [p for p in PARAMETERS if p.hardest], ids=lambda one: one.key)
 def test_the_packaged_value_is_not_looser_than_the_hardest(one: Parameter) -> None:
-    (ceiling,) = ceilings_of(SECTION, (one,))
+    (bound,) = class_of(one)
+    assert isinstance(bound, Bounded)
+    ceiling = Ceiling(one.key, one.unit, bound)
     hardest = ceiling.limit
     assert one.because and inside(one.bounds, hardest)
     assert not ceiling.looser(one.value, hardest) and not ceiling.looser(hardest, hardest)

@@ -8,7 +8,7 @@ import pytest
 
 from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.procedures.gates import GATES, Average, Gates, SurfaceTrend
-from tester.kinds.wheel_on_belt.rig.sections import GatesConfig
+from tester.kinds.wheel_on_belt.rig.loop_sections import GatesConfig
 
 CONFIG = GatesConfig(
     load_percent=2.0, load_filter_s=1.0, speed_percent=1.0, slip_percent=2.0, slip_floor_mm_s=2.0, slip_filter_s=0.2,

@@ -1,22 +1,30 @@
-"""Safety keys: what nobody may write without a word for it, and where only tighter values count."""
+"""Classes of keys: what no one may write without a word for it, and what only a real rig's file sets."""
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 
 import pytest
 import yaml
 
+from drivers.axis import AxisConfig
 from drivers.canopen.dictionary import VENDOR_ID
-from tester.base.config_reader import key_of
+from drivers.canopen.node_config import NodeConfig
+from tester.base.config_reader import entries
 from tester.base.source import InvalidSource
+from tester.inputs.rig.config import Rig
+from tester.inputs.rig.key_classes import LOWER, Ceiling
+from tester.inputs.rig.key_table import classed, in_words
 from tester.inputs.rig.rig_files import risks_of
+from tester.inputs.rig.rig_keys import RigKey, ceilings_of, keys_of
 from tester.inputs.rig.risks import beyond, counts_as_simulated
-from tester.kinds import load_rig, load_rig_text, packaged_text
-from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
-from tester.kinds.wheel_on_belt.rig.wheel_ceilings import CEILINGS
+from tester.inputs.rig.section_classes import AXIS, NODE
+from tester.kinds import PACKAGED, find, load_rig, load_rig_text, packaged_text
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.rig.axis_classes import BELT, PRESS, WHEEL
+from tests.tester.machine.plain.bench import BenchRig
 
+CEILINGS = ceilings_of(RigConfig)
 NONSENSE = (
     "interlocks.depth_factor=1e9", "interlocks.late_scan=1000", "limits.slip_power=1e6",
     "arming.watchdog_proof=false", "arming.bump_test=false", "limits.load=1e4 N", "limits.jacket=-1 degC",
@@ -75,60 +83,40 @@ def test_nonsense_in_a_rig_file_is_refused_without_a_word_for_it(override: str, 
     assert last in said or "is not a finite number" in said
 
 
-NO_HARM = {
-    "interlocks": {
-        "late_warn": "a warning", "zero_warn": "a warning", "ack_wait": "how long a repair is waited for",
-        "cold": "when a wheel may be told by its stiffness", "cooldown_at_most": "a wheel that cools for longer",
-        "open_output": "a heater that does not heat", "open": "a heater that does not heat",
-        "open_below": "a heater that does not heat", "open_rise": "a heater that does not heat",
-    },
-    "loops.load": {
-        "bandwidth": "a loop that swings is tripped by the load it makes", "rolling_bandwidth": "as bandwidth",
-        "error_filter": "as bandwidth", "stiffness": "as bandwidth", "integral": "as bandwidth",
-        "acceleration": "as bandwidth",
-        "open_share": "which touch is swept at low load",
-    },
-    "loops.heat": {
-        "outer_gain": "the setpoint ends at hub_max", "outer_integral": "as outer_gain",
-        "integral_band": "as outer_gain", "integral_limit": "as outer_gain", "hub_min": "as outer_gain",
-        "period": "as outer_gain", "rolling_offset": "as outer_gain",
-    },
-    "limits": {}, "arming": {}, "scan": {},
-    "can": {
-        **dict.fromkeys(("interface", "channel", "bitrate", "node"), "which wire, not what is on it"),
-        "nodes": "they measure, and no interlock looks at them",
-    },
-}  # fmt: skip
-"""Keys that no harm hangs on, and why."""
+@pytest.mark.parametrize("kind", [*(find(name).rig() for name in PACKAGED), BenchRig])
+def test_every_key_has_a_class(kind: type[Rig]) -> None:
+    """A key of a section, of a row, or of a plain kind that nobody has thought about fails here."""
+    assert [one.key for one in keys_of(kind) if not one.classes] == []
+    assert all(any(in_words(one)) and in_words(one)[1] for _, one in classed(kind))
 
 
-@pytest.mark.parametrize("section", NO_HARM)
-def test_every_key_has_a_ceiling_or_a_reason_for_none(section: str) -> None:
-    """A new key of a row or of a section is in one of both, or fails here."""
-    if section == "interlocks":
-        keys = {one.key for one in PARAMETERS}
-    else:
-        kind = load_rig()
-        for name in section.split("."):
-            kind = getattr(kind, name)
-        keys = {key_of(type(kind), field.name) for field in fields(kind)}
-    bounded = {one.key.removeprefix(f"{section}.") for one in CEILINGS if one.key.startswith(f"{section}.")}
-    assert bounded | set(NO_HARM[section]) == keys and not bounded & set(NO_HARM[section])
+def test_a_key_without_a_class_is_one_that_only_the_file_sets() -> None:
+    assert RigKey(("new",), "", ()).described
+
+
+def test_every_class_that_a_section_states_belongs_to_a_key_of_it() -> None:
+    for stated, of in (
+        (AXIS, AxisConfig),
+        (WHEEL, AxisConfig),
+        (BELT, AxisConfig),
+        (PRESS, AxisConfig),
+        (NODE, NodeConfig),
+    ):
+        assert stated.keys() <= {entry.key for entry in entries(of)}
 
 
 def test_the_packaged_rig_is_within_every_ceiling() -> None:
     rig = load_rig()
     assert beyond(rig) == () and risks_of(rig) == ()
-    assert len({one.key for one in CEILINGS}) == len(CEILINGS)
+    assert len({(one.key, one.bound.direction) for one in CEILINGS}) == len(CEILINGS)
 
 
-@pytest.mark.parametrize("one", CEILINGS, ids=lambda one: one.key)
-def test_a_ceiling_allows_its_hardest_value_and_nothing_looser(one: object) -> None:
-    ceiling = next(c for c in CEILINGS if c is one)
-    limit, step = ceiling.limit, 1e-6 if ceiling.direction.value == "lower" else -1e-6
+@pytest.mark.parametrize("ceiling", CEILINGS, ids=lambda one: one.key)
+def test_a_ceiling_allows_its_hardest_value_and_nothing_looser(ceiling: Ceiling) -> None:
+    limit, step = ceiling.limit, 1e-6 if ceiling.bound.direction is LOWER else -1e-6
     assert not ceiling.looser(limit, limit) and not ceiling.looser(limit - step, limit)
     assert ceiling.looser(limit + step, limit) and ceiling.looser(float("nan"), limit)
-    assert ceiling.because
+    assert ceiling.bound.because
 
 
 def test_a_refusal_names_value_hardest_value_reason_and_what_to_do() -> None:
@@ -181,3 +169,29 @@ def test_a_rig_whose_every_drive_must_be_the_simulators_counts_as_simulated(mach
 def test_a_drive_whose_identity_is_not_compared_is_a_real_one(machine: Path) -> None:
     text = machine.read_text(encoding="utf-8").replace("0x00000123", "0")
     assert not counts_as_simulated(load_rig_text(text))
+
+
+@pytest.mark.parametrize("override", ["axes.belt.rated_torque=17", "geometry.touch=11 mm", "like=sim", "wear.rate=0.1"])
+def test_on_a_real_rig_only_the_file_describes_the_machine_even_with_a_reason(override: str, machine: Path) -> None:
+    load_rig("sim", [override])
+    for reason in ("", "because"):
+        said = refused(machine, override, accept_risk=reason)
+        assert f"--set {override}" in said and "only the file of a real rig" in said and "held against" in said
+
+
+def test_on_a_real_rig_set_may_set_what_is_free(machine: Path) -> None:
+    assert load_rig(machine, ["loops.heat.outer_gain=2", "interlocks.open=2 min"]).loops.heat.outer_gain == 2.0
+
+
+def test_no_override_makes_a_real_rig_a_simulated_one(machine: Path) -> None:
+    identities = [f"axes.{name}.vendor_id={VENDOR_ID}" for name in ("wheel", "belt", "press", "sideslip", "camber")]
+    assert "only the file of a real rig" in refused(machine, *identities)
+
+
+def test_a_belief_of_the_heat_far_off_the_packaged_one_wants_a_reason_on_a_real_rig(machine: Path) -> None:
+    text = machine.read_text(encoding="utf-8").replace("    jacket_power: 200 W ", "    jacket_power: 1 W ", 1)
+    machine.write_text(text, encoding="utf-8")
+    said = refused(machine)
+    assert "observer.thermal.jacket_power: 1 W is not within 30 % of 200 W" in said and "--accept-risk REASON" in said
+    rig = load_rig(machine, accept_risk="another heater")
+    assert [one.key for one in risks_of(rig)] == ["observer.thermal.jacket_power"]

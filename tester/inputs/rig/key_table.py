@@ -1,0 +1,80 @@
+"""The keys of a kind's rig file with their classes, as a table of its page and of `tester rig keys`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, TypeAlias
+
+from tester.inputs.rig.key_classes import Bounded, Free, Held, KeyClass
+from tester.inputs.rig.rig_keys import ANY, Place, keys_of
+
+if TYPE_CHECKING:
+    from tester.inputs.rig.config import Rig
+
+Row: TypeAlias = tuple[list[str], KeyClass | None]
+"""Keys of one class, and the class; None for no class."""
+
+
+def ceiling_table(rows: Iterable[Row], elsewhere: Iterable[Row] = ()) -> str:
+    """Return the safety keys of some rows with direction, hardest value and reason as Markdown, a line each.
+
+    ``elsewhere``: rows of another table; those that bound the same keys alike are left out.
+    """
+    lines = ["| key | tighter is | not looser than | because |", "|---|---|---|---|"]
+    known = [one for _, one in elsewhere]
+    lines += [
+        f"| {', '.join(names)} | {one.direction.value} | {one.hardest} | {one.because} |"
+        for names, one in rows
+        if isinstance(one, Bounded) and one not in known
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def in_words(one: KeyClass | None) -> tuple[str, str]:
+    """Return a class, and the reason for it or what contradicts a wrong value."""
+    if isinstance(one, Bounded):
+        words = "not above" if one.direction.value == "lower" else "not below"
+        return f"{words} {one.hardest}".replace("not below true", "true"), one.because
+    if isinstance(one, Held):
+        within = f" within {100.0 * one.within:.0f} %" if one.within < 1.0 else ""
+        return f"held{within}", one.against
+    return ("free", one.because) if isinstance(one, Free) else ("no class", "")
+
+
+def classed(kind: type[Rig]) -> Iterator[Row]:
+    """Yield every class of a kind with the keys that have it, None with those without a class.
+
+    Keys come as short as possible: ``sim.*``, ``axes.*.heartbeat``.
+    """
+    every = [key.place for key in keys_of(kind)]
+    places: dict[tuple[KeyClass, ...], list[Place]] = {}
+    for key in keys_of(kind):
+        places.setdefault(key.classes, []).append(key.place)
+    for classes, shared in places.items():
+        names = _names(shared, every)
+        yield from ((names, one) for one in classes or (None,))
+
+
+def _names(shared: list[Place], every: list[Place]) -> list[str]:
+    """Return the shortest names of keys that share a class: whole sections, a key of every axis, or single keys."""
+    left, names = dict.fromkeys(shared), list[str]()
+    for place in shared:
+        if place not in left:
+            continue
+        covered, name = _widest(place, left, every)
+        names.append(name)
+        for one in covered:
+            del left[one]
+    return names
+
+
+def _widest(place: Place, shared: Mapping[Place, None], every: list[Place]) -> tuple[list[Place], str]:
+    """Return the keys that come as one with a key, and their name."""
+    for depth in range(1, len(place)):
+        section = [one for one in every if one[:depth] == place[:depth]]
+        if len(section) > 1 and all(one in shared for one in section):
+            return section, ".".join((*place[:depth], ANY))
+    alike = [one for one in every if one[:1] + one[2:] == place[:1] + place[2:] and len(place) > 2]
+    if len(alike) > 1 and all(one in shared for one in alike):
+        return alike, ".".join((*place[:1], ANY, *place[2:]))
+    return [place], ".".join(place)

@@ -1,0 +1,44 @@
+"""The classes of the axes' keys on this kind of rig (tester.inputs.rig.key_classes), where they depend on the axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from tester.inputs.rig.key_classes import HIGHER, LOWER, Bounded, Classes
+from tester.inputs.rig.section_classes import AXIS
+
+_VELOCITY: Final[Mapping[str, Classes]] = {
+    **AXIS,
+    "rpdo_deadline": Bounded(
+        LOWER, "250 ms", "without it a drive that receives no setpoint costs 3# 45 J; harm is 40 J", zero_is_off=True
+    ),
+}
+WHEEL: Final[Mapping[str, Classes]] = {
+    **_VELOCITY,
+    "max_speed": Bounded(LOWER, "40", "rad/s; 1.5 m/s, the greatest limits.wheel_speed, at the least diameter"),
+    "quick_stop_deceleration": Bounded(
+        HIGHER, "200", "rad/s2; at 8 m/s2 (178 rad/s2) a jammed belt costs 3# 45 J at 430 N, harm is 40 J"
+    ),
+    "speed_zero": Bounded(
+        HIGHER, "0.1", "rad/s; 0 is off: a jam is then seen with the next scan, and costs 3# 77 J; harm is 40 J"
+    ),
+}
+BELT: Final[Mapping[str, Classes]] = {
+    **_VELOCITY,
+    "max_speed": Bounded(LOWER, "1.6", "m/s; a belt that runs away may get as fast"),
+    "quick_stop_deceleration": Bounded(HIGHER, "9", "m/s2; as the wheel's"),
+    "speed_zero": Bounded(HIGHER, "0.005", "m/s; as the wheel's"),
+}
+PRESS: Final[Mapping[str, Classes]] = {
+    **_VELOCITY,
+    "acceleration": Bounded(
+        HIGHER, "600", "mm/s2; at 400 and 30 mm/s a wheel in local mode costs 3# 42 J, at 600 and 40 mm/s 39.5 J:"
+        " harm is 40 J"
+    ),
+    "max_speed": (
+        Bounded(HIGHER, "40", "mm/s, of a fast stop; as axes.press.acceleration"),
+        Bounded(LOWER, "100", "mm/s; a screw of 5 mm turns 20 times a second"),
+    ),
+    "quick_stop_deceleration": Bounded(HIGHER, "100", "mm/s2; from 10 mm/s it comes 0.5 mm further"),
+}  # fmt: skip
