@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
+from math import inf
 from typing import TypeVar
 
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
@@ -40,9 +41,14 @@ def rehearse(recipe: str, overrides: tuple[str, ...] = (), cooled: bool = True) 
 
     Without ``cooled`` the end is WARM_S after the last step: a hot wheel takes most of an hour to cool.
     """
-    stage = _stage(recipe, overrides)
+    stage = stage_of(recipe, overrides)
+    return moments_of(recipe, stage, cooled=cooled), stage
+
+
+def moments_of(recipe: str, stage: Stage, *, cooled: bool, most_s: float = inf) -> list[Moment]:
+    """Run a stage to its end, or until a rig time, s; return begin, middle and end of every step."""
     stretches: list[tuple[Place, str, int, int]] = []
-    while not stage.run.finished:
+    while not stage.run.finished and stage.next_s < most_s:
         if not cooled and stage.mode == "cooldown" and stage.next_s - stage.mode_since_s > WARM_S:
             break
         first = stage.ticks
@@ -53,17 +59,22 @@ def rehearse(recipe: str, overrides: tuple[str, ...] = (), cooled: bool = True) 
         else:
             title = stage.run.engine.ctx.progress.title.partition(" ")[0] if place[0] else "connect"
             stretches.append((place, f"{place[0]} {title} {place[1]}", first, first))
-    return list(_moments(recipe, stretches)), stage
+    return list(_moments(recipe, stretches))
 
 
-def _stage(recipe: str, overrides: tuple[str, ...], heat: KnownRatio = NO_HISTORY) -> Stage:
-    """Return a stage at the beginning of a recipe, on its rig with ``overrides`` besides and its history ``heat``."""
+def stage_of(
+    recipe: str, overrides: tuple[str, ...] = (), heat: KnownRatio = NO_HISTORY, believed: tuple[str, ...] = ()
+) -> Stage:
+    """Return a stage at the beginning of a recipe, on its rig with ``overrides`` besides and its history ``heat``.
+
+    ``believed``: overrides of the rig file that control has, besides; the machine is without them.
+    """
     setting = setting_of(recipe)
     if recipe in TRACKS:
         from tests.campaigns.faults.track import TrackStage
 
-        return TrackStage(TRACKS[recipe].rig, setting.text, (*setting.overrides, *overrides))
-    return Stage(setting.text, (*setting.overrides, *overrides), heat=heat)
+        return TrackStage(TRACKS[recipe].rig, setting.text, (*setting.overrides, *overrides), believed=believed)
+    return Stage(setting.text, (*setting.overrides, *overrides), heat=heat, believed=believed)
 
 
 def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Iterator[Moment]:
@@ -84,14 +95,14 @@ def _moments(recipe: str, stretches: list[tuple[Place, str, int, int]]) -> Itera
 
 def visit(
     recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = (),
-    heat: KnownRatio = NO_HISTORY,
+    heat: KnownRatio = NO_HISTORY, believed: tuple[str, ...] = (),
 ) -> None:
     """Run a recipe once and show, before each of the moments' ticks, what does work with twins of its stage."""
-    stage = _stage(recipe, overrides, heat)
+    stage = stage_of(recipe, overrides, heat, believed)
     for moment in sorted(moments, key=_tick):
         while stage.ticks < moment.tick:
             stage.tick()
-        look(moment, Twins(stage, recipe, overrides, heat))
+        look(moment, Twins(stage, recipe, overrides, heat, believed))
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +116,7 @@ class Twins:
     recipe: str
     overrides: tuple[str, ...]
     heat: KnownRatio
+    believed: tuple[str, ...] = ()
 
     def do(self, work: Callable[[Stage], Result]) -> Result:
         """Return what work makes of a twin. Raises ApartError."""
@@ -124,7 +136,7 @@ class Twins:
         """Return a twin in this process."""
         if self.stage.copyable:
             return self.stage.copy()
-        twin = _stage(self.recipe, self.overrides, self.heat)
+        twin = stage_of(self.recipe, self.overrides, self.heat, self.believed)
         while twin.ticks < self.stage.ticks:
             twin.tick()
         return twin

@@ -107,12 +107,16 @@ class Stage:
     """Run, rig, ledger and observer, with the time of the next tick."""
 
     def __init__(
-        self, text: str, overrides: Iterable[str] = (), seed: int = 0, heat: KnownRatio = NO_HISTORY
-    ) -> None:
-        """Build everything; nothing is sent before the first ``tick``. ``heat``: what the rig's history says."""
-        config = rig_of(tuple(overrides))
-        self.plan = plan_of(text, tuple(overrides))
-        ports, rig, attendant = simulated_ports(config, seed, None, FaultyCanWire)
+        self, text: str, overrides: Iterable[str] = (), seed: int = 0, heat: KnownRatio = NO_HISTORY,
+        believed: tuple[str, ...] = (),
+    ) -> None:  # fmt: skip
+        """Build everything; nothing is sent before the first ``tick``. ``heat``: what the rig's history says.
+
+        ``believed``: further overrides of the rig file that control has; the machine is without them.
+        """
+        config = rig_of((*overrides, *believed))
+        self.plan = plan_of(text, (*overrides, *believed))
+        ports, rig, attendant = simulated_ports(rig_of(tuple(overrides)), seed, None, FaultyCanWire)
         self.ledger = Ledger()
         assert isinstance(rig, WheelRig)
         self.rig: Any = rig

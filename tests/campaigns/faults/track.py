@@ -64,11 +64,14 @@ def track_plan_of(name: str, text: str, overrides: tuple[str, ...]) -> Plan:
 class TrackStage(Stage):
     """Run, rig, ledger and observer of a specimen on a track."""
 
-    def __init__(self, rig: str, text: str, overrides: Iterable[str] = (), seed: int = 0) -> None:
-        """Build everything on a packaged rig; nothing is sent before the first ``tick``."""
-        config = track_rig_of(rig, tuple(overrides))
-        self.plan = track_plan_of(rig, text, tuple(overrides))
-        ports, world, attendant = simulated_ports(config, seed, None, FaultyCanWire)
+    def __init__(
+        self, rig: str, text: str, overrides: Iterable[str] = (), seed: int = 0, believed: tuple[str, ...] = ()
+    ) -> None:
+        """Build everything on a packaged rig; nothing is sent before the first ``tick``. ``believed``: as Stage's."""
+        config = track_rig_of(rig, (*overrides, *believed))
+        self.plan = track_plan_of(rig, text, (*overrides, *believed))
+        machine = track_rig_of(rig, tuple(overrides))
+        ports, world, attendant = simulated_ports(machine, seed, None, FaultyCanWire)
         self.ledger = self.tares = TrackLedger()
         assert isinstance(world, TrackRig)
         self.rig = world

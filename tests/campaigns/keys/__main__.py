@@ -1,0 +1,69 @@
+"""`python -m tests.campaigns.keys [--sample] [--seed N] [--jobs N]`: nonsense for every key of a real rig's file.
+
+Draws values over all keys of the packaged rigs, as in the file of a real machine: each is refused there, or runs at the
+limits whose control believes it do no harm, on a machine that is as packaged, without a fault and with faults. By
+`--set` only what is free is accepted, and what is tighter. Prints a line a figure; exit status 1 where one misses.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+
+from tester.inputs.rig.key_classes import Bounded, Free
+from tests.campaigns.acceptance.figure import Figure, at_least, equal
+from tests.campaigns.keys.harm import Tried, tried
+from tests.campaigns.keys.nonsense import Nonsense, drawn
+
+VALUES, SAMPLE_VALUES = 400, 200
+ASKED_FOR = 200
+TRIED_IN_SAMPLE = 2
+CASES, SAMPLE_CASES = 12, 3
+"""Faults that begin in the runs with one accepted value."""
+
+
+def overridable(nonsense: Nonsense) -> bool:
+    """Return whether ``--set`` may accept the value on a real rig: the key is free, or the value is tighter."""
+    return isinstance(nonsense.key.classes[0], Bounded | Free)
+
+
+def figures(values: list[Nonsense], runs: int, cases: int, jobs: int) -> Iterator[Figure]:
+    """Yield what became of all values; ``runs``: how many of those that a file may have are tried in runs."""
+    refusals = {one: one.in_file() for one in values}
+    yield at_least("nonsense values over all keys", len(values), ASKED_FOR)
+    unnamed = [f"{one.text}: {said}" for one, said in refusals.items() if said and one.place[-1] not in said]
+    yield equal("refusals that do not name the key", unnamed, [])
+    wrong = [one.text for one in values if not overridable(one) and not one.by_override()]
+    yield equal("described by --set on a real rig", wrong, [])
+    accepted = [one for one, said in refusals.items() if not said]
+    print(f"     {len(values) - len(accepted)} of {len(values)} refused in the file of a real rig", flush=True)
+    found: list[Tried] = []
+    for one in tried(accepted[:runs], cases, jobs):
+        found.append(one)
+        print(f"     {one.nonsense.rig}: {one.nonsense.text} ({one.nonsense.class_name}): {one.ended},"
+              f" {one.cases} faults", *one.harm, sep="\n       ! ", flush=True)  # fmt: skip
+    harmful = [one.nonsense.text for one in found if one.harm]
+    yield equal(f"{len(found)} of {len(accepted)} accepted values tried at the limits: harm", harmful, [])
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Measure what is asked for; return the exit status."""
+    parser = argparse.ArgumentParser("python -m tests.campaigns.keys", description=(__doc__ or "").partition("\n")[2])
+    parser.add_argument("--sample", action="store_true", help="the short form, for every change")
+    parser.add_argument("--values", type=int, metavar="N", help=f"values to draw (default {VALUES})")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the draw (default 0)")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs side by side (default 1)")
+    given = parser.parse_args(arguments)
+    count: int = given.values or (SAMPLE_VALUES if given.sample else VALUES)
+    values = list(drawn(count, given.seed))
+    missed = 0
+    cases = SAMPLE_CASES if given.sample else CASES
+    for figure in figures(values, TRIED_IN_SAMPLE if given.sample else count, cases, given.jobs):
+        missed += not figure.ok
+        print(figure, flush=True)
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

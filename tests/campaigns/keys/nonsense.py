@@ -1,0 +1,130 @@
+"""Nonsense values of keys, drawn by seed, and what a real rig's file and `--set` answer to them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import dataclass
+from functools import cache
+from math import inf, nan
+from random import Random
+from typing import Any
+
+import yaml
+
+from tester.base.source import InvalidSource, Tree, load_tree
+from tester.inputs.rig.config import NOT_REAL, Rig
+from tester.inputs.rig.rig_files import checked, load
+from tester.inputs.rig.rig_keys import Place, RigKey, values_of
+from tester.kinds import load_rig
+
+RIGS = ("sim", "grosch", "pin-on-disc")
+"""The packaged rigs whose keys are tried."""
+SHARES = (2, 1, 1)
+"""The wheel has as many turns as the two tracks."""
+OTHER_MAKER = 0x123
+"""Vendor of the drives of a real rig."""
+FACTORS = (0.0, -1.0, 1e-6, 1e-4, 1e-2, 0.1, 10.0, 1e2, 1e4, 1e6)
+"""What a number is multiplied by; one that is 0 counts as 1."""
+NUMBERS = (inf, nan, 1e9)
+"""Further nonsense in place of a number."""
+TEXTS = ("nonsense", "", "sim")
+"""Nonsense in place of a text, beside the values that the key has elsewhere."""
+
+
+@dataclass(frozen=True, slots=True)
+class Nonsense:
+    """A value for a key of the real rig that is like a packaged one."""
+
+    rig: str
+    key: RigKey
+    place: Place
+    value: Any
+
+    @property
+    def text(self) -> str:
+        """Return the key and the value, as for ``--set``."""
+        value = yaml.safe_dump(self.value, default_flow_style=True, width=10_000).removesuffix("...\n").strip()
+        return f"{'.'.join(self.place)}={value}"
+
+    @property
+    def class_name(self) -> str:
+        """Return the class of the key."""
+        return type(self.key.classes[0]).__name__.lower()
+
+    def in_file(self) -> str:
+        """Return why the file of a real rig is refused with the value in it, "" where it is accepted."""
+        tree = _tree(self.rig)
+        section: Any = tree.data
+        for key in self.place[:-1]:
+            section = section.setdefault(key, {})
+        section[self.place[-1]] = self.value
+        return _refusal(self.rig, tree)
+
+    def by_override(self) -> str:
+        """Return why ``--set``, or a client's override, is refused on a real rig, "" where it is accepted."""
+        return _refusal(self.rig, _tree(self.rig), self.text)
+
+
+def drawn(count: int, seed: int) -> Iterator[Nonsense]:
+    """Yield nonsense: every key of every rig is as likely, those that only a simulated machine uses are left out."""
+    random = Random(f"nonsense {seed}")
+    while count:
+        (rig,) = random.choices(RIGS, SHARES)
+        key, place, value = random.choice(keys(rig))
+        nonsense = _nonsense(random, rig, place, value)
+        if nonsense != value:
+            yield Nonsense(rig, key, place, nonsense)
+            count -= 1
+
+
+@cache
+def keys(rig: str) -> tuple[tuple[RigKey, Place, Any], ...]:
+    """Return every key that a real rig like a packaged one has, with its place and its value."""
+    return tuple(one for one in values_of(_real(rig)[1]) if NOT_REAL not in one[0].classes)
+
+
+def _nonsense(random: Random, rig: str, place: Place, value: Any) -> Any:
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int):
+        return random.choice((0, -1, 1, 10, 7 * value, 1000 * value, 2**31, 2**40))
+    if isinstance(value, float):
+        return random.choice((*((value or 1.0) * factor for factor in FACTORS), *NUMBERS))
+    if isinstance(value, tuple):
+        numbers: tuple[Any, ...] = value
+        factor = random.choice(FACTORS)
+        return [factor * number for number in numbers]
+    if isinstance(value, str):
+        elsewhere = {other for _, at, other in keys(rig) if at[-1] == place[-1] and isinstance(other, str)}
+        return random.choice((*TEXTS, *sorted(elsewhere)))
+    return {"nonsense": random.choice((1e9, "nonsense"))}
+
+
+def _refusal(rig: str, tree: Tree, *overrides: str) -> str:
+    try:
+        load(type(_real(rig)[1]), tree, overrides)
+    except InvalidSource as error:
+        return "; ".join(problem.message for problem in error.problems)
+    return ""
+
+
+def _tree(rig: str) -> Tree:
+    """Return the file of a real rig, as data that may be changed."""
+    return deepcopy(_real(rig)[0])
+
+
+@cache
+def _real(rig: str) -> tuple[Tree, Rig]:
+    """Return the file of a real rig that is like a packaged one, and the rig."""
+    packaged = load_rig(rig)
+    data: Any = load_tree(packaged.text).data
+    data |= {"simulated": False, "rig": "a real machine", "like": rig}
+    data["can"] |= {"interface": "socketcan", "channel": "can0"}
+    for name, line in data["lines"].items():
+        line["port"] = f"/dev/{name}"
+    for axis in filter(None, data["axes"].values()):
+        axis["vendor_id"] = OTHER_MAKER
+    del data["sim"]
+    tree = load_tree(yaml.safe_dump(data, sort_keys=False), "rig.yaml")
+    return tree, checked(type(packaged), deepcopy(tree))
