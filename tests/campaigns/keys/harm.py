@@ -51,13 +51,12 @@ def _try(work: tuple[Nonsense, int]) -> Tried:
     except (InvalidSource, TroubleError) as error:
         return Tried(nonsense, f"refused: {error}")
     found = [f"no fault: {name}, {text}" for name, text in stage.observer.found.items()]
-    found += [f"no fault: {name}, {text}" for name, text in stage.invariants.broken.items()]
     verdicts = _faulty(recipe, moments, cases, believed)
     found += [
         f"{' + '.join(one.case.faults)} at {one.case.place}: {text}"
         for one in verdicts
         for text in one.failures
-        if text.startswith(("harm", "not safe", "invariant"))
+        if text.startswith(("harm", "not safe"))
     ]
     return Tried(nonsense, stage.run.reason or "no trip", len(verdicts), tuple(found))
 
