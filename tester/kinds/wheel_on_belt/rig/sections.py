@@ -19,7 +19,7 @@ from tester.inputs.rig.plain_rig import LISTEN, WATCHDOG_PROOF, WITHHOLD
 from tester.inputs.rig.section_classes import AXIS
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
-from tester.kinds.wheel_on_belt.rig import axis_classes
+from tester.kinds.wheel_on_belt.rig.axis_classes import BELT, PRESS, WHEEL
 
 HARMFUL_N: Final = 500.0
 """A force on the wheel from this value up counts as harm (sim.harm)."""
@@ -99,9 +99,9 @@ class _LimitsConfig:
 class _AxesConfig:
     """The drives; None for an axis that is set by hand (``manual: true`` in the file)."""
 
-    wheel: Annotated[AxisConfig, Inside(axis_classes.WHEEL)]
-    belt: Annotated[AxisConfig, Inside(axis_classes.BELT)]
-    press: Annotated[AxisConfig, Inside(axis_classes.PRESS)]
+    wheel: Annotated[AxisConfig, Inside(WHEEL)]
+    belt: Annotated[AxisConfig, Inside(BELT)]
+    press: Annotated[AxisConfig, Inside(PRESS)]
 
     def driven(self) -> dict[str, AxisConfig]:
         """Return the axes that have a drive, by name."""
