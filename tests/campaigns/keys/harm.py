@@ -7,10 +7,9 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 
-from sim.machines.specimen_on_track.faults import CATALOGUE as TRACK_CATALOGUE
 from tester.base.source import InvalidSource
 from tester.base.trouble import TroubleError
-from tests.campaigns.faults import limits
+from tests.campaigns.faults import limits, track
 from tests.campaigns.faults.campaign import all_cases, sample
 from tests.campaigns.faults.judge import Case, Judge, Verdict
 from tests.campaigns.faults.moments import Moment, Twins, moments_of, stage_of, visit
@@ -63,7 +62,8 @@ def _try(work: tuple[Nonsense, int]) -> Tried:
 
 def _faulty(recipe: str, moments: list[Moment], cases: int, believed: tuple[str, ...]) -> list[Verdict]:
     """Return what comes of faults that begin at moments of such a run."""
-    faults = limits.faults() if recipe == limits.SHORT_CORNER else list(TRACK_CATALOGUE)
+    wheel = recipe == limits.SHORT_CORNER
+    faults = limits.faults() if wheel else [name for name in track.FAULTS if track.fits(recipe, name)]
     by_moment: dict[Moment, list[tuple[str, ...]]] = {}
     for moment, names in sample(all_cases(moments, faults), cases):
         by_moment.setdefault(moment, []).append(names)

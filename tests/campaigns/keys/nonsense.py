@@ -81,7 +81,11 @@ def drawn(count: int, seed: int) -> Iterator[Nonsense]:
 @cache
 def keys(rig: str) -> tuple[tuple[RigKey, Place, Any], ...]:
     """Return every key that a real rig like a packaged one has, with its place and its value."""
-    return tuple(one for one in values_of(_real(rig)[1]) if NOT_REAL not in one[0].classes)
+    return tuple(
+        (key, place, value)
+        for key, place, value in values_of(_real(rig)[1])
+        if NOT_REAL not in key.classes and place != ("kind",)  # another kind's name: another reader of the file
+    )
 
 
 def _nonsense(random: Random, rig: str, place: Place, value: Any) -> Any:
@@ -105,7 +109,7 @@ def _refusal(rig: str, tree: Tree, *overrides: str) -> str:
     try:
         load(type(_real(rig)[1]), tree, overrides)
     except InvalidSource as error:
-        return "; ".join(problem.message for problem in error.problems)
+        return "; ".join(map(str, error.problems))
     return ""
 
 
