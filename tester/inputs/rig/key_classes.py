@@ -31,6 +31,9 @@ class Bounded:
     because: str
     zero_is_off: bool = False
     """Whether 0 switches the watch off: looser than any other value."""
+    own: bool = False
+    """Whether every machine has a value of its own: a real rig's file may differ from the packaged one up to the
+    hardest value without an accepted risk."""
 
 
 @dataclass(frozen=True, slots=True)

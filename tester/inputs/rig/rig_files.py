@@ -57,7 +57,7 @@ def risks_of(rig: Rig) -> tuple[Risk, ...]:
     if counts_as_simulated(rig):
         return beyond(rig)
     packaged = _packaged(type(rig), rig.like)
-    return (*loosened(rig, packaged), *apart(rig, packaged))
+    return (*loosened(rig, packaged, packaged=True), *apart(rig, packaged))
 
 
 @cache

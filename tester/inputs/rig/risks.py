@@ -45,11 +45,15 @@ def counts_as_simulated(rig: Rig) -> bool:
     return rig.simulated or ids == {(VENDOR_ID, PRODUCT_CODE)}
 
 
-def loosened(rig: Rig, than: Rig) -> tuple[Risk, ...]:
-    """Return the safety keys that are looser in one rig than in another; axes that only one has are left out."""
+def loosened(rig: Rig, than: Rig, *, packaged: bool = False) -> tuple[Risk, ...]:
+    """Return the safety keys that are looser in one rig than in another; axes that only one has are left out.
+
+    ``packaged``: the other is the packaged rig, from which a machine's own values may differ (``Bounded.own``).
+    """
     risks: list[Risk] = []
     for ceiling, place, value in _bounded(rig):
-        limit = _number(value_at(than, place))
+        own = packaged and ceiling.bound.own
+        limit = ceiling.limit if own else _number(value_at(than, place))
         if limit is not None and ceiling.looser(value, limit):
             beyond_too = ceiling.looser(value, ceiling.limit) and limit != ceiling.limit
             hardest = f" and than {ceiling.bound.hardest}" if beyond_too else ""

@@ -77,7 +77,7 @@ class ArmConfig:
 
     raised_mm: Annotated[float, "mm", _POSITIVE, Held("the cell, which shows no force with the arm raised")]
     within_mm: Annotated[
-        float, "mm", _POSITIVE, Bounded(LOWER, "1 mm", "the specimen touches 1 mm above its lowered place")
+        float, "mm", _POSITIVE, Bounded(LOWER, "1 mm", "the specimen touches 1 mm above its lowered place", own=True)
     ]
 
 
@@ -85,11 +85,11 @@ class ArmConfig:
 class TrackGates:
     """When a sample counts. A recipe sets the temperature band."""
 
-    speed_percent: Annotated[float, "%", _POSITIVE, Bounded(LOWER, "5 %", "a sample at another speed counts")]
+    speed_percent: Annotated[float, "%", _POSITIVE, Bounded(LOWER, "5 %", "a sample at another speed counts", own=True)]
     stationary_percent: Annotated[
-        float, "%", _POSITIVE, Bounded(LOWER, "2 %", "friction that still grows counts as that of sliding")
+        float, "%", _POSITIVE, Bounded(LOWER, "2 %", "friction that still grows counts as that of sliding", own=True)
     ]
-    settle_s: Annotated[float, "s", _NOT_NEGATIVE, Bounded(HIGHER, "1 s", "the arm still swings")]
+    settle_s: Annotated[float, "s", _NOT_NEGATIVE, Bounded(HIGHER, "1 s", "the arm still swings", own=True)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,9 @@ from typing import Any
 
 import yaml
 
-from tester.base.source import InvalidSource, Tree, load_tree
+from tester.base.source import InvalidSource, Tree
 from tester.inputs.rig.config import NOT_REAL, Rig
+from tester.inputs.rig.packaged import new_tree
 from tester.inputs.rig.rig_files import checked, load
 from tester.inputs.rig.rig_keys import Place, RigKey, values_of
 from tester.kinds import load_rig
@@ -122,13 +123,14 @@ def _tree(rig: str) -> Tree:
 def _real(rig: str) -> tuple[Tree, Rig]:
     """Return the file of a real rig that is like a packaged one, and the rig."""
     packaged = load_rig(rig)
-    data: Any = load_tree(packaged.text).data
+    tree = new_tree(type(packaged), rig)
+    data: Any = tree.data
     data |= {"simulated": False, "rig": "a real machine", "like": rig}
     data["can"] |= {"interface": "socketcan", "channel": "can0"}
     for name, line in data["lines"].items():
         line["port"] = f"/dev/{name}"
-    for axis in filter(None, data["axes"].values()):
-        axis["vendor_id"] = OTHER_MAKER
+    for axis in data["axes"].values():
+        if axis != {"manual": True}:
+            axis["vendor_id"] = OTHER_MAKER
     del data["sim"]
-    tree = load_tree(yaml.safe_dump(data, sort_keys=False), "rig.yaml")
     return tree, checked(type(packaged), deepcopy(tree))

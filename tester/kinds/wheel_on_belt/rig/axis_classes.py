@@ -16,7 +16,7 @@ _VELOCITY: Final[Mapping[str, Classes]] = {
 }
 WHEEL: Final[Mapping[str, Classes]] = {
     **_VELOCITY,
-    "max_speed": Bounded(LOWER, "40", "rad/s; 1.5 m/s, the greatest limits.wheel_speed, at the least diameter"),
+    "max_speed": Bounded(LOWER, "40", "rad/s; the greatest limits.wheel_speed at the least diameter", own=True),
     "quick_stop_deceleration": Bounded(
         HIGHER, "200", "rad/s2; at 8 m/s2 (178 rad/s2) a jammed belt costs 3# 45 J at 430 N, harm is 40 J"
     ),
@@ -26,7 +26,7 @@ WHEEL: Final[Mapping[str, Classes]] = {
 }
 BELT: Final[Mapping[str, Classes]] = {
     **_VELOCITY,
-    "max_speed": Bounded(LOWER, "1.6", "m/s; a belt that runs away may get as fast"),
+    "max_speed": Bounded(LOWER, "1.6", "m/s; a belt that runs away may get as fast", own=True),
     "quick_stop_deceleration": Bounded(HIGHER, "9", "m/s2; as the wheel's"),
     "speed_zero": Bounded(HIGHER, "0.005", "m/s; as the wheel's"),
 }
@@ -38,7 +38,7 @@ PRESS: Final[Mapping[str, Classes]] = {
     ),
     "max_speed": (
         Bounded(HIGHER, "40", "mm/s, of a fast stop; as axes.press.acceleration"),
-        Bounded(LOWER, "100", "mm/s; a screw of 5 mm turns 20 times a second"),
+        Bounded(LOWER, "100", "mm/s; a screw of 5 mm turns 20 times a second", own=True),
     ),
     "quick_stop_deceleration": Bounded(HIGHER, "100", "mm/s2; from 10 mm/s it comes 0.5 mm further"),
 }  # fmt: skip

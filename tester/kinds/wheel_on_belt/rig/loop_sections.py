@@ -19,11 +19,12 @@ class LoadLoopConfig:
 
     bandwidth_hz: Annotated[
         float, "Hz", _POSITIVE,
-        Bounded(LOWER, "1.5 Hz", "the cell, the scan and the drive are 60 ms late: a quicker loop swings"),
+        Bounded(LOWER, "1.5 Hz", "the cell, the scan and the drive are 60 ms late: a quicker loop swings", own=True),
     ]  # fmt: skip
     rolling_bandwidth_hz: Annotated[
-        float, "Hz", _POSITIVE, Bounded(LOWER, "1 Hz", "the wheel's runout comes at 2.8 Hz: the press would follow it")
-    ]
+        float, "Hz", _POSITIVE,
+        Bounded(LOWER, "1 Hz", "the wheel's runout comes at 2.8 Hz: the press would follow it", own=True),
+    ]  # fmt: skip
     """Bandwidth while holding in band: too slow to follow the wheel's runout."""
     error_filter_s: Annotated[float, "s", _POSITIVE, Free("it chooses between the two bandwidths")]
     """Averaging time of the load error that decides between the two bandwidths."""
@@ -31,7 +32,7 @@ class LoadLoopConfig:
         float, "N/mm", _POSITIVE, Held("the press's travel for the load in each contact", within=0.5)
     ]
     """Tangent stiffness of the contact at 200 N."""
-    integral_s: Annotated[float, "s", _POSITIVE, Bounded(HIGHER, "1 s", "at 1 Hz a shorter one swings")]
+    integral_s: Annotated[float, "s", _POSITIVE, Bounded(HIGHER, "1 s", "at 1 Hz a shorter one swings", own=True)]
     touch_load_n: Annotated[
         float, "N", _POSITIVE,
         Bounded(LOWER, "20 N", "a wrong direction or scale of wheel or belt shows at 20 N or less"),
@@ -55,7 +56,7 @@ class LoadLoopConfig:
     ]
     acceleration_mm_s2: Annotated[
         float, "mm/s2", _POSITIVE,
-        Bounded(LOWER, "200 mm/s2", "at 15 mm/s the press stops within 0.6 mm: a fifth of what a cell may miss"),
+        Bounded(LOWER, "200 mm/s2", "at 100 a load of 15 N overshoots: at twice that by a few newtons [A]", own=True),
     ]  # fmt: skip
     """Acceleration of profiles to a position: at most ``axes.press.acceleration``, which a lift uses."""
     clearance_mm: Annotated[float, "mm", _POSITIVE, Bounded(HIGHER, "1 mm", "twenty times the runout of the tread")]
@@ -75,7 +76,9 @@ class HeatLoopConfig:
     integral_band_k: Annotated[float, "K", _POSITIVE, _SETPOINT]
     """The integral changes only within this error."""
     integral_limit_k: Annotated[float, "K", _NOT_NEGATIVE, _SETPOINT]
-    hub_min_c: Annotated[float, "degC", Bounded(LOWER, "40 degC", "a wheel that waits is as warm as a hand bears [A]")]
+    hub_min_c: Annotated[
+        float, "degC", Bounded(LOWER, "40 degC", "a wheel that waits is as warm as a hand bears [A]", own=True)
+    ]
     hub_max_c: Annotated[float, "degC", Bounded(LOWER, "150 degC", "as limits.jacket")]
     period_s: Annotated[float, "s", _POSITIVE, _SETPOINT]
     rolling_offset_k: Annotated[float, "K", _NOT_NEGATIVE, _SETPOINT]
@@ -90,8 +93,8 @@ class LoopsConfig:
     heat: HeatLoopConfig
 
 
-_OFF: Final = Bounded(LOWER, "5 %", "a sample off its setpoint counts")
-_AVERAGED: Final = Bounded(LOWER, "2 s", "a short burst is averaged away")
+_OFF: Final = Bounded(LOWER, "5 %", "a sample off its setpoint counts", own=True)
+_AVERAGED: Final = Bounded(LOWER, "2 s", "a short burst is averaged away", own=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,9 +105,9 @@ class GatesConfig:
     load_filter_s: Annotated[float, "s", _POSITIVE, _AVERAGED]
     speed_percent: Annotated[float, "%", _POSITIVE, _OFF]
     slip_percent: Annotated[float, "%", _POSITIVE, _OFF]
-    slip_floor_mm_s: Annotated[float, "mm/s", _NOT_NEGATIVE, Bounded(LOWER, "5 mm/s", "a tenth of 50 mm/s")]
+    slip_floor_mm_s: Annotated[float, "mm/s", _NOT_NEGATIVE, Bounded(LOWER, "5 mm/s", "a tenth of 50 mm/s", own=True)]
     slip_filter_s: Annotated[float, "s", _POSITIVE, _AVERAGED]
-    ir_lag_s: Annotated[float, "s", _NOT_NEGATIVE, Bounded(LOWER, "1 s", "at 1 K/s a temperature is 1 K off")]
+    ir_lag_s: Annotated[float, "s", _NOT_NEGATIVE, Bounded(LOWER, "1 s", "at 1 K/s a temperature is 1 K off", own=True)]
     contact_transient_s: Annotated[
-        float, "s", _NOT_NEGATIVE, Bounded(HIGHER, "0.5 s", "1 % of the friction is missing then")
+        float, "s", _NOT_NEGATIVE, Bounded(HIGHER, "0.5 s", "1 % of the friction is missing then", own=True)
     ]

@@ -183,6 +183,13 @@ def test_on_a_real_rig_set_may_set_what_is_free(machine: Path) -> None:
     assert load_rig(machine, ["loops.heat.outer_gain=2", "interlocks.open=2 min"]).loops.heat.outer_gain == 2.0
 
 
+def test_a_value_that_every_machine_has_of_its_own_is_bounded_by_its_hardest_only(machine: Path) -> None:
+    edited(machine, "    bandwidth: 1.0 Hz ", "    bandwidth: 1.5 Hz ")
+    assert risks_of(load_rig(machine)) == ()
+    assert "--set may only tighten" in refused(machine, "loops.load.bandwidth=1.6 Hz")
+    assert load_rig(machine, ["loops.load.bandwidth=1.4 Hz"]).loops.load.bandwidth_hz == 1.4
+
+
 def test_no_override_makes_a_real_rig_a_simulated_one(machine: Path) -> None:
     identities = [f"axes.{name}.vendor_id={VENDOR_ID}" for name in ("wheel", "belt", "press", "sideslip", "camber")]
     assert "only the file of a real rig" in refused(machine, *identities)
