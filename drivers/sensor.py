@@ -64,10 +64,10 @@ class Sensor(Device):
         self.status = 0
         self.changed_s: float = -inf
         for write in profile.setup:
-            self.add_write(write.name, write.address, (write.value,), write.read_back)
+            self.add_setup(write)
         for name, register in profile.writes.items():
             value = _parameter(profile, register, parameters.get(name))
-            self.add_write(name, register.address, register.words(value, profile.word_order), read_back=True)
+            self.add_write(name, register.address, register.words(value, profile.order), read_back=True)
         self.begin()
 
     @property
@@ -109,11 +109,11 @@ class Sensor(Device):
         status = int(found[self._status_place]) if self._status_place >= 0 else 0
         counts, raw, values, tare = self.counts, self.raw, self.values, self.tare
         valid = not status & self._invalid_bits
-        for number, place, sign, scale, low, high in self._rows:
+        for number, place, sign, scale, offset, low, high in self._rows:
             count = float(found[place])
             if sign and status & sign:
                 count = -count
-            value = count * scale
+            value = count * scale + offset
             if not low < value < high:
                 valid = False
             if count != counts[number]:
@@ -135,15 +135,15 @@ class Sensor(Device):
 
 def _row(
     number: int, place: int, signal: Signal, saturated: float | None
-) -> tuple[int, int, int, float, float, float]:
-    """Return a channel's number, place in the block, sign bit's mask, scale, and the bounds of its values."""
+) -> tuple[int, int, int, float, float, float, float]:
+    """Return a channel's number, place in the block, sign bit's mask, scale, offset, and the bounds of its values."""
     sign = 1 << signal.sign_bit if signal.sign_bit is not None else 0
     if saturated is None:
         low, high = nextafter(signal.least, -inf), nextafter(signal.greatest, inf)
     else:
         high = floor(saturated * signal.greatest / signal.scale) * signal.scale if signal.greatest < inf else inf
         low = -high
-    return number, place, sign, signal.scale, low, high
+    return number, place, sign, signal.scale, signal.offset, low, high
 
 
 def _parameter(profile: DeviceProfile, register: Signal, given: float | None) -> float:

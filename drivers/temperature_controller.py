@@ -112,10 +112,10 @@ class TemperatureController(Device):
         profile, switch = self.profile, self._switch
         self.add_write("standby", switch.address, (switch.off,), read_back=False)
         for write in profile.setup:
-            self.add_write(write.name, write.address, (write.value,), write.read_back)
+            self.add_setup(write)
         if self.has_lease:
             lease = profile.writes["lease"]
-            self.add_write("off-line time", lease.address, lease.words(lease_s, profile.word_order), read_back=True)
+            self.add_write("off-line time", lease.address, lease.words(lease_s, profile.order), read_back=True)
         self.begin()
 
     def set_setpoint(self, celsius: float) -> None:
@@ -136,7 +136,7 @@ class TemperatureController(Device):
         self._asked_c = celsius
         register = self._register
         bounded = min(max(celsius, register.least), register.greatest)
-        words = register.words(bounded, self.profile.word_order)
+        words = register.words(bounded, self.profile.order)
         if words != self._wanted:
             self._wanted = words
             self.link.rewrite(self._setpoint_write, words)

@@ -10,7 +10,10 @@ from drivers.modbus.codec import READ_HOLDING, WRITE_MANY
 from drivers.modbus.link import ModbusLink
 from drivers.modbus.request import Request
 from drivers.modbus.schedule import PROBE_S
-from drivers.profiles.model import DeviceProfile
+from drivers.profiles.model import DeviceProfile, SetupWrite
+
+ASK_AGAIN_S = 0.1
+"""Time between two reads of a register that is to change by itself, s [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +24,8 @@ class SetupStep:
     request: Request
     expected: bytes | None = None
     """Expected content of the registers read, as on the wire; None = any answer will do."""
+    within_s: float = 0.0
+    """Time from the first answer within which the registers must hold it, s."""
 
 
 class Device(ABC):
@@ -49,6 +54,8 @@ class Device(ABC):
             poll.block = number
         self._steps: list[SetupStep] = []
         self._step = 0
+        self._waits_until_s = inf
+        """Time at which the present step gives up; infinity until its first answer."""
 
     @property
     def refused(self) -> str | None:
@@ -82,10 +89,19 @@ class Device(ABC):
             read = self.link.read(self.station, READ_HOLDING, address, len(words))
             self._steps.append(SetupStep(what, read, b"".join(word.to_bytes(2, "big") for word in words)))
 
+    def add_setup(self, setup: SetupWrite) -> None:
+        """Add a step of the profile's set-up: a write, a wait for a value, or both."""
+        if setup.writes:
+            self.add_write(setup.name, setup.address, setup.words, setup.read_back and not setup.within_s)
+        if setup.within_s:
+            read = self.link.read(self.station, READ_HOLDING, setup.address, len(setup.words))
+            expected = b"".join(word.to_bytes(2, "big") for word in setup.words)
+            self._steps.append(SetupStep(setup.name, read, expected, setup.within_s))
+
     def received(self, request: Request, data: bytes, t: float) -> None:
         """Process a good reply that arrived at ``t`` s: continue the set-up, or update the readings."""
         if not self.ready and request is self._steps[self._step].request:
-            self._proceed(self._steps[self._step], data)
+            self._proceed(self._steps[self._step], data, t)
         if request.block >= 0:
             self.take(request.block, data, t)
 
@@ -97,20 +113,27 @@ class Device(ABC):
         for poll in self._polls:
             self.link.disable(poll)
         self._step = 0
+        self._waits_until_s = inf
         self.suspend()
         if self.refused is None:
             self.link.enable(self._steps[0].request, t + PROBE_S)
 
-    def _proceed(self, step: SetupStep, data: bytes) -> None:
+    def _proceed(self, step: SetupStep, data: bytes, t: float) -> None:
         """End a step of the set-up and begin the next one."""
         if step.expected is not None:
             found, expected = data[: len(step.expected)], step.expected
             if found != expected:
+                self._waits_until_s = min(self._waits_until_s, t + step.within_s)
+                if t < self._waits_until_s:
+                    self.link.disable(step.request)
+                    self.link.enable(step.request, t + ASK_AGAIN_S)
+                    return
                 one = len(expected) == 2  # for people: a number, or the bytes of several registers
                 shown = [str(int.from_bytes(held, "big")) if one else held.hex(" ") for held in (found, expected)]
                 self.station.refused = f"{step.what}: register holds {shown[0]}, expected {shown[1]}"
                 return
         self._step += 1
+        self._waits_until_s = inf
         if step.request is not self._polls[0]:
             self.link.disable(step.request)
         if self._step < len(self._steps):

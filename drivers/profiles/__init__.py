@@ -7,23 +7,27 @@ your own, and ``read_profile`` a text from elsewhere. A new device is a new file
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 from typing import Literal, cast, get_args
 
 from drivers.profiles.model import (
+    LIMITS,
     SIZES,
     DeviceProfile,
     Identity,
     Kind,
     LineData,
     Number,
+    NumberOrder,
+    Order,
     ProfileError,
     RegisterBlock,
     SetupWrite,
     Signal,
     Switch,
     Timing,
-    WordOrder,
 )
 from drivers.profiles.table import ProfileTable, read_table
 
@@ -43,6 +47,8 @@ _WRITE_MANY = 16
 """Function code that writes several registers in one request."""
 _MOST_REGISTERS = 125
 """Registers in one read (Modbus application protocol V1.1b3, 6.3)."""
+_LONGEST_WAIT_MS = 60_000
+"""Longest time that a step of the set-up may wait for a value, ms [A]."""
 SATURATED_SHARE = 0.98
 """Share of a load cell's range from which a channel counts as saturated, unless its profile states another [A]."""
 _FORCES = ("fx", "fy", "fz", "mz", "force")
@@ -81,7 +87,10 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
     kind = cast(Kind, top.choice("kind", get_args(Kind)))
     title = top.text("title")
     functions = frozenset(_whole(top, "functions", item, 127) for item in top.items("functions"))
-    order = cast(WordOrder, top.choice("word_order", get_args(WordOrder), "high_first"))
+    order = NumberOrder(
+        cast(Order, top.choice("word_order", get_args(Order), "high_first")),
+        cast(Order, top.choice("byte_order", get_args(Order), "high_first")),
+    )
     signals = _signals(top.table("signals", required=True))
     blocks = tuple(_block(read, signals, order) for read in top.tables("reads"))
     if not blocks:
@@ -102,14 +111,14 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
         title=title,
         functions=functions,
         write_function=top.integer("write_function", 6, 16, 6),
-        word_order=order,
+        order=order,
         line=_line(top.table("line", required=True)),
         timing=_timing(top.table("timing", required=True)),
         blocks=blocks,
         invalid_bits=invalid,
         status_bits=status_bits,
         identity=_identity(top.table("identity")) if "identity" in top else None,
-        setup=tuple(_setup(write) for write in top.tables("setup")),
+        setup=tuple(_setup(write, order, functions) for write in top.tables("setup")),
         writes=_signals(top.table("writes"), functions),
         switches=_switches(top.table("switches")),
         tare=top.flag("tare", cell),
@@ -117,6 +126,8 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
         falls_back_s=top.number("falls_back_s") if "falls_back_s" in top else None,
     )
     top.end()
+    if kind in ("jacket", "chamber") and any(signal.offset for block in blocks for signal in block.signals):
+        raise top.error("signals", "a controller's registers have no offset")
     return profile
 
 
@@ -150,6 +161,7 @@ def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> d
             type=cast(Number, row.choice("type", get_args(Number))),
             scale=scale,
             unit=row.text("unit", ""),
+            offset=row.number("offset", 0.0),
             least=row.number("least", float("-inf")),
             greatest=row.number("greatest", float("inf")),
             sign_bit=row.integer("sign_bit", 0, 31) if "sign_bit" in row else None,
@@ -157,6 +169,7 @@ def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> d
         )
         if functions is not None:
             _writable(row, found[key], functions)
+            found[key] = _within_type(row, found[key])
         row.end()
     return found
 
@@ -171,7 +184,18 @@ def _writable(row: ProfileTable, signal: Signal, functions: Collection[int]) -> 
         )
 
 
-def _block(table: ProfileTable, signals: dict[str, Signal], order: WordOrder) -> RegisterBlock:
+def _within_type(row: ProfileTable, signal: Signal) -> Signal:
+    """Return a signal to write whose bounds are not beyond its type; refuse bounds that are."""
+    if signal.type == "f32":
+        return signal
+    low, high = (end * signal.scale + signal.offset for end in LIMITS[signal.type])
+    for key, bound in (("least", signal.least), ("greatest", signal.greatest)):
+        if isfinite(bound) and not low <= bound <= high:
+            raise row.error(key, f"must be {low:g} to {high:g}, which {signal.type} can hold, not {bound:g}")
+    return replace(signal, least=max(signal.least, low), greatest=min(signal.greatest, high))
+
+
+def _block(table: ProfileTable, signals: dict[str, Signal], order: NumberOrder) -> RegisterBlock:
     chosen: list[Signal] = []
     for item in table.items("signals"):
         if not isinstance(item, str) or item not in signals:
@@ -220,15 +244,31 @@ def _identity(table: ProfileTable) -> Identity:
     return identity
 
 
-def _setup(table: ProfileTable) -> SetupWrite:
-    write = SetupWrite(
-        name=table.text("name"),
-        address=table.integer("address", 0, 0xFFFF),
-        value=table.integer("value", 0, 0xFFFF),
-        read_back=table.flag("read_back", True),
+def _setup(table: ProfileTable, order: NumberOrder, functions: Collection[int]) -> SetupWrite:
+    """Return a step of the set-up: a value to write, or with ``write = false`` a value to wait for."""
+    number = Signal(
+        table.text("name"),
+        table.integer("address", 0, 0xFFFF),
+        cast(Number, table.choice("type", get_args(Number), "u16")),
+        1.0,
+        "",
     )
+    value = table.number("value")
+    words = number.words(value, order)
+    if number.type != "f32" and number.value(b"".join(word.to_bytes(2, "big") for word in words), order) != value:
+        least, greatest = LIMITS[number.type]
+        raise table.error("value", f"must be a whole number {least}..{greatest} for {number.type}, not {value:g}")
+    writes = table.flag("write", True)
+    if writes:
+        _writable(table, number, functions)
+    within_s = 1e-3 * table.integer("within_ms", 0, _LONGEST_WAIT_MS, 0)
+    if not writes and not within_s:
+        raise table.error("within_ms", "is missing: a step that writes nothing waits for its value")
+    step = SetupWrite(number.name, number.address, words, table.flag("read_back", True), within_s, writes)
+    if within_s and not step.read_back:
+        raise table.error("read_back", "must not be false where the step waits for its value")
     table.end()
-    return write
+    return step
 
 
 def _switches(table: ProfileTable) -> dict[str, Switch]:

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import isfinite
 from struct import Struct
-from typing import Literal
+from typing import Literal, get_args
 
 Kind = Literal["load_cell", "ir_thermometer", "jacket", "chamber", "sensor"]
 """Role of a device in a rig; ``sensor`` is one that measures anything else."""
 Number = Literal["u16", "i16", "u32", "i32", "f32"]
-WordOrder = Literal["high_first", "low_first"]
+Order = Literal["high_first", "low_first"]
 
 CODES: dict[Number, str] = {"u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
 """struct codes of the register types."""
@@ -36,6 +36,31 @@ class ProfileError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
+class NumberOrder:
+    """Order of a number that takes two registers. A number of one register always has its high byte first (Modbus)."""
+
+    words: Order = "high_first"
+    """Order of the two registers."""
+    bytes: Order = "high_first"
+    """Order of the two bytes in each register."""
+
+    @property
+    def places(self) -> tuple[int, int, int, int]:
+        """Return the place on the wire of each byte of a number, the highest byte first; it is its own inverse."""
+        a, b, c, d = (1, 0, 3, 2) if self.bytes == "low_first" else (0, 1, 2, 3)
+        return (c, d, a, b) if self.words == "low_first" else (a, b, c, d)
+
+    def sorted(self, data: bytes) -> bytes:
+        """Return the four bytes of a number with the highest first, or from there in the order of the wire."""
+        return bytes([data[place] for place in self.places])
+
+
+HIGH_FIRST = NumberOrder()
+ORDERS = tuple(NumberOrder(words, in_words) for in_words in get_args(Order) for words in get_args(Order))
+"""Every order."""
+
+
+@dataclass(frozen=True, slots=True)
 class Signal:
     """One number in the registers of a device."""
 
@@ -46,6 +71,8 @@ class Signal:
     scale: float
     """Value of one count, in ``unit``."""
     unit: str
+    offset: float = 0.0
+    """Value at a count of 0, in ``unit``."""
     least: float = float("-inf")
     """A value below it is not plausible; the device does not accept it for a parameter."""
     greatest: float = float("inf")
@@ -59,30 +86,29 @@ class Signal:
         """Number of registers."""
         return SIZES[self.type]
 
-    def words(self, value: float, word_order: WordOrder) -> tuple[int, ...]:
+    def words(self, value: float, order: NumberOrder = HIGH_FIRST) -> tuple[int, ...]:
         """Return the registers for ``value``, in the order of sending; the value is rounded to the register's type.
 
-        Raises ValueError for a value that is not finite, or greater than an f32 can hold.
+        Raises ValueError for a value that is not finite, or that the type cannot hold.
         """
         if not isfinite(value):
             raise ValueError(f"{self.name} must be a finite number, not {value}")
-        counts = value / self.scale
-        if self.type == "f32":
-            if abs(counts) > MOST_F32:
-                raise ValueError(f"{self.name} is too great for its registers: {value}")
-            data = Struct(">f").pack(counts)
-        else:
-            least, greatest = LIMITS[self.type]
-            data = Struct(">" + CODES[self.type]).pack(min(max(round(counts), least), greatest))
-        words = tuple(int.from_bytes(data[at : at + 2], "big") for at in range(0, len(data), 2))
-        return words if word_order == "high_first" else words[::-1]
+        counts = (value - self.offset) / self.scale
+        whole = self.type != "f32"
+        least, greatest = LIMITS[self.type] if whole else (-MOST_F32, MOST_F32)
+        if not least <= (round(counts) if whole else counts) <= greatest:
+            raise ValueError(f"{self.name} does not fit into its register, {self.type}: {value}")
+        data = Struct(">" + CODES[self.type]).pack(round(counts) if whole else counts)
+        if self.size == 2:
+            data = order.sorted(data)
+        return tuple(int.from_bytes(data[at : at + 2], "big") for at in range(0, len(data), 2))
 
-    def value(self, data: bytes, word_order: WordOrder) -> float:
+    def value(self, data: bytes, order: NumberOrder = HIGH_FIRST) -> float:
         """Return the number in the registers ``data``, their bytes in the order of sending."""
-        if word_order == "low_first" and self.size == 2:
-            data = data[2:] + data[:2]
+        if self.size == 2:
+            data = order.sorted(data)
         counts: float = Struct(">" + CODES[self.type]).unpack(data)[0]
-        return counts * self.scale
+        return counts * self.scale + self.offset
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +121,7 @@ class RegisterBlock:
     period_s: float
     signals: tuple[Signal, ...]
     """In order of address; ``unpack`` returns and ``pack`` takes their counts in this order."""
-    word_order: WordOrder = "high_first"
+    order: NumberOrder = HIGH_FIRST
     unpack: Callable[[bytes], tuple[int, ...]] = field(init=False, compare=False)
     """Returns the counts of the signals from the block's bytes."""
     pack: Callable[..., bytes] = field(init=False, compare=False)
@@ -110,9 +136,9 @@ class RegisterBlock:
             at = signal.address + signal.size
         layout = Struct(codes)
         unpack, pack = layout.unpack, layout.pack
-        if self.word_order == "low_first" and any(signal.size > 1 for signal in self.signals):
-            swapper = _WordSwapper(layout, self)
-            unpack, pack = swapper.unpack, swapper.pack
+        if self.order != HIGH_FIRST and any(signal.size > 1 for signal in self.signals):
+            sorter = _ByteSorter(layout, self)
+            unpack, pack = sorter.unpack, sorter.pack
         object.__setattr__(self, "unpack", unpack)
         object.__setattr__(self, "pack", pack)
 
@@ -128,8 +154,8 @@ class RegisterBlock:
         raise KeyError(name)
 
 
-class _WordSwapper:
-    """Turns a block with the low word first into one with the high word first, and back."""
+class _ByteSorter:
+    """Puts the highest byte of each number of a block first, and back."""
 
     def __init__(self, layout: Struct, block: RegisterBlock) -> None:
         self._layout = layout
@@ -137,7 +163,7 @@ class _WordSwapper:
         for signal in block.signals:
             if signal.size > 1:
                 at = 2 * (signal.address - block.address)
-                order[at : at + 4] = [at + 2, at + 3, at, at + 1]
+                order[at : at + 4] = [at + place for place in block.order.places]
         self._order = tuple(order)
 
     def unpack(self, data: bytes) -> tuple[int, ...]:
@@ -145,7 +171,7 @@ class _WordSwapper:
         return self._layout.unpack(bytes([data[at] for at in self._order]))
 
     def pack(self, *counts: int) -> bytes:
-        """Return the bytes; swapping twice is no swap."""
+        """Return the bytes: the order of the wire is its own inverse."""
         data = self._layout.pack(*counts)
         return bytes([data[at] for at in self._order])
 
@@ -161,12 +187,18 @@ class Identity:
 
 @dataclass(frozen=True, slots=True)
 class SetupWrite:
-    """A value to write when a device is connected."""
+    """A value to write when a device is connected, or to wait for."""
 
     name: str
     address: int
-    value: int
+    words: tuple[int, ...]
+    """Registers of the value, in the order of sending."""
     read_back: bool
+    """Whether the registers are read and compared afterwards."""
+    within_s: float = 0.0
+    """Time that the device may take until its registers hold the value, s; 0 = the first read-back must hold it."""
+    writes: bool = True
+    """False: only wait for the value, and write nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,7 +240,7 @@ class DeviceProfile:
     functions: frozenset[int]
     """Function codes that the device knows."""
     write_function: int
-    word_order: WordOrder
+    order: NumberOrder
     line: LineData
     timing: Timing
     blocks: tuple[RegisterBlock, ...]

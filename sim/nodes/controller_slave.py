@@ -137,7 +137,7 @@ class ControllerSlave(ModbusSlave):
         self._lease = profile.writes.get("lease")
         self._falls_back_s = profile.falls_back_s
         self._switch = profile.switches["run"]
-        self._setup = frozenset((write.address, write.value) for write in profile.setup)
+        self._setup = frozenset((write.address, write.words[0]) for write in profile.setup)
         kept = {self._switch.address, *(write.address for write in profile.setup)}
         if self._lease is not None:
             kept.add(self._lease.address)
@@ -287,8 +287,9 @@ def _plant(profile: DeviceProfile) -> ControlledPlant:
     if plant is None:
         raise ProfileError(f"profile {profile.name} describes a {profile.kind}, not a temperature controller")
     shown = [signal for block in profile.blocks for signal in block.signals]
-    if any(signal.size != 1 for signal in (*profile.writes.values(), *shown)):
-        raise ProfileError(f"profile {profile.name}: the simulated controller has registers of 16 bits only")
+    sizes = {signal.size for signal in (*profile.writes.values(), *shown)}
+    if sizes != {1} or any(len(write.words) != 1 or not write.writes for write in profile.setup):
+        raise ProfileError(f"profile {profile.name}: the simulated controller has registers of 16 bits, without waits")
     if {signal.name for signal in shown} != set(_SHOWN) or profile.identity is not None:
         raise ProfileError(f"profile {profile.name}: the simulated controller shows {', '.join(_SHOWN)}, and no type")
     return plant

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import floor, inf, isfinite
 from typing import Final, Protocol
 
-from drivers.profiles.model import LIMITS, DeviceProfile, Signal, WordOrder
+from drivers.profiles.model import LIMITS, DeviceProfile, Signal
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, PATTERN, ModbusSlave
 
 Quantity = Callable[[], float]
@@ -64,10 +64,13 @@ class SensorSlave(ModbusSlave):
         if profile.identity is not None:
             read.append((profile.identity.address, 1))
         written = [(signal.address, signal.size) for signal in profile.writes.values()]
-        written += [(write.address, 1) for write in profile.setup]
+        written += [(write.address, len(write.words)) for write in profile.setup]
         super().__init__(unit_id, profile.timing.turnaround_s, [*read, *written], profile.functions)
         if profile.identity is not None:
             self.put(profile.identity.address, profile.identity.value.to_bytes(2, "big"))
+        for write in profile.setup:
+            if not write.writes:  # the real device takes a while; this one has already finished
+                self.put(write.address, b"".join(word.to_bytes(2, "big") for word in write.words))
         self._read_only = {address for start, count in read for address in range(start, start + count)}
         self._parameters = {signal.address: signal for signal in profile.writes.values() if signal.size == 1}
         self.dither = 0
@@ -85,11 +88,11 @@ class SensorSlave(ModbusSlave):
         names = [signal.name for signal in block.signals]
         self._status_place = names.index("status") if "status" in names else -1
         self._rows = tuple(
-            (signal.scale, signal.type != "f32", limit, 1 << signal.sign_bit if signal.sign_bit is not None else 0,
-             *LIMITS[signal.type])
+            (signal.scale, signal.offset, signal.type != "f32", limit,
+             1 << signal.sign_bit if signal.sign_bit is not None else 0, *LIMITS[signal.type])
             for signal, limit in zip(block.signals, self._limits, strict=True)
         )
-        """For each signal: scale, whether its counts are whole, greatest counts, bit of its sign, ends of its type."""
+        """For each signal: scale, offset, whether counts are whole, greatest counts, bit of the sign, ends of type."""
         self._shown = bytes(2 * block.count)
         self.blocks = {(block.address, block.count): 0}
 
@@ -118,14 +121,16 @@ class SensorSlave(ModbusSlave):
         self.dither = phase = (self.dither + 1) & 3
         step, status = PATTERN[phase], self.status_bits
         counts: list[object] = []
-        for (scale, whole, limit, sign, least, most), value in zip(self._rows, values, strict=True):
+        for (scale, offset, whole, limit, sign, least, most), value in zip(self._rows, values, strict=True):
             if len(counts) == self._status_place:
                 counts.append(0)
                 continue
             if not isfinite(value):
                 status |= self._invalid
                 value = 0.0
-            count: float = floor(value / scale + step) if whole else value / scale
+            count: float = (value - offset) / scale
+            if whole:
+                count = floor(count + step)
             if not -limit < count < limit:
                 status |= self._overload
                 count = min(max(count, -limit), limit)
@@ -149,7 +154,7 @@ class SensorSlave(ModbusSlave):
         if register is None or register.type not in ("u16", "i16"):
             return 0
         signed = value - 0x10000 if register.type == "i16" and value > 0x7FFF else value
-        return 0 if register.least <= signed * register.scale <= register.greatest else ILLEGAL_VALUE
+        return 0 if register.least <= signed * register.scale + register.offset <= register.greatest else ILLEGAL_VALUE
 
 
 class ForceSource(Protocol):
@@ -176,7 +181,7 @@ class CellSlave(SensorSlave):
         names = [signal.name for signal in self._signals]
         self.forces: tuple[str, ...] = tuple(forces.get(name, name) for name in names)
         """Forces of its channels, in the order of the block, with its status among them."""
-        self._plain = names == [*FORCES, "status"]
+        self._plain = names == [*FORCES, "status"] and not any(signal.offset for signal in self._signals)
         self._places = tuple(FORCES.index(force) if force in FORCES else -1 for force in self.forces)
         self._scales = tuple(signal.scale for signal in self._signals)
         self._pack = self._block.pack
@@ -219,7 +224,7 @@ class IrSlave(SensorSlave):
         profile.expect("ir_thermometer")
         super().__init__(profile, unit_id)
         self._emissivity = profile.writes.get("emissivity")
-        self._word_order: WordOrder = profile.word_order
+        self._order = profile.order
         self.source = source
         self.sensor_c = sensor_c
         self._of_itself = tuple(signal.name == "sensor" for signal in self._signals)
@@ -229,7 +234,7 @@ class IrSlave(SensorSlave):
         """Switch the supply; the thermometer starts with an emissivity of 1 [A]."""
         self.powered = on
         if on and self._emissivity is not None:
-            words = self._emissivity.words(1.0, self._word_order)
+            words = self._emissivity.words(1.0, self._order)
             self.put(self._emissivity.address, b"".join(word.to_bytes(2, "big") for word in words))
 
     @property
@@ -239,7 +244,7 @@ class IrSlave(SensorSlave):
         if register is None:
             return 1.0
         words = (self.get(register.address + place).to_bytes(2, "big") for place in range(register.size))
-        return register.value(b"".join(words), self._word_order)
+        return register.value(b"".join(words), self._order)
 
     def measure(self, t: float) -> list[float]:
         """Return the surface's temperature at ``t`` s on every channel except that of the device's own temperature."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import isfinite, nan
 from statistics import median
 
 from drivers.modbus.request import REPLIES
-from drivers.profiles.model import RegisterBlock, Signal, WordOrder
+from drivers.profiles.model import ORDERS, RegisterBlock, Signal
 from tester.doctor.bus_watch import UnitWatch
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
@@ -171,30 +172,29 @@ def _decoded(block: RegisterBlock, data: bytes) -> list[tuple[Signal, float]]:
     status = next((int(value) for signal, value in values if signal.name == "status"), 0)
     values_by_signal: list[tuple[Signal, float]] = []
     for signal, counts in values:
-        value = float(counts) * signal.scale
+        count = float(counts)
         if signal.sign_bit is not None and status >> signal.sign_bit & 1:
-            value = -value
+            count = -count
+        value = count * signal.scale + signal.offset
         values_by_signal.append((signal, value if isfinite(value) else nan))
     return values_by_signal
 
 
 def _implausible(name: str, unit: UnitSurvey, block: RegisterBlock, data: bytes, wrong: list[str]) -> Iterator[Finding]:
-    other: WordOrder = "low_first" if block.word_order == "high_first" else "high_first"
-    turned = RegisterBlock(block.function, block.address, block.count, block.period_s, block.signals, other)
-    fits = any(signal.size > 1 for signal in block.signals) and all(
-        signal.name == "status" or signal.least <= value <= signal.greatest for signal, value in _decoded(turned, data)
-    )
-    if fits:
-        values = ", ".join(
-            f"{signal.name} {value:.4g} {signal.unit}" for signal, value in _decoded(turned, data)
-            if signal.name != "status"
-        )  # fmt: skip
-        yield fault(
-            name, f"wrong word order: {'; '.join(wrong)}; the other way round they are plausible ({values})",
-            f'a profile with word_order = "{other}", or the device\'s own setting',
-        )  # fmt: skip
-    else:
-        yield fault(name, f"implausible: {'; '.join(wrong)}", "the sensor, its cable; scale and type in its profile")
+    for order in ORDERS if any(signal.size > 1 for signal in block.signals) else ():
+        turned = _decoded(replace(block, order=order), data)
+        if order != block.order and all(
+            signal.name == "status" or signal.least <= value <= signal.greatest for signal, value in turned
+        ):
+            values = ", ".join(f"{signal.name} {value:.4g} {signal.unit}" for signal, value in turned
+                               if signal.name != "status")  # fmt: skip
+            kind = "word order" if order.bytes == block.order.bytes else "byte order"
+            yield fault(
+                name, f"wrong {kind}: {'; '.join(wrong)}; in another order they are plausible ({values})",
+                f'a profile with word_order = "{order.words}", byte_order = "{order.bytes}"; or the device set',
+            )  # fmt: skip
+            return
+    yield fault(name, f"implausible: {'; '.join(wrong)}", "the sensor, its cable; scale and type in its profile")
 
 
 def _status(name: str, unit: UnitSurvey, status: int) -> Iterator[Finding]:
@@ -209,11 +209,11 @@ def _status(name: str, unit: UnitSurvey, status: int) -> Iterator[Finding]:
 def _settings(name: str, unit: UnitSurvey) -> Iterator[Finding]:
     """Compare the registers that every connection writes with the rig file and the profile."""
     profile = unit.profile
-    wanted: dict[str, tuple[int, ...]] = {write.name: (write.value,) for write in profile.setup}
+    wanted: dict[str, tuple[int, ...]] = {write.name: write.words for write in profile.setup}
     for key, signal in profile.writes.items():
         value = unit.config.parameters.get(key, signal.default)
         if value is not None:
-            wanted[key] = signal.words(value, profile.word_order)
+            wanted[key] = signal.words(value, profile.order)
     differ = [
         f"{key} {' '.join(map(str, held))} instead of {' '.join(map(str, words))}"
         for key, words in wanted.items()

@@ -63,7 +63,7 @@ class UnitSurvey:
         if profile.identity is not None:
             yield "device type", RegisterQuestion(unit_id, profile.identity.function, profile.identity.address, 1)
         for write in profile.setup:
-            yield write.name, RegisterQuestion(unit_id, reads, write.address, 1)
+            yield write.name, RegisterQuestion(unit_id, reads, write.address, len(write.words))
         for name, signal in profile.writes.items():
             if name not in ("setpoint", "lease"):
                 yield name, RegisterQuestion(unit_id, reads, signal.address, signal.size)

@@ -155,6 +155,8 @@ def _calibration_of(rig: Rig) -> Iterator[Calibration]:
             for signal in block.signals:
                 if signal.unit:
                     yield Calibration(device, f"scale of {signal.name}", repr(signal.scale), signal.unit)
+                if signal.offset:
+                    yield Calibration(device, f"offset of {signal.name}", repr(signal.offset), signal.unit)
         for name, value in config.parameters.items():
             unit = profile.writes[name].unit if name in profile.writes else ""
             yield Calibration(device, name, repr(value), unit or "1")

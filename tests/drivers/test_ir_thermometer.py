@@ -123,6 +123,7 @@ kind = "ir_thermometer"
 title = "thermometer with floats"
 functions = [3, 6, 16]
 word_order = "{order}"
+byte_order = "{in_words}"
 line = {{ baud = 38400, parity = "N" }}
 timing = {{ turnaround_ms = 5.0, reply_max_ms = 60.0, retries = 1 }}
 [signals]
@@ -139,19 +140,22 @@ invalid = [0]
 """
 
 
-def profile_of(type_: str, scale: float = 1.0, order: str = "high_first") -> DeviceProfile:
-    return read_profile("floats", FLOATS.format(type=type_, scale=scale, order=order))
+def profile_of(
+    type_: str, scale: float = 1.0, order: str = "high_first", in_words: str = "high_first", more: str = ""
+) -> DeviceProfile:
+    return read_profile("floats", FLOATS.format(type=type_, scale=scale, order=order, in_words=in_words) + more)
 
 
 @pytest.mark.parametrize("order", ["high_first", "low_first"])
+@pytest.mark.parametrize("in_words", ["high_first", "low_first"])
 @pytest.mark.parametrize(
     ("type_", "scale"), [("f32", 1.0), ("f32", 0.01), ("u32", 1e-6), ("i32", 1e-6), ("u16", 1e-4), ("i16", 1e-4)]
 )
 @pytest.mark.parametrize("emissivity", [0.95, 0.8125, 0.1])
 def test_an_emissivity_arrives_as_it_was_stated_whatever_its_type(
-    type_: str, scale: float, emissivity: float, order: str
+    type_: str, scale: float, emissivity: float, order: str, in_words: str
 ) -> None:
-    profile = profile_of(type_, scale, order)
+    profile = profile_of(type_, scale, order, in_words)
     slave = IrSlave(profile, 2, Quantities())
     rig = Rig(38400, slave)
     thermometer = Sensor(profile, 2, rig.link, parameters={"emissivity": emissivity})
@@ -185,6 +189,54 @@ def test_a_float_that_is_kept_in_its_first_register_alone_is_refused() -> None:
 def test_a_register_that_cannot_hold_its_range_is_refused(
     type_: str, scale: float, functions: str, message: str
 ) -> None:
-    text = FLOATS.format(type=type_, scale=scale, order="high_first").replace("[3, 6, 16]", functions)
+    text = FLOATS.format(type=type_, scale=scale, order="high_first", in_words="high_first").replace(
+        "[3, 6, 16]", functions
+    )
     with pytest.raises(ProfileError, match=message):
         read_profile("floats", text)
+
+
+WAITS = """
+[[setup]]
+name = "password"
+address = 20
+value = 1234
+
+[[setup]]
+name = "range"
+address = 22
+type = "f32"
+value = 12.5
+
+[[setup]]
+name = "self-test done"
+address = 24
+value = 3
+write = false
+within_ms = 1000
+"""
+
+
+def waiting(holds_after_s: float) -> tuple[Rig, Sensor, IrSlave]:
+    """Return a thermometer whose self-test ends after a time."""
+    profile = profile_of("f32", more=WAITS)
+    slave = IrSlave(profile, 2, Quantities())
+    slave.put(24, bytes(2))
+    rig = Rig(38400, slave)
+    thermometer = Sensor(profile, 2, rig.link)
+    rig.run(holds_after_s)
+    assert not thermometer.ready
+    return rig, thermometer, slave
+
+
+def test_a_set_up_waits_until_a_register_holds_its_value() -> None:
+    rig, thermometer, slave = waiting(0.7)
+    slave.put(24, (3).to_bytes(2, "big"))
+    rig.run(1.2)
+    assert thermometer.ready and slave.get(20) == 1234 and (slave.get(22), slave.get(23)) == (0x4148, 0)
+
+
+def test_a_set_up_that_waits_in_vain_refuses_the_device() -> None:
+    rig, thermometer, _ = waiting(0.7)
+    rig.run(2.5)
+    assert thermometer.refused == "self-test done: register holds 0, expected 3"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from drivers.profiles import ProfileError, load_profile, profile_names
-from drivers.profiles.model import RegisterBlock, Signal
+from drivers.profiles.model import Number, NumberOrder, RegisterBlock, Signal
 
 SMALL = """
 kind = "load_cell"
@@ -97,25 +97,42 @@ def test_a_profile_is_shared_by_copies() -> None:
     assert copy.deepcopy(profile) is profile
 
 
-@pytest.mark.parametrize(("order", "data"), [("high_first", "0001 86A0 0007"), ("low_first", "86A0 0001 0007")])
-def test_words_come_in_the_order_of_the_profile(order: str, data: str) -> None:
+@pytest.mark.parametrize(
+    ("order", "data"),
+    [
+        (NumberOrder("high_first", "high_first"), "0001 86A0 0007"),
+        (NumberOrder("low_first", "high_first"), "86A0 0001 0007"),
+        (NumberOrder("high_first", "low_first"), "0100 A086 0007"),
+        (NumberOrder("low_first", "low_first"), "A086 0100 0007"),
+    ],
+    ids=["abcd", "cdab", "badc", "dcba"],
+)
+def test_bytes_come_in_the_order_of_the_profile(order: NumberOrder, data: str) -> None:
     signals = (Signal("fz", 10, "i32", 1.0, "N"), Signal("status", 12, "u16", 1.0, ""))
-    block = RegisterBlock(3, 10, 3, 0.0, signals, order)  # type: ignore[arg-type]
+    block = RegisterBlock(3, 10, 3, 0.0, signals, order)
     raw = bytes.fromhex(data.replace(" ", ""))
     assert block.unpack(raw) == (100_000, 7)
     assert block.pack(100_000, 7) == raw
+    assert signals[0].value(raw[:4], order) == 100_000.0
+    assert b"".join(word.to_bytes(2, "big") for word in signals[0].words(100_000.0, order)) == raw[:4]
 
 
 def test_a_value_becomes_registers() -> None:
-    assert Signal("sp", 26, "i16", 0.1, "degC").words(-12.34, "high_first") == (0xFF85,)
-    assert Signal("sp", 26, "i32", 1.0, "").words(100_000.0, "low_first") == (0x86A0, 1)
-    assert Signal("sp", 26, "f32", 1.0, "").words(1.0, "high_first") == (0x3F80, 0)
+    assert Signal("sp", 26, "i16", 0.1, "degC").words(-12.34) == (0xFF85,)
+    assert Signal("sp", 26, "f32", 1.0, "").words(1.0) == (0x3F80, 0)
 
 
-def test_a_value_beyond_its_register_stays_at_the_end() -> None:
-    assert Signal("sp", 26, "i16", 0.1, "degC").words(1e6, "high_first") == (0x7FFF,)
+def test_an_offset_is_the_value_at_a_count_of_zero() -> None:
+    loop = Signal("t", 0, "u16", 0.05, "degC", offset=-250.0)
+    assert loop.words(0.0) == (5000,) and loop.value((5000).to_bytes(2, "big")) == 0.0
+
+
+@pytest.mark.parametrize(("number", "value"), [("i16", 3277.0), ("u16", -0.1), ("f32", 1e39)])
+def test_a_value_beyond_its_register_is_refused(number: Number, value: float) -> None:
+    with pytest.raises(ValueError, match="does not fit into its register"):
+        Signal("sp", 26, number, 0.1, "degC").words(value)
 
 
 def test_a_value_that_is_no_number_is_refused() -> None:
     with pytest.raises(ValueError, match="finite"):
-        Signal("sp", 26, "i16", 0.1, "degC").words(float("nan"), "high_first")
+        Signal("sp", 26, "i16", 0.1, "degC").words(float("nan"))

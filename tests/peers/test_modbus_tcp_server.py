@@ -3,41 +3,16 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable, Iterator
-from select import select
+from collections.abc import Iterator
 
 import pytest
 from pyModbusTCP.server import ModbusServer
 
-from drivers.modbus import ModbusLink
 from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from drivers.temperature_controller import TemperatureController
-from drivers.transports.tcp_line import TcpLine, open_tcp_line
-
-PATIENCE_S = 10.0
-"""Bound of every wait for the server's threads."""
-
-
-class Exchange:
-    """Our link on a connection. Its time is counted: a millisecond for each answer, whatever the server takes."""
-
-    def __init__(self, line: TcpLine) -> None:
-        self.line = line
-        self.link = ModbusLink("socket")
-        self.now = 0.0
-
-    def until(self, done: Callable[[], bool], transactions: int = 50) -> None:
-        """Serve the link until ``done``; fails after so many transactions or when the server stays silent."""
-        for _ in range(transactions):
-            self.link.service(self.line, self.now)
-            if done():
-                return
-            assert select([self.line], [], [], PATIENCE_S)[0], "the server is silent"
-            self.now += 0.001
-            self.link.feed(self.line.read(self.now), self.now)
-            self.now = max(self.now, min(self.link.deadline, self.now + 0.2))
-        pytest.fail(f"not reached within {transactions} transactions")
+from drivers.transports.tcp_line import open_tcp_line
+from tests.peers.exchange import PATIENCE_S, Exchange
 
 
 @pytest.fixture(scope="module")

@@ -92,7 +92,8 @@ def further_channels(rig: Rig) -> tuple[FurtherChannel, ...]:
 
 
 def _channel(name: str, device: str, number: Signal | NodeChannel) -> FurtherChannel:
-    ends = [end * number.scale for end in COUNTS[number.type]]
+    offset = number.offset if isinstance(number, Signal) else 0.0
+    ends = [end * number.scale + offset for end in COUNTS[number.type]]
     low, high = min(ends), max(ends)
     if isinstance(number, Signal):
         low = number.least if isfinite(number.least) else low
