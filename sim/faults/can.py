@@ -23,8 +23,9 @@ class FaultyCanWire(CanWire):
     """A bus with faults of frames. Without a fault it behaves, frame by frame, as the plain bus.
 
     ``lost`` are identifiers that reach no node; ``late_s`` delays the frames of a function code (identifier without
-    the node) by s; ``loss`` is the share of all frames lost, evenly spread; ``frozen`` repeats the last data of an
-    identifier; ``repeated`` doubles every frame; ``silent`` loses every frame without an error.
+    the node) by s; ``loss`` is the share of all frames lost, evenly spread; ``frozen`` repeats the last
+    bytes of an identifier from one place to another; ``repeated`` doubles every frame; ``silent`` loses every frame
+    without an error.
     """
 
     __slots__ = ("_counted", "_cut", "frozen", "late_s", "loss", "lost", "repeated", "silent", "spoiled")
@@ -35,7 +36,7 @@ class FaultyCanWire(CanWire):
         super().__init__(bitrate)
         self.spoiled = False
         self.lost: frozenset[int] = frozenset()
-        self.frozen: dict[int, bytes] = {}
+        self.frozen: dict[tuple[int, int, int], bytes] = {}
         self.late_s = 0.0
         self.loss = 0.0
         self.repeated = False
@@ -96,8 +97,11 @@ class FaultyCanWire(CanWire):
         if self.spoiled:
             if can_id & _NODE in self._cut or self._loses(can_id):
                 return
-            if can_id in self.frozen:
-                data = self.frozen[can_id] = self.frozen[can_id] or data
+            for part, old in self.frozen.items():
+                frozen_id, begin, end = part
+                if frozen_id == can_id:
+                    self.frozen[part] = old = old or data[begin:end]
+                    data = data[:begin] + old + data[end:]
             if self.late_s and can_id & _FUNCTION == o.TPDO1_BASE:
                 self._late(can_id, data, t + self.late_s, urgent)
                 return
@@ -188,14 +192,22 @@ def frames_lost(scene: Scene, on: bool, now: float, axis: str, base: int) -> Non
     wire.note_faults()
 
 
+ALL: Final = (0, 8)
+STATUSWORD, ACTUAL, TORQUE = (0, 2), (2, 6), (6, 8)
+"""Bytes of TPDO1 (``drivers.servo_axis``): all of them, and those of each of its data."""
+
+
 @switched
-def feedback_frozen(scene: Scene, on: bool, now: float, axis: str) -> None:
-    """A drive repeats its last process data for ever."""
-    wire, can_id = wire_of(scene), o.TPDO1_BASE + scene.rig.axes[axis].node_id
+def data_frozen(
+    scene: Scene, on: bool, now: float, axis: str, part: tuple[int, int] = ALL, base: int = o.TPDO1_BASE
+) -> None:
+    """A drive repeats its last process data, or these bytes of them, for ever."""
+    wire = wire_of(scene)
+    frozen = (base + scene.rig.axes[axis].node_id, *part)
     if on:
-        wire.frozen[can_id] = b""
+        wire.frozen[frozen] = b""
     else:
-        wire.frozen.pop(can_id, None)
+        wire.frozen.pop(frozen, None)
     wire.note_faults()
 
 

@@ -42,6 +42,17 @@ LEFT_OPERATION: Final = (
     FaultKind("drive torque off", drives.torque_off, ENABLED, TRIP, 0.1 + SCAN_S),
 )
 """Ways in which a drive leaves operation without a fault."""
+FROZEN: Final = tuple(
+    FaultKind(f"drive {what} frozen", partial(can.data_frozen, part=part), ENABLED, MAY,
+              note="seen once it contradicts a command, else without effect; after a stop the drive loses its voltage")
+    for what, part in (("statusword", can.STATUSWORD), ("reading", can.ACTUAL), ("torque", can.TORQUE))
+)  # fmt: skip
+"""One process datum of a drive is repeated for ever."""
+FROZEN_INPUTS: Final = FaultKind(
+    "drive inputs frozen", partial(can.data_frozen, base=o.TPDO2_BASE), ENABLED, MAY,
+    note="no command changes them: a guard switch and an emergency stop in the hardware's circuit act without them",
+)  # fmt: skip
+"""The drive with the safety inputs repeats its input word for ever."""
 AT_CONNECTION: Final = (
     FaultKind("drive of another make", drives.wrong_identity, CONNECTING, TRIP, 3.0),
     FaultKind("drive SDO abort", partial(drives.sdo_spoiled, kind="abort"), CONNECTING, TRIP, 3.0),

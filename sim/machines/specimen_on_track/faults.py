@@ -74,7 +74,10 @@ _CELL: Final = partial(SensorFault, "load cell", force="fx")
 
 def _drive_rows() -> Iterator[FaultKind]:
     for axis in AXES:
-        yield from rows_of(axis, (*common.DRIVE, *common.LEFT_OPERATION, *common.AT_CONNECTION))
+        yield from rows_of(axis, (*common.DRIVE, *common.LEFT_OPERATION, *common.AT_CONNECTION, *common.FROZEN))
+        yield FaultKind(f"{axis} drive feedback frozen", partial(can.data_frozen, axis), ENABLED, MAY,
+                        note="seen once another speed or place is commanded; the track's travel ends at its switches")
+    yield from rows_of("track", (common.FROZEN_INPUTS,))
     yield FaultKind("track stalls", partial(drives.Jammed, "track"), MOVING, TRIP, 1.2 + SCAN_S)
     yield FaultKind("track overspeeds", TrackOverspeeds, ENABLED, TRIP, 1.2 + SCAN_S, "mm/s", 10.0)
     yield FaultKind("lift stuck", partial(drives.Jammed, "lift"), LIFTING, TRIP, 5.0,
@@ -89,6 +92,8 @@ def _device_rows() -> Iterator[FaultKind]:
     yield FaultKind("chamber runs away", partial(controller_output, "chamber"), TEMPERED, TRIP, 600.0, "%", 100.0,
                     slow=True, note="seen by its reading, 10 K from the setpoint after it was there, or at its range")
     yield FaultKind("chamber sensor open", partial(SensorFault, "chamber", "open"), TEMPERED, TRIP, 3.0 + SCAN_S)
+    yield FaultKind("chamber sensor frozen", partial(SensorFault, "chamber", "frozen"), TEMPERED, MAY, slow=True,
+                    note="seen at full output; an output that comes up slowly is its own limiter's")
     yield FaultKind("chamber sensor offset", partial(SensorFault, "chamber", "offset"), TEMPERED, MAY, unit="K",
                     value=-10.0, slow=True, note="one sensor alone: nothing in the chamber contradicts it")
     yield FaultKind("load cell frozen", partial(_CELL, "frozen"), SLIDING, TRIP, 2.0 + SCAN_S,

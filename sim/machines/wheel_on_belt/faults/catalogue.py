@@ -99,20 +99,21 @@ _VELOCITY_DRIVE = (
 
 def _drive_rows() -> Iterator[FaultKind]:
     for axis in AXES:
-        yield from rows_of(axis, _DRIVE)
+        yield from rows_of(axis, (*_DRIVE, *common.FROZEN))
     for axis in VELOCITY_AXES:
         yield from rows_of(axis, _VELOCITY_DRIVE)
         yield _frozen_feedback(axis)
         yield from rows_of(axis, common.LEFT_OPERATION)
     yield FaultKind("press drive inputs lost", partial(c.frames_lost, "press", o.TPDO2_BASE), DRIVES, TRIP,
                     0.25 + 2.0 * SCAN_S, note="safety chain, guard and contactor are not known any more; idle at 10 Hz")
+    yield from rows_of("press", (common.FROZEN_INPUTS,))
     yield FaultKind("press drive outputs lost shortly", partial(c.frames_lost, "press", o.RPDO2_BASE), ALWAYS, RIDE,
                     lasts_s=0.3, note="the request for the contactor is repeated until its feedback answers")
 
 
 def _frozen_feedback(axis: str) -> FaultKind:
     """Return the row of a drive that repeats its last speed, or its last position."""
-    name, make = f"{axis} drive feedback frozen", partial(c.feedback_frozen, axis)
+    name, make = f"{axis} drive feedback frozen", partial(c.data_frozen, axis)
     if axis == "press":
         return FaultKind(name, make, ENABLED, MAY,
                          note="its position tells only where to slow down: the force ends pressing and lifting")
