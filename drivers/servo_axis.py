@@ -35,8 +35,8 @@ class ServoAxis(AxisCommand):
 
     Torque is in N m. ``target`` and ``actual`` have the unit ``config.unit``: a speed, or with position feedback a
     position in rad, m, mm, deg (``actual`` is TPDO1's field). ``stamp_s`` is the arrival of the last TPDO1, -inf before
-    the first; the user of a reading decides how old it may be. ``actual`` and ``torque_nm`` are NaN before the first
-    reading.
+    the first; the user of a reading decides how old it may be. ``changed_s`` is the arrival of the last TPDO1 with
+    another ``actual``. ``actual`` and ``torque_nm`` are NaN before the first reading.
 
     ``online``: configured, OPERATIONAL and with a heartbeat. ``lost``: the heartbeat stopped, or the drive
     booted while in use (``rebooted``). This stays until the next connect, and until then the drive is sent a quick stop
@@ -51,8 +51,8 @@ class ServoAxis(AxisCommand):
     The master calls the methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds``.
     """
 
-    __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "diagnosis",
-                 "emergencies_dropped", "emergency", "emergency_log", "homed", "identity", "inputs",
+    __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "changed_s",
+                 "diagnosis", "emergencies_dropped", "emergency", "emergency_log", "homed", "identity", "inputs",
                  "inputs_stamp_s", "outputs_unanswered", "parameters", "plan", "rebooted", "stands", "torque_nm")
 
     def __init__(self, config: AxisConfig) -> None:
@@ -72,7 +72,7 @@ class ServoAxis(AxisCommand):
         self.torque_nm = math.nan
         self.inputs: int = 0
         self.stands = False
-        self.stamp_s = -math.inf
+        self.stamp_s = self.changed_s = -math.inf
         self.inputs_stamp_s = -math.inf
         self.tpdo1_data = b""
         self.online = False
@@ -144,6 +144,8 @@ class ServoAxis(AxisCommand):
             self.take_statusword(statusword)
         if self._at_rest and self._position_mode:
             self.dirty = True
+        if raw != self._raw:
+            self.changed_s = t
         self._raw = raw
         self.actual = raw / self._raw_per_unit
         self.torque_nm = torque * self._nm_per_mille

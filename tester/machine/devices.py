@@ -54,12 +54,16 @@ class DeviceList:
     """
 
     def __init__(
-        self, drivers: RigDrivers, prompts: Sequence[ModbusLink], retracting: ServoDrive | None = None
+        self,
+        drivers: RigDrivers,
+        prompts: Sequence[ModbusLink],
+        retracting: ServoDrive | None = None,
+        creeping: ServoDrive | None = None,
     ) -> None:
         """Take the drivers, including those of the kind's own devices.
 
         ``prompts``: the links that may request extra ticks between two scans; ``retracting``: a drive that stays in
-        operation during a quick stop of the others.
+        operation during a quick stop of the others; ``creeping``: the one that alone has power in a cool-down.
         """
         self.can: CanPort = drivers.ports.can
         self.master: CanMaster = drivers.master
@@ -79,7 +83,8 @@ class DeviceList:
         self.can_alive = True
         """Whether commands still reach the drives."""
         self._can_heard_s = NEVER
-        self._retracting = retracting
+        self._retracting, self._creeping = retracting, creeping
+        self._creeps = False
         self._goal: Goal = _DISABLED
         self._wanted: Goal = _DISABLED
         self._withheld = False
@@ -134,11 +139,14 @@ class DeviceList:
     def apply_common(self, out: BaseSetpoints) -> None:
         """Set the goal of every drive. As the last resort, withhold our heartbeat."""
         wanted = _ENABLED if out.enable else _DISABLED
-        goal = _FREE if out.power_off else _QUICK_STOP if out.quick_stop else wanted
-        if goal is not self._goal or wanted is not self._wanted or self.news:
-            self._goal, self._wanted = goal, wanted
+        goal = _FREE if out.power_off or out.voltage_off else _QUICK_STOP if out.quick_stop else wanted
+        if goal is not self._goal or wanted is not self._wanted or out.creeps is not self._creeps or self.news:
+            self._goal, self._wanted, self._creeps = goal, wanted, out.creeps
             for drive in self.drives:
-                drive.goal = wanted if goal is _QUICK_STOP and drive is self._retracting else goal
+                if out.creeps and drive is not self._creeping:
+                    drive.goal = _FREE
+                else:
+                    drive.goal = wanted if goal is _QUICK_STOP and drive is self._retracting else goal
         if out.power_off is not self._withheld:
             # Without the heartbeat every drive stops by its own watchdog, even a drive that ignores commands.
             self._withheld = self.master.withhold_heartbeat = out.power_off
@@ -151,7 +159,7 @@ class DeviceList:
             if state is _OPERATING:
                 disabled = False
             else:
-                enabled = False
+                enabled = enabled and self._creeps and drive is not self._creeping
                 if not fault and (state is _FAULT or state is _FAULT_REACTION):
                     fault = fault_text(drive)
             if not fault and (

@@ -76,3 +76,7 @@ class BaseSetpoints:
     quick_stop: bool = False
     power_off: bool = False
     """Switch every power stage off at once: the last resort when a stop fails."""
+    voltage_off: bool = False
+    """Disable the voltage of every drive, whatever it reports: its ramp after the last command is over."""
+    creeps: bool = False
+    """Only the drive that turns in a cool-down keeps its power; every other drive has its voltage disabled."""

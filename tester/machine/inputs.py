@@ -49,6 +49,8 @@ class ScanInputs:
     """How long a stop or a hold has been lifting; -inf while neither is."""
     resting: bool = True
     """Everything should be at rest: idle, armed or latched."""
+    voltage_off: bool = False
+    """The last scan disabled every drive's voltage: a drive that reports power does not obey, or repeats old data."""
     unpowered: bool = False
     """A run that does not want the drives has seen them without power: nothing may move until all are in operation
     again. The kind writes it in every scan.
@@ -88,6 +90,7 @@ class ScanInputs:
         if mode is _HOLD:
             self.lifting_s = now_s - state.mode_since_s
         self.resting = mode is _IDLE or mode is _LATCHED or mode is _ARMED
+        self.voltage_off = state.setpoints.voltage_off
 
     def note_drives(self, mode: Mode, demand: BaseDemand, readings: BaseReadings) -> bool:
         """Update what follows from the drives; return whether all of them have just come into operation."""

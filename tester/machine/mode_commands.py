@@ -84,6 +84,10 @@ class ModeCommands(Generic[StateT, ReadingsT, DemandT, InputsT]):
     def note_rest(self) -> None:
         """Record the positions at which the axes rest."""
 
+    def motion_over(self) -> bool:
+        """Return whether the readings show that every axis has ended what a stop moves it for."""
+        return self.stop_ended()
+
     def stop_ended(self) -> bool:
         """Return whether the rig is at rest, unloaded and without heat, or the time limit for that has passed."""
         raise NotImplementedError

@@ -12,7 +12,7 @@ from tester.machine.state import Mode
 
 
 class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
-    """Outputs of every mode but RUN and HOLD. A kind implements ``stand`` and ``stop_ended``."""
+    """Outputs of every mode but RUN and HOLD. A kind implements ``stand``, ``motion_over`` and ``stop_ended``."""
 
     def __init__(
         self, rig: Rig, state: StateT, view: InputsT, table: InterlockTable, demands: tuple[DemandT, DemandT],
@@ -47,7 +47,9 @@ class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
         out.quick_stop, out.enable = quick_stop, enable
 
     def stop_outputs(self) -> None:
-        self._command(quick_stop=self.state.mode is not Mode.STOPPING, enable=self.state.setpoints.enable)
+        """Stop on the ramp or by quick stop; the drives lose their power at standstill, whatever else still ends."""
+        enable = self.state.setpoints.enable and not self.motion_over()
+        self._command(quick_stop=self.state.mode is not Mode.STOPPING, enable=enable)
 
     def safe_outputs(self) -> None:
         self._command(quick_stop=True, enable=self.state.setpoints.enable)

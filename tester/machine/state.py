@@ -96,6 +96,8 @@ class ControlState(Generic[SetpointsT_co]):
         """Lateness of the last scan beyond its period, s."""
         self.stop = StopProgress()
         self.stop_requested = ""
+        self.unwanted_s = inf
+        """Time since when no drive needs power: none is enabled, and no stop moves one; inf while one needs it."""
         self.cooled = False
         """Whether the cool-down of this run is over (or not wanted), even if not everything became cool."""
         self.ack_until_s = -inf

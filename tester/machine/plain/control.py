@@ -49,11 +49,16 @@ class PlainControl(StandstillControl[State, PlainReadings, PlainDemand, PlainInp
         for name in self.axes:
             self.state.setpoints.speeds[name] = 0.0
 
+    def motion_over(self) -> bool:
+        """Return whether every drive is known to be at rest."""
+        r = self.view.readings
+        return r.standing and r.now_s - r.drives_at_s <= self._fresh_s
+
     def stop_ended(self) -> bool:
         """Return whether every drive is at rest, or the time limit for that has passed."""
         v = self.view
         over = v.readings.now_s - self.state.mode_since_s > v.parameters[STOP_TIMEOUT_S]
-        return over or (v.readings.standing and v.readings.now_s - v.readings.drives_at_s <= self._fresh_s)
+        return over or self.motion_over()
 
     _fresh_s = 0.5
     """A stop does not end on data older than this, s [A]: five scans at rest."""

@@ -165,6 +165,8 @@ REST_AFTER_S: Final = Parameter(
 def _moving_at_rest(v: AnyInputs) -> bool:
     r = v.readings
     known = r.now_s - r.drives_at_s <= v.parameters[REST_AFTER_S]
+    if v.voltage_off and not r.drives_disabled:
+        return True
     if v.resting or v.demand.enabled:
         return not (known and r.standing)
     return not (known and r.drives_disabled)

@@ -96,7 +96,9 @@ FIRST: tuple[First, ...] = (
     First("not stopping", ("t=0 s: operator stop", "t=0.1 s: wheel runs away")),
     First("quick stop failed", ("t=0 s: operator fast stop", "t=0.02 s: wheel runs away")),
     First("output not off", ("t=0 s: jacket output stuck on", "t=0.1 s: operator stop"), WARM),
-    First("stop not ended", ("t=0 s: press drive feedback frozen", "t=0.1 s: operator stop")),
+    First("lift failed", ("t=0 s: press drive feedback frozen", "t=0.1 s: operator stop")),
+    First("wheel frozen", ("t=0 s: operator stop", "t=6 s: wheel drive feedback frozen"), WARM,
+          overrides=("interlocks.cooldown_hub=35 degC",)),
     First("contactor welded", ("t=0 s: contactor welded", "t=0.1 s: operator stop"), WARM),
     First("scan delayed", ("t=0 s: scan stalled 80 ms",), ROLL),
 )  # fmt: skip
@@ -109,6 +111,7 @@ NEVER_FIRST: dict[str, str] = {
     "heating at standstill": "a wheel that stands against its command trips its own row in the same time",
     "heat not off": "needs contactor and output stuck together: the contactor's row sees them half a second sooner",
     "moving at rest": "the catalogue's drives that obey nothing turn only with power, and at rest none has any",
+    "stop not ended": "drives, press and heat each have a row that knows of their own times before",
     "loaded at rest": "it stops nothing: it refuses to arm and to acknowledge",
     "wheel worn": "no fault wears a wheel: the diameter is counted down over hours, and the wheel is changed before",
 }

@@ -161,6 +161,7 @@ def limits_of(rig: RigConfig) -> RigLimits:
         press_high_mm=high_mm,
         deceleration_m_s2=belt.deceleration,
         quick_stop_m_s2=belt.quick_stop_deceleration,
+        lift_mm_s=rig.loops.load.lift_speed_mm_s,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf, isfinite
+from typing import Final
 
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.control.loops import WheelState
@@ -16,6 +17,12 @@ from tester.kinds.wheel_on_belt.interlocks.stops import HEAT_OFF_S, LIFTED_MM, P
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.control import Control
 from tester.machine.state import Mode
+
+SWELL_SHARE: Final = 0.1
+SWELL_S: Final = 0.5
+"""The creep of a cool-down is slower by this share [A] for this time, s [A], and then as long not: the data of a drive
+that obeys change.
+"""
 
 
 def safe_outputs(setpoints: Setpoints, rig: RigConfig, *, fast: bool) -> None:
@@ -70,7 +77,7 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
     def _no_power(self) -> None:
         out = self.state.setpoints
         out.press_mm_s = 0.0
-        out.enable = False
+        out.enable = out.creeps = False
 
     def withdraw_escalation(self) -> None:
         super().withdraw_escalation()
@@ -92,6 +99,7 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         coming = max(view.press.high_mm_s, state.setpoints.press_mm_s)
         coming_mm = coming * (view.parameters[PRESS_LAG_S] + 0.5 * coming / self.rig.axes.press.deceleration)
         start.press_mm = view.readings.press_mm + coming_mm if isfinite(view.readings.press_mm) else inf
+        start.lifted_mm = state.load.lifted_mm(self.rig.loops.load)
 
     def note_fast_stop(self) -> None:
         self.state.stop_start.fast_speed_m_s = self._speed()
@@ -125,17 +133,23 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         lifted_mm = state.load.lifted_mm(rig.loops.load) if unloaded(view) else 0.0
         if r.press_mm <= lifted_mm + view.parameters[LIFTED_MM]:
             out.press_mm_s = 0.0
+        if fast and self.motion_over():
+            out.enable = False  # after a controlled stop a hot wheel turns on
 
-    def stop_ended(self) -> bool:
-        """Return whether the rig is at rest, lifted, unloaded and without heat, or has timed out ("stop not ended")."""
+    def motion_over(self) -> bool:
+        """Return whether wheel and belt are known to stand, and the press to be lifted and unloaded."""
         state, view = self.state, self.view
         r = view.readings
-        if r.now_s - state.mode_since_s > view.parameters[STOP_TIMEOUT_S]:
-            return True
         lifted = r.press_mm <= state.load.lifted_mm(self.rig.loops.load) + view.parameters[LIFTED_MM]
         if state.mode is Mode.EMERGENCY or state.setpoints.power_off or r.drives_disabled:
             lifted = True  # the press has no power: only the open contact counts
-        return standing(view) and lifted and unloaded(view) and heat_off(view)
+        return standing(view) and lifted and unloaded(view)
+
+    def stop_ended(self) -> bool:
+        """Return whether the rig is at rest, lifted, unloaded and without heat, or has timed out ("stop not ended")."""
+        view = self.view
+        late = view.readings.now_s - self.state.mode_since_s > view.parameters[STOP_TIMEOUT_S]
+        return late or (self.motion_over() and heat_off(view))
 
     def must_cool(self) -> str:
         """Return why the wheel must turn on after a controlled stop: a hot hub bakes one spot of a standing wheel."""
@@ -150,9 +164,13 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         out, r, p = self.state.setpoints, self.view.readings, self.view.parameters
         safe_outputs(out, self.rig, fast=False)
         out.press_mm_s = 0.0
+        out.creeps = True
+        since_s = r.now_s - self.state.mode_since_s
         if r.jacket_valid and r.hub_c <= p[COOLDOWN_HUB_C]:
             return "cooled down"
-        if r.now_s - self.state.mode_since_s > p[COOLDOWN_AT_MOST_S]:
+        if since_s > p[COOLDOWN_AT_MOST_S]:
             return "cool-down time over"
-        out.wheel_rad_s = p[COOLDOWN_SPEED_M_S] / (r.diameter_mm * 0.5e-3) if r.diameter_mm > 1.0 else 0.0
+        slower = 1.0 - SWELL_SHARE if since_s % (2.0 * SWELL_S) < SWELL_S else 1.0
+        creep_m_s = slower * p[COOLDOWN_SPEED_M_S]
+        out.wheel_rad_s = creep_m_s / (r.diameter_mm * 0.5e-3) if r.diameter_mm > 1.0 else 0.0
         return ""

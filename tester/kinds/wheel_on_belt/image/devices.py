@@ -81,7 +81,7 @@ class Devices(DeviceList):
         self.thermometer: Sensor = thermometer
         self.jacket: TemperatureController = drivers.controller("jacket")
         # A quick-stopped press would stay in contact, so it keeps retracting as long as it is to have power.
-        super().__init__(drivers, links_of(cell), press)
+        super().__init__(drivers, links_of(cell), press, wheel)
         self.slip_ring = SlipRingWatch(self.jacket)
         self.counted.append(self.slip_ring)
         if isinstance(cell, JoinedCell):
@@ -117,6 +117,7 @@ class Devices(DeviceList):
         r.wheel_speed_m_s = wheel_m_s = wheel_rad_s * r.diameter_mm * 0.5e-3
         r.drive_torque_nm = wheel.torque_nm
         r.wheel_at_s = stamp_s = wheel.stamp_s
+        r.wheel_changed_s = wheel.changed_s
         if stamp_s > self._last_angle_s:
             if self._last_angle_s != NEVER:
                 r.wheel_angle_rev += wheel_rad_s * (stamp_s - self._last_angle_s) / _TURN

@@ -43,6 +43,8 @@ class Readings(BaseReadings):
     wheel_rad_s: float = NAN
     drive_torque_nm: float = NAN
     wheel_at_s: float = NEVER
+    wheel_changed_s: float = NEVER
+    """When the wheel's speed last differed from its predecessor."""
     belt_speed_m_s: float = NAN
     belt_at_s: float = NEVER
     belt_torque_nm: float = NAN

@@ -43,6 +43,8 @@ class RigLimits:
     deceleration_m_s2: float
     quick_stop_m_s2: float
     """Ramps of the belt; the wheel's rim has the same ramps."""
+    lift_mm_s: float
+    """``loops.load.lift_speed``."""
 
 
 @dataclass(slots=True)
@@ -75,6 +77,8 @@ class StopStart:
     """The faster of wheel and belt."""
     press_mm: float = inf
     """Remaining travel of the press on its ramp; infinity if unknown. At rest: its position."""
+    lifted_mm: float = 0.0
+    """Position to which the press lifts."""
     fast_speed_m_s: float = 0.0
     """The faster of wheel and belt when the quick stop began."""
 

@@ -42,6 +42,10 @@ LIFT_FAILED_S: Final = Parameter(
     "lift_failed_s", "s", "1800 ms", "... and by then, else the power is taken off and the press's spring lifts [A]",
     hardest="2 s", because="the spring takes half a second more, and a rig is to be safe 3 s after its trip",
 )  # fmt: skip
+LIFTED_MM: Final = Parameter(
+    "lifted_mm", "mm", "0.2 mm", "the press is where it was sent within this [A]",
+    hardest="1 mm", because="lifted means 2 mm off the contact: half of that must be there",
+)  # fmt: skip
 PUSHED_MM: Final = Parameter(
     "pushed_mm", "mm", "0.3 mm", "ordered to lift or rest, the press moves on by this at most: 50 N at 200 N [A]",
     hardest="0.5 mm", because="0.5 mm are 86 N at 400 N (172 N/mm): 486 N, and harm begins at 500 N",
@@ -56,7 +60,17 @@ def _lift_failed(v: Inputs) -> bool:
     p = v.parameters
     late = v.lifting_s >= 0.0 and not (v.lifting_s <= p[LIFT_LATE_S]) and not (v.lifting_s <= p[LIFT_FAILED_S])
     goes_on = v.stopped_s >= 0.0 and not (v.readings.press_mm <= v.stop_start.press_mm + p[PUSHED_MM])
-    return late or goes_on
+    return (not unloaded(v) and (late or goes_on)) or _not_up(v)
+
+
+def _not_up(v: Inputs) -> bool:
+    """Return whether a press with power is not seen to have come up in the time of its way, whatever the cell shows."""
+    p, start = v.parameters, v.stop_start
+    if not v.stopped_s >= 0.0 or v.setpoints.power_off or v.setpoints.creeps or v.readings.drives_disabled:
+        return False
+    way_mm = start.press_mm - start.lifted_mm
+    late_s = v.stopped_s - p[LIFT_FAILED_S]
+    return not (v.readings.press_mm <= start.lifted_mm + p[LIFTED_MM]) and not (late_s * v.limits.lift_mm_s <= way_mm)
 
 
 def _still_pressing(v: Inputs) -> Compared:
@@ -68,14 +82,14 @@ def _still_pressing(v: Inputs) -> Compared:
 
 LIFT_FAILED: Final[Row] = Interlock(
     name="lift failed",
-    cause="still loaded after the quick stop, or the press moves on",
+    cause="still loaded after the quick stop, the press moves on, or its position does not show that it lifts",
     watch=condition(
-        "Fz >= 20 N at lift_failed after it began; or the press beyond its ramp and lag by pushed",
+        "Fz >= 20 N at lift_failed after it began; or the press beyond its ramp and lag by pushed; or not up at"
+        " lift_failed and its way",
         _lift_failed,
         _still_pressing,
     ),
-    parameters=(LIFT_FAILED_S, PUSHED_MM, PRESS_LAG_S),
-    applies=lambda v: not unloaded(v),
+    parameters=(LIFT_FAILED_S, PUSHED_MM, PRESS_LAG_S, LIFTED_MM),
     when=ENDING,
     reaction=POWER_OFF,
 )
@@ -160,10 +174,6 @@ STOP_TIMEOUT_S: Final = Parameter(
     hardest="15 s",
     because="every part of a stop has been escalated 2.5 s after it began; nothing gets better by waiting longer",
 )  # fmt: skip
-LIFTED_MM: Final = Parameter(
-    "lifted_mm", "mm", "0.2 mm", "the press is where it was sent within this [A]",
-    hardest="1 mm", because="lifted means 2 mm off the contact: half of that must be there",
-)  # fmt: skip
 
 
 STOP_NOT_ENDED: Final = stop_not_ended(
@@ -191,6 +201,8 @@ CONTACTOR_WELDED: Final[Row] = Interlock(
 )
 
 def _moving(v: Inputs) -> bool:
+    if v.voltage_off and not v.readings.drives_disabled:
+        return True
     if v.resting:
         r = v.readings
         comes = not r.drives_disabled and not (r.press_mm <= v.stop_start.press_mm + v.parameters[PUSHED_MM])
@@ -223,6 +235,26 @@ MOVING_AT_REST: Final[Row] = Interlock(
     reaction=POWER_OFF,
 )
 
+FROZEN_WHEEL_S: Final = Parameter(
+    "frozen_wheel_s", "s", "1 s", "the creep of a cool-down changes twice a second; a speed that does not is old [A]",
+    hardest="1.5 s", because="the creep has changed three times by then",
+)  # fmt: skip
+
+
+def _wheel_changed_s(v: Inputs) -> float:
+    r = v.readings
+    return r.now_s - (r.wheel_changed_s if r.wheel_changed_s > v.mode_since_s else v.mode_since_s)
+
+
+WHEEL_FROZEN: Final[Row] = Interlock(
+    name="wheel frozen",
+    cause="the wheel's drive repeats an old speed in a cool-down",
+    watch=at_most("speed unchanged for {} in the cool-down", _wheel_changed_s, FROZEN_WHEEL_S),
+    applies=lambda v: v.setpoints.creeps and v.setpoints.wheel_rad_s != 0.0,
+    when=ENDING,
+    reaction=POWER_OFF,
+)
+
 LOADED_AT_REST: Final[Row] = Interlock(
     name="loaded at rest",
     cause="the wheel is pressed although everything is to rest",
@@ -237,5 +269,5 @@ LOADED_AT_REST: Final[Row] = Interlock(
 
 ROWS: Final[tuple[Row, ...]] = (
     NOT_LIFTED, LIFT_FAILED, NOT_STOPPING, QUICK_STOP_FAILED, HEAT_NOT_OFF, OUTPUT_NOT_OFF, STOP_NOT_ENDED,
-    CONTACTOR_WELDED, MOVING_AT_REST, LOADED_AT_REST,
+    CONTACTOR_WELDED, MOVING_AT_REST, WHEEL_FROZEN, LOADED_AT_REST,
 )  # fmt: skip

@@ -16,7 +16,7 @@ from tester.machine.state import ControlEvent, Mode
 
 STAMPS = ("wheel_at_s", "belt_at_s", "press_at_s", "positions_at_s", "cell_at_s", "surface_at_s",
           "jacket_at_s", "cell_changed_s", "surface_changed_s", "inputs_at_s",
-          "can_heard_s")  # fmt: skip
+          "can_heard_s", "wheel_changed_s")  # fmt: skip
 """When each source last reported, and reported something new."""
 
 
@@ -60,9 +60,12 @@ class Bench:
         for stamp in STAMPS:
             if stamp not in self.stale:
                 setattr(r, stamp, r.now_s)
+        powered = not self.state.setpoints.voltage_off
         self.control.step(self.demand, r, dt)
         self.journal += self.state.events
         self.state.events.clear()
+        if powered and self.state.setpoints.voltage_off:
+            r.drives_enabled, r.drives_disabled = False, True
         return self.state.setpoints
 
     def scans(self, seconds: float, dt: float = 0.01) -> Setpoints:

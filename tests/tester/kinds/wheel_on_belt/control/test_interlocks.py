@@ -211,6 +211,7 @@ CAUSES: dict[str, list[Break]] = {
 OWN_TESTS = {
     "clock jump", "scan late", "scan delayed", "not lifted", "lift failed", "not stopping", "quick stop failed",
     "heat not off", "output not off", "stop not ended", "contactor welded", "moving at rest", "loaded at rest",
+    "wheel frozen",
 }  # fmt: skip
 
 AGES = {

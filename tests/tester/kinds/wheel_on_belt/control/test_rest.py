@@ -28,7 +28,7 @@ def rest(bench: Bench, mode: Mode = Mode.IDLE) -> None:
     bench.scans(0.1)
     assert bench.state.mode is mode
     bench.readings.drives_enabled, bench.readings.drives_disabled = False, True
-    bench.scans(0.1)
+    bench.scans(0.6)
 
 
 def creep(bench: Bench) -> None:
@@ -70,6 +70,33 @@ def test_a_second_stop_in_the_cool_down_changes_nothing(bench: Bench) -> None:
         bench.control.request_stop(bench.readings.now_s, "again")
         bench.scans(0.5)
     assert bench.state.mode is Mode.COOLDOWN and bench.state.trip is None
+
+
+def test_a_creep_whose_shown_speed_does_not_change_loses_its_power(bench: Bench) -> None:
+    creep(bench)
+    bench.stale.add("wheel_changed_s")
+    assert not bench.scans(0.9).power_off
+    assert bench.scans(0.2).power_off
+    assert bench.state.trip is not None and bench.state.trip.name == "wheel frozen"
+
+
+def test_in_a_cool_down_only_the_wheel_keeps_its_power(bench: Bench) -> None:
+    creep(bench)
+    assert bench.state.setpoints.creeps
+    bench.readings.hub_c = 30.0
+    bench.control.view.jacket.forget(bench.readings.now_s)
+    bench.scans(0.1)
+    stand(bench)
+    bench.scans(1.0)
+    assert bench.state.mode is Mode.IDLE and not bench.state.setpoints.creeps
+
+
+def test_at_rest_the_voltage_is_disabled_and_a_drive_that_claims_power_trips(bench: Bench) -> None:
+    rest(bench)
+    assert bench.scans(0.6).voltage_off and bench.state.trip is None
+    bench.readings.drives_disabled = False
+    assert bench.scans(0.2).power_off
+    assert bench.state.trip is not None and bench.state.trip.name == "moving at rest"
 
 
 def test_a_stop_that_wants_no_cool_down_ends_it(bench: Bench) -> None:
