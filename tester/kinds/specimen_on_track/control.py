@@ -22,6 +22,11 @@ ARRIVED_K = 2.0
 """The air has reached the chamber's setpoint within this difference, K [A]."""
 
 
+OUTPUT_S = 30.0
+"""Filter time of the chamber's output, s [A]: some chambers switch theirs on and off."""
+FULL_PERCENT = 90.0
+MOVED_K = 0.3
+"""Output that counts as full, and a change of the air beyond the noise of its reading [A]."""
 LATE_S = 0.1
 """Longest time from the end of a row's delay to its trip, s: two slow scans."""
 
@@ -58,22 +63,29 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         if view.confirmed:
             view.track.follow(r.now_s, r.way_m, state.setpoints.track_m_s, dt)
         self._look_at_arm(view, r)
-        self._look_at_chamber(view, r)
+        self._look_at_chamber(view, r, dt)
 
     def _look_at_arm(self, view: TrackInputs, r: TrackReadings) -> None:
         off = view.confirmed and self.rig.axes.lift is not None
         off = off and not abs(r.lift_mm - self.state.setpoints.lift_mm) <= self.rig.arm.within_mm
         view.arm_since_s = min(view.arm_since_s, r.now_s) if off else inf
 
-    def _look_at_chamber(self, view: TrackInputs, r: TrackReadings) -> None:
+    def _look_at_chamber(self, view: TrackInputs, r: TrackReadings, dt: float) -> None:
         if not view.limits.chamber:
             return
         out = self.state.setpoints
         if not out.chamber:
-            view.arrived_c = inf
+            view.arrived_c = view.full_since_s = inf
+            view.chamber_mean_percent = 0.0
             view.off_since_s = min(view.off_since_s, r.now_s) if r.chamber_percent != 0.0 else inf
             return
         view.off_since_s = inf
+        if r.chamber_percent == r.chamber_percent:
+            view.chamber_mean_percent += (r.chamber_percent - view.chamber_mean_percent) * min(dt / OUTPUT_S, 1.0)
+        if -FULL_PERCENT < view.chamber_mean_percent < FULL_PERCENT:
+            view.full_since_s = inf
+        elif view.full_since_s == inf or abs(r.air_c - view.full_c) > MOVED_K:
+            view.full_c, view.full_since_s = r.air_c, r.now_s
         if view.arrived_c != out.chamber_c:
             view.arrived_c = out.chamber_c if abs(r.air_c - out.chamber_c) <= ARRIVED_K else inf
 
@@ -150,6 +162,10 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         speed = abs(self.view.readings.track_now_m_s)
         most = self.rig.limits.track_speed_m_s
         return min(speed, most) if isfinite(speed) else most
+
+    def motion_over(self) -> bool:
+        """Return whether the track is known to stand; the arm stays where it is."""
+        return standing(self.view)
 
     def stop_ended(self) -> bool:
         """Return whether the track is at rest with the chamber off, or the stop has timed out ("stop not ended")."""

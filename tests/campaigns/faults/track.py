@@ -241,6 +241,7 @@ FIRST: tuple[First, ...] = (
     First("force with the arm raised", ("t=0 s: load cell offset 8 N",), LIFT),
     First("chamber beyond its range", ("t=0 s: chamber runs away",), TEMPER, 200.0,
           ("limits.air_high=26.2 degC", "interlocks.range=0.5 K")),
+    First("air sensor frozen", ("t=0 s: chamber sensor frozen",), TEMPER, 200.0),
     First("chamber runaway", ("t=0 s: chamber sensor offset 15 K",), SLIDE, 60.0),
     First("air silent", ("t=0 s: chamber silent",), SLIDE),
     First("air sensor broken", ("t=0 s: chamber sensor open",), SLIDE),

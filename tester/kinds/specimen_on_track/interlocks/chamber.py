@@ -118,6 +118,20 @@ RUNAWAY: Final[Row] = Interlock(
     reaction=CONTROLLED,
 )
 
+FROZEN_AIR_S: Final = Parameter(
+    "frozen_air_s", "s", "120 s", "full output of the chamber has not moved the air by 0.3 K for this long [A]",
+    hardest="240 s", because="from 23 degC full output gains 14 K in that time",
+)  # fmt: skip
+
+AIR_FROZEN: Final[Row] = Interlock(
+    name="air sensor frozen",
+    cause="the chamber heats or cools with full output, and its sensor shows no effect",
+    watch=at_most("air unchanged at full output for {}", lambda v: v.readings.now_s - v.full_since_s, FROZEN_AIR_S),
+    applies=lambda v: v.full_since_s < inf,
+    ends_lease=True,
+    reaction=CONTROLLED,
+)
+
 ALARM_DELAY_S: Final = Parameter(
     "alarm_delay_s", "s", "1500 ms", "the chamber reports it in more than two polls [A]", NOT_NEGATIVE,
     hardest="5 s", because="it is in standby already: nothing gets worse meanwhile",
@@ -152,5 +166,5 @@ CHAMBER_NOT_OFF: Final[Row] = Interlock(
 )
 
 ROWS: Final[tuple[Row, ...]] = (
-    OUT_OF_RANGE, RUNAWAY, AIR_SILENT, AIR_BROKEN, CHAMBER_ALARM, CHAMBER_NOT_OFF, EXIT_SILENT,
+    OUT_OF_RANGE, RUNAWAY, AIR_FROZEN, AIR_SILENT, AIR_BROKEN, CHAMBER_ALARM, CHAMBER_NOT_OFF, EXIT_SILENT,
 )  # fmt: skip

@@ -112,6 +112,11 @@ class TrackInputs(ScanInputs):
     """Time at which the arm left its commanded place; infinite while it is there."""
     arrived_c: float = inf
     """The chamber's setpoint that its air has reached; infinite before that."""
+    chamber_mean_percent: float = 0.0
+    """Output of the chamber, filtered over ``OUTPUT_S``."""
+    full_c: float = inf
+    full_since_s: float = inf
+    """The air's reading, and the time, since which full output has not moved it; infinite without full output."""
     off_since_s: float = inf
     """Time since which the chamber, commanded to standby, has given output; infinite while it gives none."""
 

@@ -78,6 +78,8 @@ STOP_NOT_ENDED: Final = stop_not_ended(
 
 def _moving(v: TrackInputs) -> bool:
     r = v.readings
+    if v.voltage_off and not r.drives_disabled:
+        return True
     if v.resting or v.demand.enabled:
         return not standing(v)
     since = r.now_s - v.parameters[SPEEDS_OLD_S]

@@ -140,3 +140,19 @@ def followed(seconds: float, gone_m_s: float, told_m_s: float = 1e-6) -> WayMoni
 def test_a_micrometre_a_second_that_is_not_gone_is_seen(gone_m_s: float, *, sound: bool) -> None:
     monitor = followed(3.0, gone_m_s)
     assert (abs(monitor.off_m) <= monitor.allowed_m(0.3, 2e-5 * 0.0105)) is sound
+
+
+@pytest.mark.parametrize(("air_k", "percent", "trips"), [(0.1, 100.0, True), (0.1, -100.0, True), (0.5, 100.0, False)])
+def test_full_output_that_does_not_move_the_air_is_a_frozen_sensor(
+    sliding: TrackBench, air_k: float, percent: float, *, trips: bool
+) -> None:
+    control = sliding.run.engine.control
+    readings, demand = control.view.readings, control.view.demand
+    control.state.setpoints.chamber = True
+    seen = False
+    for scan in range(2000):
+        readings.now_s += 0.1
+        readings.chamber_percent, readings.air_c = percent, 23.0 + air_k * (scan % 2)
+        control.look(demand, readings, 0.1, 0.1)
+        seen = seen or "air sensor frozen" in held(sliding)
+    assert seen is trips
