@@ -7,6 +7,8 @@ from datetime import date
 from pathlib import Path
 
 from recipes import find
+from tester import kinds
+from tester.base import clock
 from tester.base.lock import RUN_LOCK, ExclusiveUse, RigInUseError
 from tester.base.processes import EXIT_INVALID
 from tester.inputs.recipe.loader import LoadedRecipe
@@ -14,11 +16,15 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.recipe.time_estimate import Estimate
 from tester.inputs.rig import Rig
 from tester.inputs.rig.checks import other_settings
+from tester.inputs.rig.rig_keys import value_at
+from tester.inputs.rig.risks import counts_as_simulated
+from tester.machine.commission.record import CommissionRecord, RecordError, record_path, standing_of
 from tester.machine.run import Outcome
 from tester.run.endings import EXIT_CODES, CannotStartError
 from tester.run.folder import Work, work_of
 from tester.run.kind_lookup import checked_recipe, load_rig, recipe_part
 from tester.run.run_materials import UsedMaterials, used_materials
+from tester.run.session_options import SessionOptions
 from tester.store.disk import expected_bytes, too_little_room
 
 
@@ -51,6 +57,41 @@ def buses_of(rig: Rig) -> list[str]:
         return []
     lines = [f"line {line.port}" for line in rig.lines.values()]
     return [f"can {rig.can.interface}:{rig.can.channel}", *lines]
+
+
+def unmeasured(rig: Rig, runs: Path) -> str:
+    """Return the required steps of commissioning that are not on record for a real rig's file, "" for none.
+
+    ``runs``: the folder of the runs, with the record. An axis that a person sets needs no step.
+    """
+    part = kinds.find(rig.kind).commissions
+    if part is None or counts_as_simulated(rig):
+        return ""
+    path = record_path(runs, rig.name)
+    try:
+        standing = standing_of(CommissionRecord(path, clock.utc_now, ""), part().steps, rig)
+    except (RecordError, OSError) as error:
+        return str(error)
+    missing = [
+        f"{one.step.name}: {one.words}"
+        for one in standing
+        if one.step.required and one.stands is None and _has(rig, one.step.sections[0])
+    ]
+    return f"{'; '.join(missing)} (tester commission, record {path})" if missing else ""
+
+
+def _has(rig: Rig, section: str) -> bool:
+    return value_at(rig, tuple(section.split("."))) is not None
+
+
+def not_measured(options: SessionOptions, rig: Rig) -> str:
+    """Return ``unmeasured`` of the file of a run's rig; raises CannotStartError unless its risks are accepted."""
+    if counts_as_simulated(rig):
+        return ""
+    missing = unmeasured(load_rig(options.rig, (), options.accept_risk) if options.overrides else rig, options.out)
+    if missing and not options.accept_risk:
+        raise CannotStartError(f"{missing}: commission the rig, or accept it: --accept-risk REASON", EXIT_INVALID)
+    return missing
 
 
 def warnings_before(rig: Rig, today: date) -> list[str]:

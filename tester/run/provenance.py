@@ -94,10 +94,10 @@ def _known_slopes(plan: Plan, rig: Rig, materials: Sequence[StoredMaterial]) -> 
     return tuple(known_slopes(plan, {file.name: compound_model(file.text or "", file.file) for file in files}))
 
 
-def accepted_risks(rig: Rig, reason: str) -> dict[str, str]:
-    """Return the metadata about safety keys that are looser than they should be; empty if there are none."""
-    risks = risks_of(rig)
-    return {ACCEPTED_RISK: reason, LOOSE_KEYS: "; ".join(map(str, risks))} if risks else {}
+def accepted_risks(rig: Rig, reason: str, unmeasured: str = "") -> dict[str, str]:
+    """Return the metadata about accepted risks: keys, and steps of commissioning that lack; empty for none."""
+    risks = [*map(str, risks_of(rig)), *([unmeasured] if unmeasured else [])]
+    return {ACCEPTED_RISK: reason, LOOSE_KEYS: "; ".join(risks)} if risks else {}
 
 
 def session_info(number: int, origin_s: float, operator: str) -> SessionInfo:

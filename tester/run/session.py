@@ -42,7 +42,7 @@ from tester.run.latch import acknowledge, open_trips
 from tester.run.merge_parts import put_together, recover
 from tester.run.part_run import PartWatch, run_part
 from tester.run.pool import WorkerPool
-from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, prepared, warnings_before
+from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, not_measured, prepared, warnings_before
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
 from tester.run.reporter import LastingScreen, ReportScreen
 from tester.run.resumed_run import prepare
@@ -93,6 +93,7 @@ class Session(PartWatch):
         if refused := refusal(options, rig, self.screen):
             self.screen.message(refused)
             return EXIT_USAGE
+        not_measured(options, rig)
         self._foretell(rig)
         options.out.mkdir(parents=True, exist_ok=True)
         for left in cut_off(options.out):
@@ -231,7 +232,7 @@ class Session(PartWatch):
             operator=o.operator,
             recipe_source=recipe_source(path),
             rig_source=rig_source(o.rig, o.overrides),
-            risks=accepted_risks(work.rig, o.accept_risk),
+            risks=accepted_risks(work.rig, o.accept_risk, not_measured(o, work.rig)),
             materials=[file.stored for file in kept],
         )
 

@@ -11,10 +11,7 @@ from typing import Final
 from tester.inputs.rig.key_classes import HIGHER, LOWER, TRUE, Bounded, Classes, Free, Held
 
 _ANSWER: Final = Held("the drive that answers at this node with this identity (0x1018): nothing moves before it does")
-_SCALE: Final = Held(
-    "0x6076, 0x6080 and the ramps as the drive has them, the other axes at each first contact, and the jog of the"
-    " commissioning, within 1 %"
-)
+_SCALE: Final = Held("the jog of the commissioning, without which no run starts, and the axes among themselves")
 _KIND: Final = Held("the kind of the machine: the mode and the unit of each axis, and which one carries the inputs")
 _HOMED: Final = Held("the zero that a person reads in the commissioning; an axis homes unloaded")
 _RAMP: Final = Held("what the drive reads back; a stop that takes longer than its ramp loses its power")

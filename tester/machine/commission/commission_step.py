@@ -153,6 +153,8 @@ class CommissionStep:
     procedure: Callable[[Any, Notes], Dialogue] | None = None
     alone: Callable[[Rig, RunRecipe, Notes], None] | None = None
     readings: Callable[[Any], Sequence[StepReading]] | None = None
+    required: bool = False
+    """Whether a run on a real rig needs it on record: a wrong scale may harm before anything else contradicts it."""
 
 
 def sections_sha256(rig: Rig, sections: tuple[str, ...]) -> str:

@@ -37,9 +37,11 @@ def figures(values: list[Nonsense], runs: int, cases: int, jobs: int) -> Iterato
     yield equal("refusals without a place in the file", unplaced, [])
     wrong = [one.text for one in values if not overridable(one) and not one.by_override()]
     yield equal("described by --set on a real rig", wrong, [])
-    accepted = [one for one, said in refusals if not said]
+    in_file = [one for one, said in refusals if not said]
+    accepted = [one for one in in_file if not one.at_start()]
     accepted.sort(key=lambda one: one.class_name, reverse=True)  # those that describe the machine first
-    print(f"     {len(values) - len(accepted)} of {len(values)} refused in the file of a real rig", flush=True)
+    print(f"     {len(values) - len(in_file)} of {len(values)} refused in the file of a real rig,"
+          f" {len(in_file) - len(accepted)} at a start: commissioned with other values", flush=True)  # fmt: skip
     found: list[Tried] = []
     for one in tried(accepted[:runs], cases, jobs):
         found.append(one)

@@ -7,17 +7,24 @@ from copy import deepcopy
 from dataclasses import dataclass
 from functools import cache
 from math import inf, nan
+from pathlib import Path
 from random import Random
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import yaml
 
+from tester import kinds
+from tester.base import clock
 from tester.base.source import InvalidSource, Tree
 from tester.inputs.rig.config import NOT_REAL, Rig
 from tester.inputs.rig.packaged import new_tree
 from tester.inputs.rig.rig_files import checked, load
 from tester.inputs.rig.rig_keys import Place, RigKey, values_of
 from tester.kinds import load_rig
+from tester.machine.commission.commission_step import sections_sha256
+from tester.machine.commission.record import DONE, CommissionRecord, record_path
+from tester.run.preconditions import unmeasured
 
 RIGS = ("sim", "grosch", "pin-on-disc")
 """The packaged rigs whose keys are tried."""
@@ -56,11 +63,16 @@ class Nonsense:
     def in_file(self) -> str:
         """Return why the file of a real rig is refused with the value in it, "" where it is accepted."""
         tree = _tree(self.rig)
-        section: Any = tree.data
-        for key in self.place[:-1]:
-            section = section.setdefault(key, {})
-        section[self.place[-1]] = self.value
+        _put(tree, self.place, self.value)
         return _refusal(self.rig, tree)
+
+    def at_start(self) -> str:
+        """Return why a run does not start with a file that is accepted, commissioned as it was before; "" else."""
+        tree = _tree(self.rig)
+        _put(tree, self.place, self.value)
+        with TemporaryDirectory(prefix="keys-") as folder:
+            _commission(self.rig, Path(folder))
+            return unmeasured(load(type(_real(self.rig)[1]), tree), Path(folder))
 
     def by_override(self) -> str:
         """Return why ``--set``, or a client's override, is refused on a real rig, "" where it is accepted."""
@@ -104,6 +116,23 @@ def _nonsense(random: Random, rig: str, place: Place, value: Any) -> Any:
         elsewhere = {other for _, at, other in keys(rig) if at[-1] == place[-1] and isinstance(other, str)}
         return random.choice((*TEXTS, *sorted(elsewhere)))
     return {"nonsense": random.choice((1e9, "nonsense"))}
+
+
+def _put(tree: Tree, place: Place, value: Any) -> None:
+    section: Any = tree.data
+    for key in place[:-1]:
+        section = section.setdefault(key, {})
+    section[place[-1]] = value
+
+
+def _commission(name: str, runs: Path) -> None:
+    """Put the required steps of commissioning on record, as they were done with the file before."""
+    rig = _real(name)[1]
+    part = kinds.find(rig.kind).commissions
+    record = CommissionRecord(record_path(runs, rig.name), clock.utc_now, "the builder")
+    for step in part().steps if part is not None else ():
+        if step.required:
+            record.add(rig.name, "", sections_sha256(rig, step.sections), step.name, DONE, "")
 
 
 def _refusal(rig: str, tree: Tree, *overrides: str) -> str:

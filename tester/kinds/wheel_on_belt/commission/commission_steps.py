@@ -32,6 +32,7 @@ def _jog(axis: jog.JoggedAxis) -> CommissionStep:
         _QUIET,
         partial(jog.jog_axis, axis),
         readings=readings.of_axis(axis),
+        required=True,
     )
 
 
