@@ -19,7 +19,7 @@ from tester.base.quantities import Quantities
 from tester.base.source import Location
 from tester.inputs.rig.key_classes import HIGHER, LOWER, Bounded, Free, Held, Inside, class_of
 from tester.inputs.rig.parameter import SECTION, Parameter, Values
-from tester.inputs.rig.section_classes import NODE
+from tester.inputs.rig.section_classes import CONSUMER_HEARTBEAT, DRIVE_HEARTBEAT, NODE
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -66,14 +66,9 @@ class CanConfig:
         float, "s", _POSITIVE, Bounded(LOWER, "100 ms", "two of the PC's heartbeats within the 200 ms that drives wait")
     ]
     """The PC's heartbeat period."""
-    drive_heartbeat_s: Annotated[
-        float, "s", _POSITIVE, Bounded(LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s")
-    ]
+    drive_heartbeat_s: Annotated[float, "s", _POSITIVE, DRIVE_HEARTBEAT]
     """The drives' heartbeat period (0x1017)."""
-    consumer_heartbeat_s: Annotated[
-        float, "s", _POSITIVE,
-        Bounded(LOWER, "250 ms", "without heartbeats a drive keeps its last command: 50 ms more at 400 W are 20 J"),
-    ]  # fmt: skip
+    consumer_heartbeat_s: Annotated[float, "s", _POSITIVE, CONSUMER_HEARTBEAT]
     """How long a drive waits for the PC's heartbeat before it stops (0x1016)."""
     nodes: Annotated[Mapping[str, NodeConfig], Inside(NODE)] = field(default_factory=dict[str, NodeConfig])
     """Further nodes, which measure; ``drive_heartbeat`` is theirs too, unless they state one."""

@@ -14,14 +14,13 @@ from drivers.axis import AxisConfig
 from tester.base.config_reader import Range
 from tester.base.source import Location
 from tester.inputs.rig.config import NOT_REAL, Rig
-from tester.inputs.rig.key_classes import HIGHER, TRUE, Bounded, Free, Inside
+from tester.inputs.rig.key_classes import HIGHER, Bounded, Free, Inside
 from tester.inputs.rig.parameter import SECTION
-from tester.inputs.rig.section_classes import AXIS
+from tester.inputs.rig.section_classes import AXIS, WATCHDOG_PROOF
 
 OneRig = TypeVar("OneRig", bound="PlainRig")
 
 LISTEN: Final = Bounded(HIGHER, "0.5 s", "another master sends twice a second or oftener [A]")
-WATCHDOG_PROOF: Final = Bounded(HIGHER, TRUE, "else nothing proves that the drives stop without this program")
 WITHHOLD: Final = Bounded(
     HIGHER, "300 ms", "a drive reports the missing heartbeat after 200 ms"
 )

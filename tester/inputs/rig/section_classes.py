@@ -10,6 +10,11 @@ from typing import Final
 
 from tester.inputs.rig.key_classes import HIGHER, LOWER, TRUE, Bounded, Classes, Free, Held
 
+DRIVE_HEARTBEAT: Final = Bounded(LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s")
+CONSUMER_HEARTBEAT: Final = Bounded(
+    LOWER, "250 ms", "a silent PC: a drive keeps its command, 50 ms more at 400 W are 20 J"
+)
+WATCHDOG_PROOF: Final = Bounded(HIGHER, TRUE, "else nothing proves that the drives stop without this program")
 _ANSWER: Final = Held("the drive that answers at this node with this identity (0x1018): nothing moves before it does")
 _SCALE: Final = Held("the jog of the commissioning, without which no run starts, and the axes among themselves")
 _KIND: Final = Held("the kind of the machine: the mode and the unit of each axis, and which one carries the inputs")
@@ -35,10 +40,10 @@ AXIS: Final[Mapping[str, Classes]] = {
     "digital_io": _KIND,
     "inputs_period": Bounded(LOWER, "250 ms", "interlocks.stale_inputs is 500 ms at most: two words", own=True),
     "wiring": Held("the contactor, which must follow its request, and the chain and guard that a person opens"),
-    "heartbeat": Bounded(LOWER, "100 ms", "as can.drive_heartbeat"),
-    "consumer_heartbeat": Bounded(LOWER, "250 ms", "as can.consumer_heartbeat"),
+    "heartbeat": DRIVE_HEARTBEAT,
+    "consumer_heartbeat": CONSUMER_HEARTBEAT,
     "rpdo_deadline": Held("the heartbeat, whose absence stops the drive (consumer_heartbeat)"),
-    "proves_watchdog": Bounded(HIGHER, TRUE, "as arming.watchdog_proof, for one drive"),
+    "proves_watchdog": WATCHDOG_PROOF,
 }  # fmt: skip
 """Classes of the keys of an axis (drivers.axis.AxisConfig)."""
 

@@ -14,8 +14,8 @@ from tester.base.source import Location
 from tester.inputs.rig.config import NOT_REAL, PAPER, CalibrationConfig, OwnDevice, Rig, section_of
 from tester.inputs.rig.key_classes import HIGHER, LOWER, TRUE, Bounded, Free, Held, Inside
 from tester.inputs.rig.parameter import Parameter
-from tester.inputs.rig.plain_rig import LISTEN, WATCHDOG_PROOF, WITHHOLD
-from tester.inputs.rig.section_classes import AXIS
+from tester.inputs.rig.plain_rig import LISTEN, WITHHOLD
+from tester.inputs.rig.section_classes import AXIS, WATCHDOG_PROOF
 from tester.kinds.specimen_on_track import KIND
 from tester.kinds.specimen_on_track.interlocks.chamber import STALE_AIR_S, STALE_EXIT_S
 from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_S

@@ -54,7 +54,7 @@ AXES: Final = Axes(
         Positioned("camber", "deg", "camber_deg", "deg", 1.0, "camber_deg", "Camber Angle /°", "Camber °",
                    "camber", 0.0, False, 5, ge=-90.0, le=90.0, limit="limits.camber", drive="axes.camber",
                    most=45.0, hardest="10 deg",
-                   because="a tread of 30 mm is 5 mm lower on one side then: the other side carries no load any more",
+                   because="a tread of 30 mm is 5 mm lower on one side: the other carries no load",
                    symbol="°", mean=10, rank=9),
         Axis("temperature", "degC", "temperature_c", "degC", 1.0, "temperature_c", "Temperature /°C", "Temp °C", "",
              None, True, 3, ge=-50.0, le=200.0),

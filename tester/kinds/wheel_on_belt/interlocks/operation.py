@@ -33,7 +33,7 @@ ZERO_WARN_N: Final = Parameter(
 )  # fmt: skip
 ZERO_STOP_N: Final = Parameter(
     "zero_stop_n", "N", "20 N", "... by this: the run stops",
-    hardest="30 N", because="450 N, the greatest load, and 30 N unseen are 480 N; harm begins at 500 N",
+    hardest="30 N", because="with 450 N, the greatest load, it is 480 N; harm begins at 500 N",
 )  # fmt: skip
 ZERO_CHECK_EVERY_S: Final = Parameter(
     "zero_check_every_s", "s", "10 min",

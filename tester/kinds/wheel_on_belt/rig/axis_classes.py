@@ -17,12 +17,8 @@ _VELOCITY: Final[Mapping[str, Classes]] = {
 WHEEL: Final[Mapping[str, Classes]] = {
     **_VELOCITY,
     "max_speed": Bounded(LOWER, "40", "rad/s; the greatest limits.wheel_speed at the least diameter", own=True),
-    "quick_stop_deceleration": Bounded(
-        HIGHER, "200", "rad/s2; at 8 m/s2 (178 rad/s2) a jammed belt costs 3# 45 J at 430 N, harm is 40 J"
-    ),
-    "speed_zero": Bounded(
-        HIGHER, "0.1", "rad/s; 0 is off: a jam is then seen with the next scan, and costs 3# 77 J; harm is 40 J"
-    ),
+    "quick_stop_deceleration": Bounded(HIGHER, "200", "rad/s2; at 178 a jammed belt costs 3# 45 J; harm is 40 J"),
+    "speed_zero": Bounded(HIGHER, "0.1", "rad/s; 0 is off: a jam costs 3# 77 J; harm is 40 J"),
 }
 BELT: Final[Mapping[str, Classes]] = {
     **_VELOCITY,
@@ -33,8 +29,7 @@ BELT: Final[Mapping[str, Classes]] = {
 PRESS: Final[Mapping[str, Classes]] = {
     **_VELOCITY,
     "acceleration": Bounded(
-        HIGHER, "600", "mm/s2; at 400 and 30 mm/s a wheel in local mode costs 3# 42 J, at 600 and 40 mm/s 39.5 J:"
-        " harm is 40 J"
+        HIGHER, "600", "mm/s2; with 40 mm/s a wheel in local mode costs 3# 39.5 J; harm is 40 J"
     ),
     "max_speed": (
         Bounded(HIGHER, "40", "mm/s, of a fast stop; as axes.press.acceleration"),

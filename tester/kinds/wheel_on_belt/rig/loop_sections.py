@@ -8,6 +8,9 @@ from typing import Annotated, Final
 from tester.base.config_reader import Range
 from tester.inputs.rig.key_classes import HIGHER, LOWER, Bounded, Free, Held
 
+HUB: Final = Bounded(
+    LOWER, "150 degC", "3 K of margin and 2 K of rise after the heat is off make 155 degC, which harms"
+)
 _POSITIVE: Final = Range(gt=0.0)
 _NOT_NEGATIVE: Final = Range(ge=0.0)
 _SHARE: Final = Range(gt=0.0, le=1.0)
@@ -19,11 +22,11 @@ class LoadLoopConfig:
 
     bandwidth_hz: Annotated[
         float, "Hz", _POSITIVE,
-        Bounded(LOWER, "1.5 Hz", "the cell, the scan and the drive are 60 ms late: a quicker loop swings", own=True),
+        Bounded(LOWER, "1.5 Hz", "with 60 ms of delay a quicker loop swings", own=True),
     ]  # fmt: skip
     rolling_bandwidth_hz: Annotated[
         float, "Hz", _POSITIVE,
-        Bounded(LOWER, "1 Hz", "the wheel's runout comes at 2.8 Hz: the press would follow it", own=True),
+        Bounded(LOWER, "1 Hz", "the press follows the runout, 2.8 Hz", own=True),
     ]  # fmt: skip
     """Bandwidth while holding in band: too slow to follow the wheel's runout."""
     error_filter_s: Annotated[float, "s", _POSITIVE, Free("it chooses between the two bandwidths")]
@@ -79,7 +82,7 @@ class HeatLoopConfig:
     hub_min_c: Annotated[
         float, "degC", Bounded(LOWER, "40 degC", "a wheel that waits is as warm as a hand bears [A]", own=True)
     ]
-    hub_max_c: Annotated[float, "degC", Bounded(LOWER, "150 degC", "as limits.jacket")]
+    hub_max_c: Annotated[float, "degC", HUB]
     period_s: Annotated[float, "s", _POSITIVE, _SETPOINT]
     rolling_offset_k: Annotated[float, "K", _NOT_NEGATIVE, _SETPOINT]
     """Distance of the target below the setpoint while rolling between slip pulses."""

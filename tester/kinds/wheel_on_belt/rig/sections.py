@@ -15,11 +15,12 @@ from sim.physics.parameters import ThermalParameters, WheelParameters
 from tester.base.config_reader import Range
 from tester.inputs.rig.config import PAPER, CalibrationConfig, section_of
 from tester.inputs.rig.key_classes import HIGHER, LOWER, TRUE, Bounded, Free, Held, Inside
-from tester.inputs.rig.plain_rig import LISTEN, WATCHDOG_PROOF, WITHHOLD
-from tester.inputs.rig.section_classes import AXIS
+from tester.inputs.rig.plain_rig import LISTEN, WITHHOLD
+from tester.inputs.rig.section_classes import AXIS, WATCHDOG_PROOF
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.interlocks.table import PARAMETERS
 from tester.kinds.wheel_on_belt.rig.axis_classes import BELT, PRESS, WHEEL
+from tester.kinds.wheel_on_belt.rig.loop_sections import HUB
 
 HARMFUL_N: Final = 500.0
 """A force on the wheel from this value up counts as harm (sim.harm)."""
@@ -60,7 +61,7 @@ def _with(base: type, further: Iterable[tuple[str, object]]) -> Any:
 
 _RUNAWAY: Final = Bounded(
     LOWER, "1.5 m/s",
-    "at 1.5 m/s a drive that does not stop loses its power after 2.5 s; no step of a stop may begin later",
+    "a drive that does not stop loses its power after 2.5 s: no later step of a stop",
 )  # fmt: skip
 
 
@@ -77,12 +78,9 @@ class _LimitsConfig:
     belt_speed_m_s: Annotated[float, "m/s", _POSITIVE, _RUNAWAY]
     slip_power_w: Annotated[
         float, "W", _POSITIVE,
-        Bounded(LOWER, "400 W", "the wheel's drive gives 400 W at its rated torque: 16 N m at 25 rad/s"),
+        Bounded(LOWER, "400 W", "16 N m of rated torque at 25 rad/s"),
     ]  # fmt: skip
-    jacket_c: Annotated[
-        float, "degC", Range(gt=0.0, le=155.0),
-        Bounded(LOWER, "150 degC", "3 K of margin and 2 K of rise after the heat is off make 155 degC, which harms"),
-    ]  # fmt: skip
+    jacket_c: Annotated[float, "degC", Range(gt=0.0, le=155.0), HUB]
     """At most 155 degC: above it is harm (docs/kinds/wheel-on-belt.md)."""
     surface_c: Annotated[
         float, "degC", Range(gt=0.0, le=130.0),
@@ -172,7 +170,7 @@ class ArmingConfig:
     """Speed of wheel and belt, unloaded, in the bump test and in the watchdog proof."""
     unloaded_n: Annotated[
         float, "N", Range(gt=0.0, le=50.0),
-        Bounded(LOWER, "30 N", "450 N, the greatest load, and 30 N of a wrong zero are 480 N; harm begins at 500 N"),
+        Bounded(LOWER, "30 N", "with 450 N, the greatest load, it is 480 N; harm begins at 500 N"),
     ]  # fmt: skip
     """Greatest normal force and friction of an unloaded cell without tare, at connecting and at a reference tare.
 
