@@ -12,7 +12,7 @@ from tester.inputs.rig.key_classes import HIGHER, LOWER, TRUE, Bounded, Classes,
 
 DRIVE_HEARTBEAT: Final = Bounded(LOWER, "100 ms", "three are missed before a drive is lost: 0.3 s")
 CONSUMER_HEARTBEAT: Final = Bounded(
-    LOWER, "250 ms", "a silent PC: a drive keeps its command, 50 ms more at 400 W are 20 J"
+    LOWER, "250 ms", "a drive keeps its last command: 50 ms more at 400 W are 20 J"
 )
 WATCHDOG_PROOF: Final = Bounded(HIGHER, TRUE, "else nothing proves that the drives stop without this program")
 _ANSWER: Final = Held("the drive that answers at this node with this identity (0x1018): nothing moves before it does")
