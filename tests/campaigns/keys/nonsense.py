@@ -48,6 +48,8 @@ class Nonsense:
     key: RigKey
     place: Place
     value: Any
+    stated: Any
+    """The value in the file."""
 
     @property
     def text(self) -> str:
@@ -87,7 +89,7 @@ def drawn(count: int, seed: int) -> Iterator[Nonsense]:
         key, place, value = random.choice(keys(rig))
         nonsense = _nonsense(random, rig, place, value)
         if nonsense != value:
-            yield Nonsense(rig, key, place, nonsense)
+            yield Nonsense(rig, key, place, nonsense, value)
             count -= 1
 
 
