@@ -68,6 +68,10 @@ class FaultyCanWire(CanWire):
         self._busy_s = max(self._busy_s, now) + seconds
         self.occupied_s += seconds
 
+    def lose_on_way(self, now: float) -> None:
+        """Lose the frames that have not arrived by ``now`` s; the times of the answers to a SYNC are known before."""
+        self._inbox = [frame for frame in self._inbox if frame[0] <= now]
+
     def _route(self, can_id: int, ranked: list[tuple[int, Listener]]) -> None:
         super()._route(can_id, [entry for entry in ranked if entry[0] not in self._cut])
 
@@ -150,6 +154,8 @@ def bus_silent(scene: Scene, on: bool, now: float) -> None:
     """The bus is off, or cut at the computer: frames vanish and no call fails."""
     wire = wire_of(scene)
     wire.silent = on
+    if on:
+        wire.lose_on_way(now)
     wire.note_faults()
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 from tester.inputs.rig.parameter import Parameter
 from tester.machine.row import ACK, ENDING, POWER_OFF, Compared, Interlock
 from tester.machine.watches import at_most, condition
-from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s
+from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s, drive_data_old
 
 Predicate = Callable[[Any], bool]
 """Predicate over a kind's inputs."""
@@ -28,30 +28,21 @@ def _stops(v: Any) -> bool:
     return v.stopped_s >= 0.0 and not v.stop.creeps
 
 
-def drive_data_stale(heard_s: Callable[[Any], tuple[float, ...]]) -> Interlock[Any]:
-    """Return the row for stale data while drives are on; ``heard_s``: reads the time stamps of the drives' data from
-    the readings.
-    """
-
-    def data_old(v: Any) -> bool:
-        since = v.readings.now_s - drive_data_allowed_s(v)
-        return not all(at_s >= since for at_s in heard_s(v.readings))
-
-    return Interlock(
-        name="drive data stale",
-        cause="no fresh drive data",
-        watch=condition(
-            "age > stale_can_scans periods, or > stale_can",
-            data_old,
-            lambda v: Compared(v.readings.now_s - min(heard_s(v.readings)), drive_data_allowed_s(v), "s"),
-        ),
-        # A drive that is to come into operation answers every scan from the first, so its data are soon fresh.
-        applies=lambda v: v.demand.enabled and (
-            v.readings.drives_enabled or v.readings.now_s - v.wanted_since_s > v.parameters[STALE_CAN_S]
-        ),
-        parameters=(STALE_CAN_SCANS, STALE_CAN_S),
-        reset=ACK,
-    )
+DRIVE_DATA_STALE: Final[Interlock[Any]] = Interlock(
+    name="drive data stale",
+    cause="no fresh drive data",
+    watch=condition(
+        "age > stale_can_scans periods, or > stale_can",
+        drive_data_old,
+        lambda v: Compared(v.readings.now_s - min(v.readings.drive_stamps_s()), drive_data_allowed_s(v), "s"),
+    ),
+    # A drive that is to come into operation answers every scan from the first, so its data are soon fresh.
+    applies=lambda v: v.demand.enabled and (
+        v.readings.drives_enabled or v.readings.now_s - v.wanted_since_s > v.parameters[STALE_CAN_S]
+    ),
+    parameters=(STALE_CAN_SCANS, STALE_CAN_S),
+    reset=ACK,
+)
 
 
 def drive_dropped_out(delay: Parameter) -> Interlock[Any]:

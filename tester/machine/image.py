@@ -51,6 +51,10 @@ class BaseReadings:
     channels: list[float] = field(default_factory=list[float])
     """Readings of the rig's further sensors, in the order of the rig file; NaN = not fresh and valid."""
 
+    def drive_stamps_s(self) -> tuple[float, ...]:
+        """Return the time stamps of the drives' data, s; the kind knows its drives."""
+        return ()
+
     def faults(self) -> list[str]:
         """Return the faults of drives, wires and devices, in words."""
         wires = (self.bus_fault, self.line_silent, self.foreign_master)

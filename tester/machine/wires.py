@@ -33,6 +33,10 @@ SILENT_CAN_HEARTBEATS: Final = Parameter(
 )  # fmt: skip
 
 
+SILENT_SCANS: Final = 1.2
+"""Scan periods since the last frame after which no drive has answered the last SYNC [A]: an answer takes a tenth."""
+
+
 def _bus_silent(v: Any) -> bool:
     r, p = v.readings, v.parameters
     allowed_s = p[SILENT_CAN_HEARTBEATS] * v.limits.heartbeat_s
@@ -43,7 +47,15 @@ def _bus_silent(v: Any) -> bool:
     # A late scan has not received frames in the meantime ("scan late" judges that), and drives have not yet answered
     # the scan after it.
     late_s = v.late_before_s + (v.late_s if v.late_s > 0.0 else 0.0)
-    return not (r.now_s - late_s - r.can_heard_s <= allowed_s)
+    silent_s = r.now_s - late_s - r.can_heard_s
+    if not (silent_s <= allowed_s):
+        return True
+    # A plug that is pulled between two drives' answers makes the data of the later drive old one scan before the whole
+    # bus counts as silent. The alarm must name the cable: not one drive has answered the last SYNC. Where data are old
+    # because this computer was late, it must not.
+    if not (silent_s > SILENT_SCANS * v.scan_s and late_s < v.scan_s):
+        return False
+    return r.drives_enabled and v.demand.enabled and drive_data_old(v)
 
 
 CAN_SILENT: Final[Row] = Interlock(
@@ -137,6 +149,12 @@ STALE_CAN_S: Final = Parameter(
     hardest="200 ms",
     because="a drive without setpoints stops by itself after 200 ms; its older data do not count",
 )  # fmt: skip
+
+
+def drive_data_old(v: Any) -> bool:
+    """Return whether the data of a drive are too old."""
+    since_s = v.readings.now_s - drive_data_allowed_s(v)
+    return any(not (at_s >= since_s) for at_s in v.readings.drive_stamps_s())
 
 
 def drive_data_allowed_s(v: Any) -> float:

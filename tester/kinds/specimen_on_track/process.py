@@ -60,6 +60,9 @@ class TrackReadings(BaseReadings):
     stretch: float = 0.0
     """Way in stretches of the condition."""
 
+    def drive_stamps_s(self) -> tuple[float, ...]:
+        return (self.track_at_s, self.lift_at_s)
+
 
 @dataclass(slots=True)
 class TrackDemand(BaseDemand):

@@ -25,6 +25,9 @@ class PlainReadings(BaseReadings):
     slid_m: float = 0.0
     """Sliding distance of the mounted specimen."""
 
+
+    def drive_stamps_s(self) -> tuple[float, ...]:
+        return (self.drives_at_s,)
     def update(self, dt: float) -> None:
         """Derive the kind's channels from ``drives`` and ``sensors``; ``dt``: time since the scan before, s."""
 

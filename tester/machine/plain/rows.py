@@ -9,7 +9,7 @@ from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.drive_rows import (
     ACK_WAIT_S,
-    drive_data_stale,
+    DRIVE_DATA_STALE,
     drive_dropped_out,
     not_stopping,
     quick_stop_failed,
@@ -66,8 +66,6 @@ class PlainInputs(ScanInputs, Generic[ReadingsT]):
 
 AnyInputs = PlainInputs[PlainReadings]
 Row: TypeAlias = Interlock[AnyInputs]
-
-DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.drives_at_s,))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself, or has power at rest [A]", NOT_NEGATIVE,

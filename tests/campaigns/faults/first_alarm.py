@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import product
 from math import nan
 
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
@@ -39,9 +40,9 @@ PULLED: tuple[Pulled, ...] = (
 )
 
 
-def text_of_first_trip(stage: Stage, one: Pulled) -> str:
-    """Pull it; return name and text of the first trip, "" where nothing trips."""
-    began_s = stage.next_s
+def text_of_first_trip(stage: Stage, one: Pulled, after_s: float = 0.0) -> str:
+    """Pull it ``after_s`` after the next tick; return name and text of the first trip, "" where nothing trips."""
+    began_s = stage.next_s + after_s
     for fault in one.faults:
         stage.inject(language_of(RECIPE).parse(f"t=0 s: {fault}").shifted(began_s))
     heard: list[str] = []
@@ -59,8 +60,14 @@ def text_of_first_trip(stage: Stage, one: Pulled) -> str:
     return ""
 
 
-def conduct(pulled: Iterable[Pulled], phases: Iterable[str], seed: int = 0) -> dict[tuple[str, str], str]:
-    """Pull each thing IN_PHASE_S after each of these phases began first; return what the first alarms said."""
+def conduct(
+    pulled: Iterable[Pulled], phases: Iterable[str], seed: int = 0, moments_s: Iterable[float] = (0.0,)
+) -> dict[tuple[str, str], str]:
+    """Pull each thing IN_PHASE_S after each of these phases began first; return what the first alarms said.
+
+    ``moments_s``: pull it so long after the tick that comes then, each time in a copy; the place names the moment.
+    """
+    moments_s = tuple(moments_s)
     pulled, wanted = tuple(pulled), set(phases)
     setting = setting_of(RECIPE)
     stage = Stage(setting.text, setting.overrides, seed)
@@ -73,8 +80,9 @@ def conduct(pulled: Iterable[Pulled], phases: Iterable[str], seed: int = 0) -> d
         if place[1] in wanted and stage.next_s - since_s >= IN_PHASE_S:
             wanted.remove(place[1])
             twins = Twins(stage, RECIPE, (), NO_HISTORY)
-            for one in pulled:
-                found[one.what, place[1]] = twins.do(lambda twin, one=one: text_of_first_trip(twin, one))
+            for one, after_s in product(pulled, moments_s):
+                where = place[1] + (f" + {1e3 * after_s:.2f} ms" if after_s else "")
+                found[one.what, where] = twins.do(lambda twin, one=one, s=after_s: text_of_first_trip(twin, one, s))
     return found
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tester.machine.drive_rows import drive_data_stale
+from tester.machine.drive_rows import DRIVE_DATA_STALE
 from tester.machine.row import Interlock
 from tester.machine.wires import (
     CAN_SILENT,
@@ -25,7 +25,6 @@ PERIOD_S = 0.01
 ANSWER_S = 0.002
 """From SYNC to a drive's answer."""
 PARAMETERS = {one: one.value for one in (STALE_CAN_SCANS, STALE_CAN_S, SILENT_CAN_SCANS, SILENT_CAN_HEARTBEATS)}
-STALE = drive_data_stale(lambda r: (r.heard_s,))
 SCANS = 20
 LATE = 10
 """The scan that comes late."""
@@ -50,7 +49,8 @@ def tripped(row: Interlock, late_s: Sequence[float], lost: Collection[int] = ())
                 heard_s = at_s + ANSWER_S
         readings.now_s = now_s
         control.step(demand, readings, PERIOD_S)
-        shown = SimpleNamespace(now_s=now_s, heard_s=heard_s, can_heard_s=heard_s, drives_enabled=True)
+        stamps = lambda at_s=heard_s: (at_s,)  # noqa: E731
+        shown = SimpleNamespace(now_s=now_s, drive_stamps_s=stamps, can_heard_s=heard_s, drives_enabled=True)
         looked_at = view(
             readings=shown, demand=SimpleNamespace(enabled=True), limits=SimpleNamespace(heartbeat_s=0.05),
             late_s=control.view.late_s, late_before_s=control.view.late_before_s,
@@ -65,7 +65,7 @@ def late_by(seconds: float) -> list[float]:
     return [seconds if number == LATE else 0.0 for number in range(SCANS)]
 
 
-@pytest.mark.parametrize("row", [STALE, CAN_SILENT], ids=["drive data", "silence"])
+@pytest.mark.parametrize("row", [DRIVE_DATA_STALE, CAN_SILENT], ids=["drive data", "silence"])
 @pytest.mark.parametrize("late_s", [0.0, 0.015, 0.060, 0.100])
 def test_a_late_scan_trips_nothing_where_every_answer_or_all_but_one_came(row: Interlock, late_s: float) -> None:
     assert tripped(row, late_by(late_s)) == []
@@ -73,7 +73,7 @@ def test_a_late_scan_trips_nothing_where_every_answer_or_all_but_one_came(row: I
         assert tripped(row, late_by(late_s), {lost}) == []
 
 
-@pytest.mark.parametrize("row", [STALE, CAN_SILENT], ids=["drive data", "silence"])
+@pytest.mark.parametrize("row", [DRIVE_DATA_STALE, CAN_SILENT], ids=["drive data", "silence"])
 @pytest.mark.parametrize("late_s", [0.0, 0.015, 0.060])
 @pytest.mark.parametrize("first", range(LATE - 4, LATE + 3))
 def test_two_answers_missing_in_a_row_trip_at_the_scan_that_misses_both(
@@ -102,4 +102,4 @@ def test_never_more_than_stale_can(late_s: float) -> None:
 
 
 def test_after_a_pause_longer_than_stale_can_drive_data_trip() -> None:
-    assert tripped(STALE, late_by(0.16))[:1] == [LATE]
+    assert tripped(DRIVE_DATA_STALE, late_by(0.16))[:1] == [LATE]

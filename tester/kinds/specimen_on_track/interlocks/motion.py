@@ -7,12 +7,10 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import STANDING_SHARE, Row, TrackInputs, standing_m_s
-from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
+from tester.machine.drive_rows import DRIVE_DATA_STALE, drive_dropped_out
 from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
 from tester.machine.watches import at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
-
-DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.track_at_s, r.lift_at_s))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,

@@ -102,6 +102,9 @@ class Readings(BaseReadings):
     diameter_mm: float = NAN
     """Running diameter of the wheel: the cold diameter plus its growth by heat (``procedures.wheel_life``)."""
 
+
+    def drive_stamps_s(self) -> tuple[float, ...]:
+        return (self.wheel_at_s, self.belt_at_s, self.press_at_s, self.positions_at_s)
     def faults(self) -> list[str]:
         """Return the faults of drives, wires and devices, in words; the cell's transmitter first."""
         faults = BaseReadings.faults(self)

@@ -8,12 +8,10 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N
 from tester.kinds.wheel_on_belt.interlocks.inputs import STANDING_M_S, Inputs, Row
-from tester.machine.drive_rows import drive_data_stale, drive_dropped_out
+from tester.machine.drive_rows import DRIVE_DATA_STALE, drive_dropped_out
 from tester.machine.row import ACK, LOADED, Compared, Interlock
 from tester.machine.watches import at_least, at_most, condition, within
 from tester.machine.wires import INPUTS_STALE
-
-DRIVE_DATA_STALE: Final = drive_data_stale(lambda r: (r.wheel_at_s, r.belt_at_s, r.press_at_s, r.positions_at_s))
 
 DROPPED_DELAY_S: Final = Parameter(
     "dropped_delay_s", "s", "50 ms", "a drive leaves operation by itself [A]", NOT_NEGATIVE,

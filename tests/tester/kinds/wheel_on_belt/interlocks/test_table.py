@@ -43,7 +43,7 @@ INSIDE = {"rate_filter_s", "rate_window_s", "rate_settle_s", "blind_s", "ramp_sh
           "heat_share", "heat_share_known", "heat_leak_w",
           "force_step_cross_share", "force_step_seen_share", "force_step_unseen_share"}  # fmt: skip
 """Parameters of rows whose monitor, driver or stop uses them and not the condition itself."""
-SHARED = {"stale_inputs_s", "speeds_old_s", "standing_m_s", "clear_mm", "lift_late_s"}
+SHARED = {"stale_can_s", "stale_can_scans", "stale_inputs_s", "speeds_old_s", "standing_m_s", "clear_mm", "lift_late_s"}
 """Parameters that ``known`` and earlier rows bring into a condition."""
 
 
