@@ -58,6 +58,8 @@ def _ranges() -> Iterator[tuple[str, float, float, float]]:
     yield "thermometer drift", -1.0, 1.0, 0.0
     yield "thermometer gain", 60.0, 140.0, 100.0
     yield "common supply of hub sensor and thermometer", 60.0, 140.0, 100.0
+    yield "hub sensor drift", -10.0 / 60.0, 10.0 / 60.0, 0.0
+    yield "common drift of hub sensor and thermometer", -10.0 / 60.0, 10.0 / 60.0, 0.0
     for name in ("load cell", "thermometer", "hub sensor"):
         for slow in ("lag", "delay"):
             yield f"{name} {slow}", 0.0, _LAGS[name], 0.0

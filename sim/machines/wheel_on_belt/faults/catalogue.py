@@ -212,6 +212,8 @@ def _actuator_rows() -> Iterator[FaultKind]:
                     note="the wheel gets colder than wanted: the recipe's waits notice, nothing is harmed")
     yield FaultKind("jacket relay shorted", partial(h.heater_element, 100.0), UNASKED, TRIP, 16.0, slow=True,
                     note="the rate is known 3 s after the output has gone, over 4 to 8 s; 5 and 2 s of the row")
+    yield FaultKind("jacket relay sticks", h.RelaySticks, ALWAYS, MAY, 0.0, "ms", 3.0, slow=True,
+                    note="of every eight seconds; the controller gives so much less while it can")
     yield FaultKind("heater line open", partial(h.heater_element, 0.0), STARVED, TRIP, 61.0 + POLL_S, slow=True)
     yield FaultKind("jacket limiter dead", h.limiter_dead, ALWAYS, MAY,
                     note="a second line: nothing shows that it is gone before it is needed")
@@ -270,6 +272,8 @@ def _misread_rows() -> Iterator[FaultKind]:
         yield _may(f"load cell {named} {what}", partial(CELL, channels))
     yield _hides("hub sensor gain", partial(HUB, "gain"), "%", 60.0)
     yield _hides("hub sensor partly detached", h.hub_detached, "%", 60.0)
+    yield _may("hub sensor drift", partial(HUB, "drift"), "K/s", -0.02, slow=True)
+    yield _may("common drift of hub sensor and thermometer", h.common_drift, "K/s", -0.02, slow=True)
     yield _may("thermometer gain", partial(SURFACE, "gain"), "%", 80.0, slow=True)
     yield _hides("common supply of hub sensor and thermometer", h.common_supply_off, "%", 60.0)
     for name, lag_s in (("load cell", 1.0), ("thermometer", 1.5)):

@@ -16,6 +16,8 @@ HALF_DEG: Final = 20.0
 """Reach of the worn place to either side of its centre, degrees of the wheel's turn [A]."""
 DETACHED_S = 20.0
 """Time constant of a loose hub sensor, s [A]: a fixed one has 1 s."""
+STICKS_EVERY_S: Final = 8.0
+"""Period of a relay that sticks, s [A]."""
 
 
 class _Together(Effect):
@@ -40,6 +42,11 @@ def common_supply_off(percent: float) -> Effect:
     return _Together(SensorFault("jacket", "gain", percent), SensorFault("thermometer", "gain", percent))
 
 
+def common_drift(k_s: float) -> Effect:
+    """Hub sensor and thermometer drift alike, by ``k_s`` K/s: their common reference ages, or warms."""
+    return _Together(SensorFault("jacket", "drift", k_s), SensorFault("thermometer", "drift", k_s))
+
+
 def hub_detached(percent: float) -> Effect:
     """The hub's sensor is loose: it shows ``percent`` of the excess above ambient, late by DETACHED_S."""
     return _Together(SensorFault("jacket", "gain", percent), SensorFault("jacket", "lag", DETACHED_S))
@@ -52,6 +59,31 @@ def heater_element(scene: Scene, on: bool, now: float, percent: float) -> None:
     The controller continues to show the output that it commands.
     """
     scene.machine(WheelRig).jacket.stuck_element = percent if on else None
+
+
+class RelaySticks(Effect):
+    """The heater's relay sticks: it stays closed for some seconds of every STICKS_EVERY_S, whatever the output is."""
+
+    every_step = True
+
+    def __init__(self, seconds: float) -> None:
+        """Take the time for which it stays closed, s."""
+        self._closed_s = seconds
+        self._since_s = 0.0
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Stick now for the first time."""
+        self._since_s = now
+        self.renew(scene, now)
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Follow the output again."""
+        scene.machine(WheelRig).jacket.stuck_element = None
+
+    def renew(self, scene: Scene, now: float) -> None:
+        """Stick, or follow the output, as at ``now`` s."""
+        closed = (now - self._since_s) % STICKS_EVERY_S < self._closed_s
+        scene.machine(WheelRig).jacket.stuck_element = 100.0 if closed else None
 
 
 @switched
