@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
@@ -10,11 +11,15 @@ from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown
 from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
-from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Move, Power, Sequence
 
 STILL_WARM_K: Final = 5.0
 """Greatest rise of a stopped hub's reading over that while turning without a warning, K [A]."""
+PROOF_S: Final = 20.0
+"""Time for which the heater's contactor is closed without output, s [A]: "heater stuck" takes 16 s, a relay that sticks
+may do so every eight."""
+NO_HEAT_C: Final = -40.0
+"""Demand of a surface temperature at which the jacket gets its least setpoint, degC: colder than any room."""
 
 
 class Standing(Move):
@@ -50,17 +55,50 @@ class Free(Move):
         return fresh and not loaded(shown, ctx.rig)
 
 
+class HeaterProof:
+    """Close the heater's contactor with no output, while the wheel turns slowly and unloaded.
+
+    A relay that has welded, or sticks, then heats the hub, and "heater stuck" trips; behind the open contactor it would
+    show only after the contactor also welds. Afterwards "contactor welded" trips unless the contactor opens again.
+    """
+
+    def __init__(self, creep_m_s: float) -> None:
+        """``creep_m_s``: speed of both lines."""
+        self.moves = Sequence(Power(True), Lift(), Turn(creep_m_s, creep_m_s))
+        self.turning = False
+        self.closed_s = inf
+        """Time since which the contactor has been closed."""
+
+    def resume(self, ctx: Context) -> None:
+        """Prove it again."""
+        self.moves.resume(ctx)
+        self.closed_s = inf
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the contactor has been closed for PROOF_S."""
+        if not self.turning:
+            self.turning = self.moves.step(ctx)
+            return False
+        ctx.progress.phase = "heater off before a person comes near"
+        ctx.demand.surface_c, ctx.demand.freeze_heat = NO_HEAT_C, False
+        self.closed_s = min(self.closed_s, ctx.now) if ctx.readings.contactor_closed else inf
+        if ctx.now - self.closed_s < PROOF_S:
+            return False
+        ctx.demand.surface_c = NAN
+        return True
+
+
 class AskAtRest:
     """Ask a question about the wheel once it is cool enough to touch, lifted and standing, with heat and drives off.
 
     A hot wheel keeps turning slowly, unloaded, until its hub may be touched: a standing wheel would bake in one spot.
+    After heat the heater's relay and contactor are proved before the wheel stands.
     """
 
     def __init__(self, text: str) -> None:
         """Store the question's text for the person."""
         self.text = text
-        self.cool: CoolDown | None = None
-        self.moves: Activity[Context] = Sequence()
+        self.moves: list[CoolDown | HeaterProof | Sequence] = []
         self.ask: Ask | None = None
         self.answered = False
         self.free = Sequence(Free())
@@ -68,12 +106,12 @@ class AskAtRest:
     def resume(self, ctx: Context) -> None:
         """Resume cooling, or stopping."""
         self.free.resume(ctx)
-        if isinstance(self.moves, CoolDown | Sequence):
-            self.moves.resume(ctx)
+        for move in self.moves:
+            move.resume(ctx)
 
     def step(self, ctx: Context) -> bool:
         """Done when it is answered, the person has gone and the wheel is free."""
-        ctx.demand.surface_c = NAN
+        ctx.demand.surface_c = NAN  # HeaterProof alone demands another
         if self.ask is None:
             if not self._at_rest(ctx):
                 return False
@@ -82,16 +120,16 @@ class AskAtRest:
         return self.answered and self.free.step(ctx)
 
     def _at_rest(self, ctx: Context) -> bool:
-        if self.cool is None:
-            self.cool = CoolDown(TOUCH, ctx.rig.interlocks.cooldown_speed_m_s)
-            touchable = ctx.readings.hub_c < TOUCH.hub_below_c
-            self.moves = _stand() if touchable else self.cool
-        if not self.moves.step(ctx):
-            return False
-        if self.moves is not self.cool:
-            return True
-        self.moves = _stand()
-        return False
+        if not self.moves:
+            creep_m_s = ctx.rig.interlocks.cooldown_speed_m_s
+            if not ctx.readings.hub_c < TOUCH.hub_below_c:
+                self.moves.append(CoolDown(TOUCH, creep_m_s))
+            if ctx.heat.put_j > 0.0:
+                self.moves.append(HeaterProof(creep_m_s))
+            self.moves.append(_stand())
+        if self.moves[0].step(ctx):
+            self.moves.pop(0)
+        return not self.moves
 
     def _question(self, ctx: Context) -> str:
         hub_c = ctx.readings.hub_c

@@ -7,11 +7,11 @@ from math import isnan
 import pytest
 
 from tester.kinds.wheel_on_belt.image.process_image import Press
-from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
+from tester.kinds.wheel_on_belt.procedures.operator_access import NO_HEAT_C, PROOF_S, AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.machine.activity import MoveFailedError
 from tester.machine.prompts import Prompt
-from tests.tester.kinds.wheel_on_belt.bench import Bench, Simulation, make_bench
+from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, make_bench
 
 
 @pytest.fixture
@@ -53,6 +53,42 @@ def test_a_wheel_that_has_cooled_is_asked_about(bench: Bench) -> None:
     bench.hold(ask, 5.0)
     bench.surface_c = 44.0
     assert asked(bench, ask).text == "check wear"
+
+
+def test_after_heat_the_heater_is_proved_off_with_the_wheel_turning(bench: Bench) -> None:
+    bench.ctx.heat.put_j = 1.0
+    ask = AskAtRest("check wear")
+    bench.until(ask, lambda: bench.ctx.demand.surface_c == NO_HEAT_C)
+    bench.hold(ask, 1.0)
+    bench.ctx.readings.contactor_closed = True
+    bench.hold(ask, PROOF_S - 0.1)
+    demand = bench.ctx.demand
+    assert demand.wheel_speed_m_s == bench.ctx.rig.interlocks.cooldown_speed_m_s and demand.press is Press.LIFT
+    bench.hold(ask, 0.5)
+    bench.ctx.readings.contactor_closed = False
+    assert asked(bench, ask).text == "check wear" and isnan(bench.ctx.demand.surface_c)
+
+
+def test_a_contactor_that_drops_out_begins_the_proof_anew(bench: Bench) -> None:
+    bench.ctx.heat.put_j = 1.0
+    ask = AskAtRest("check wear")
+    bench.ctx.readings.contactor_closed = True
+    bench.until(ask, lambda: bench.ctx.demand.surface_c == NO_HEAT_C)
+    bench.hold(ask, PROOF_S - 1.0)
+    bench.ctx.readings.contactor_closed = False
+    bench.hold(ask, 2.0)
+    assert bench.ctx.prompts.waiting is None
+
+
+def test_a_relay_that_welds_when_the_heat_ends_trips_before_a_person_is_asked() -> None:
+    two = SHORT.replace("25 degC", "28 degC").replace('  - compound: "1#"', '  - compound: "1#"\n  - compound: "2#"')
+    simulation = Simulation(two)
+    simulation.until(lambda s: s.ctx.readings.contactor_closed)
+    simulation.until(lambda s: s.ctx.progress.title.startswith("install") and not s.ctx.readings.contactor_closed)
+    simulation.world.jacket.stuck_element = 100.0
+    simulation.until(lambda s: s.run.engine.control.state.trip is not None or len(s.ctx.prompts.asked) > 1)
+    trip = simulation.run.engine.control.state.trip
+    assert trip is not None and trip.name == "heater stuck" and len(simulation.ctx.prompts.asked) == 1
 
 
 def test_a_hub_that_does_not_cool_is_told_with_the_question(bench: Bench) -> None:
