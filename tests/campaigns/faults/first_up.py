@@ -22,6 +22,8 @@ UNWITNESSED = ("interlocks.force_step=1000 N", "interlocks.press_torque_margin=1
 """The witnesses of the force are sooner than the rows that look at the force alone."""
 UNGRIPPED = ("interlocks.belt_pull=100 N m", "interlocks.belt_torque=100 N m")
 """The belt drive's torque denies a direction sooner than friction and power do."""
+UNHIDDEN = ("interlocks.hidden_model=100 K",)
+"""While the hub heats, "hub hotter than shown" is sooner than the row that looks at the surface alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,7 @@ FIRST: tuple[First, ...] = (
     First("belt caught", ("t=0 s: belt slips on its roller 10 %",)),
     First("belt torque", ("t=0 s: belt slips on its roller 3 %",), ("short", "roll")),
     First("contact lost", ("t=0 s: press runs away -5 mm/s",)),
-    First("surface hot", ("t=0 s: thermometer drift 0.4 K/s",), WARM, 60.0, ("limits.surface=42 degC",)),
+    First("surface hot", ("t=0 s: thermometer drift 0.4 K/s",), WARM, 60.0, ("limits.surface=42 degC", *UNHIDDEN)),
     First("jacket hot", ("t=0 s: jacket output stuck on",), WARM, 120.0,
           ("limits.jacket=75 degC", "loops.heat.hub_max=75 degC", "interlocks.runaway=100 K")),
     First("jacket runaway", ("t=0 s: jacket output stuck on",), WARM, 120.0),
@@ -81,9 +83,12 @@ FIRST: tuple[First, ...] = (
           ("interlocks.frozen_hub_share=0.01",)),
     First("surface sensor jump", ("t=0 s: thermometer jumps",)),
     First("thermometer frozen", ("t=0 s: thermometer frozen",), WARM, 80.0),
-    First("surface off model", ("t=0 s: thermometer drift",), WARM, 120.0),
-    First("surface off model", ("t=0 s: thermometer reads low 50 %",), HEAT, 400.0),
-    First("surface off model", ("t=0 s: hub sensor reads low",), HEAT, 300.0),
+    First("surface off model", ("t=0 s: thermometer drift",), WARM, 120.0, UNHIDDEN),
+    First("surface off model", ("t=0 s: thermometer reads low 50 %",), HEAT, 400.0, UNHIDDEN),
+    First("hub hotter than shown", ("t=0 s: hub sensor drift -0.03 K/s",), WARM, 300.0),
+    First("hub hotter than shown", ("t=0 s: common drift of hub sensor and thermometer -0.1 K/s",), HEAT, 120.0),
+    First("heat not given", ("t=0 s: hub sensor drift 0.15 K/s",), WARM, 120.0,
+          ("interlocks.stuck_rate=1 K/s", "interlocks.runaway=15 K")),
     First("heat not shown", ("t=0 s: hub sensor delay 30 s",), HEAT, 60.0),
     First("thermometer silent", ("t=0 s: thermometer silent",)),
     First("surface not valid", ("t=0 s: thermometer open",)),

@@ -20,13 +20,10 @@ from tests.campaigns.faults.mutants import ROOT
 from tests.campaigns.faults.parametric import ASSEMBLY, PARAMETRIC
 
 ALLOWED = {
-    "hub sensor gain": (85.0, 100.0),
-    "hub sensor offset": (-19.0, 0.0),
-    "hub sensor partly detached": (85.0, 100.0),
-    "common supply of hub sensor and thermometer": (85.0, 100.0),
+    "common supply of hub sensor and thermometer": (85.0, 88.0),
     "load cell gain": (50.0, 150.0),
 }
-"""What the written table may hold, and how far: a hub up to 15 % low, of 127 K above ambient; the gain of the cell."""
+"""What the written table may hold, and how far: both temperatures 12 to 15 % low; the gain of the cell."""
 
 
 def test_there_is_a_corner_for_every_compound_stiffness_and_heat() -> None:

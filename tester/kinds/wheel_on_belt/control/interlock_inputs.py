@@ -20,6 +20,10 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 
 _INF: Final = inf
 _LOAD: Final = Press.LOAD  # bound once: a look-up on the enum class costs several times as much (CPython 3.11)
+ALIKE_K: Final = 1.5
+"""Hub and surface of a rig at the air's temperature differ by less, K [A]: the bias of the thermometer and noise."""
+AIR_OFF_K: Final = (3.0, 20.0)
+"""Air this far off the file's is believed, K [A]: less changes little, more is a sensor that is wrong."""
 
 
 @dataclass(slots=True)
@@ -29,6 +33,9 @@ class InterlockInputs(Inputs):
     state: WheelState = field(kw_only=True)
     rig: RigConfig = field(kw_only=True)
     observer: ThermalObserver = field(init=False)
+    warmer_k: float = 0.0
+    """How much warmer the air is than the file states, K; 0 where it is colder, or not known."""
+    _air_unknown: bool = True
     heat_known: str = ""
     """Facts about the heat balance from earlier runs, in words."""
 
@@ -92,6 +99,8 @@ class InterlockInputs(Inputs):
                 observer.rub(power, dt)
         else:
             self.friction_n = self.friction_w = 0.0
+        if self._air_unknown and r.surface_valid and r.jacket_valid:
+            self._look_at_air(r)
         if r.now_s >= observer.due_s:
             hub_c = r.hub_c if r.jacket_valid else self.jacket.hub_c
             observer.step(r.now_s, hub_c, wheel_m_s, r.surface_c)
@@ -101,6 +110,19 @@ class InterlockInputs(Inputs):
         self.model_c = model_c = observer.surface_c
         if r.surface_at_s > self.surface.stamp_s:
             self.surface.update(r, model_c)
+
+    def _look_at_air(self, r: Readings) -> None:
+        """Take the air's temperature from a rig that has it everywhere, where its file states a clearly different one.
+
+        Otherwise air that is 15 K off would look like a thermometer that is 6 K off.
+        """
+        self._air_unknown = False
+        off_k = r.hub_c - self.rig.ambient_c
+        even = -ALIKE_K <= r.surface_c - r.hub_c <= ALIKE_K
+        if even and AIR_OFF_K[0] < abs(off_k) <= AIR_OFF_K[1]:
+            self.observer.air(r.hub_c)
+            self.heat.ambient_c = r.hub_c
+            self.warmer_k = max(0.0, off_k)
 
     def _follow_speeds(self, demand: Demand, r: Readings, dt: float) -> None:
         """Update the speed trackers while the drives are in operation and receive commands.
@@ -129,6 +151,8 @@ class InterlockInputs(Inputs):
         """Take over the history of the rig's heatings, before the first scan."""
         widest, beyond = self.parameters[hub.HEAT_SHARE], self.parameters[hub.HEAT_SHARE_KNOWN]
         self.heat.share = known.share(widest, beyond)
+        if known.count:
+            self.heat.ratio, self.heat.spread = known.ratio, beyond
         self.heat_known = known.words(widest, beyond)
 
     def _forget_readings(self, now: float) -> None:

@@ -157,6 +157,23 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
     return resistance * lifted, resistance * (lifted + observer.belt_conductance)
 
 
+AMPLE_C: Final = 115.0
+"""A hub setpoint that harms nothing even where the hub is hotter than shown by 30 % of its excess over air, degC."""
+HUB_HEADROOM_K: Final = 3.5
+"""Hub setpoint beyond the steady one, K [A]: for air some kelvin colder, and to reach the end of a heating."""
+
+
+def hub_needed_c(rig: RigConfig, surface_c: float) -> float:
+    """Return the highest hub setpoint that a condition at this surface temperature (degC) needs, degC.
+
+    It is the steady one in rolling contact, where the loss is greatest, and HUB_HEADROOM_K; at least AMPLE_C. With a
+    higher setpoint a wheel would heat sooner, and a hub hotter than its sensor shows would come to harm.
+    """
+    rolling_c = surface_c - rig.loops.heat.rolling_offset_k
+    steady_c = rolling_c + max(0.0, rolling_c - rig.ambient_c) * loss_ratios(rig)[1]
+    return max(AMPLE_C, steady_c + HUB_HEADROOM_K)
+
+
 @dataclass(slots=True)
 class HeatLoop:
     """State of the outer heat loop: surface error to hub setpoint."""

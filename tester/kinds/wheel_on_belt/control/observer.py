@@ -62,6 +62,10 @@ class ThermalObserver:
         self.cells_c: list[float] = []
         self.surface_c = nan
 
+    def air(self, ambient_c: float) -> None:
+        """Take another temperature of the air, degC, before the first step; the belt has it."""
+        self._ambient_c = self.belt_c = ambient_c
+
     def new_wheel(self) -> None:
         """Restart with a wheel at ambient temperature, new from the shelf. The hub keeps its temperature."""
         self.cells_c = [self._ambient_c] * CELLS

@@ -116,7 +116,8 @@ class WheelControl(WheelStops):
             target = min(demand.surface_c, self.bounds.surface_c)
             ratio = self.loss_ratios[1 if state.load.in_contact else 0]
             hub_c = state.heat.update(now, target, readings.surface_c, self._ambient_c, ratio, self._heat_loop)
-            out.hub_c = min(hub_c, self.bounds.hub_c)
+            # In warmer air the same surface needs a cooler hub.
+            out.hub_c = min(hub_c, self.bounds.hub_c - self.view.warmer_k * self.loss_ratios[1])
         setpoint_c = out.hub_c if out.heat else least_c
         ceiling = state.hub_ceiling
         if not ceiling or ceiling[-1][1] != setpoint_c or now - ceiling[-1][0] >= CEILING_STEP_S:

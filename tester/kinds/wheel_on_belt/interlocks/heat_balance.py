@@ -18,6 +18,10 @@ SMOOTHED_S: Final = 10.0
 """Smoothing time of powers, s [A]: 0.05 K of noise on a hub of 420 J/K then makes 2 W."""
 STILL_K: Final = 0.15
 """A reading that differs by less has not moved, K [A]: one count of 0.1 K, and the error of its float."""
+FADES_S: Final = 900.0
+"""Time constant with which ``lack_j`` forgets, s [A]: a heating up takes about ten minutes."""
+LEAST_LACK_J: Final = 2e3
+"""Least allowance that ``lack_j`` is compared with, J: a sensor late by 5 s hides 1 kJ at 200 W."""
 LONGEST_S: Final = 5.0
 """Longest time between two updates, s: after a longer gap the comparison begins anew."""
 
@@ -38,7 +42,9 @@ class HeatBalance:
     leak_w: float
     """Allowed further loss, W."""
     unseen_k: float = 0.0
-    """Heat not shown, in K of hub."""
+    """Heat not shown, in K of hub ..."""
+    ungiven_k: float = 0.0
+    """... and heat shown that the heater's output does not explain."""
     put_w: float = 0.0
     """Smoothed power of the heater ..."""
     shown_w: float = 0.0
@@ -47,6 +53,14 @@ class HeatBalance:
     """Heat of the heater since the comparison began ..."""
     shown_j: float = 0.0
     """... and the part that the temperatures explain."""
+    ratio: float = 1.0
+    """Ratio of heat put in to heat shown that a rig's history expects ..."""
+    spread: float = 0.3
+    """... and the error of the parameters beyond it, a share."""
+    lack_j: float = 0.0
+    """Heat put in beyond the ratio's, less what is older than some FADES_S ..."""
+    may_lack_j: float = 0.0
+    """... and the part that ``spread`` and ``leak_w`` allow."""
     still_k: float = 0.0
     """Heat while the reading does not move, beyond the least output and the losses in that time, in K of hub.
 
@@ -69,8 +83,8 @@ class HeatBalance:
 
     def forget(self) -> None:
         """Restart: a person was at the wheel and its hub, or another wheel is mounted."""
-        self.unseen_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
-        self.still_k = self._lost_w = 0.0
+        self.unseen_k = self.ungiven_k = self.put_w = self.shown_w = self._stored_w = self.put_j = self.shown_j = 0.0
+        self.still_k = self._lost_w = self.lack_j = self.may_lack_j = 0.0
         self._smoothing = False
         self._still_c = nan  # so that the rest also restarts
         self._at_s = self._hub_c = nan
@@ -98,9 +112,21 @@ class HeatBalance:
         self._follow_still(hub_c, dt)
         self.put_j += put_w * dt
         self.shown_j += shown_w * dt
+        fades = 1.0 - dt / FADES_S
+        self.lack_j = self.lack_j * fades + (put_w - self.ratio * shown_w) * dt
+        self.may_lack_j = self.may_lack_j * fades + (self.spread * put_w + self.leak_w) * dt
         moved_w = abs(self._stored_w) + abs(rubber_w) + abs(shaft_w)
-        unseen_k = self.unseen_k + (put_w - shown_w - self.share * moved_w - self.leak_w) * dt / self.capacity_j_k
+        astray_w, per_w = self.share * moved_w + self.leak_w, dt / self.capacity_j_k
+        unseen_k = self.unseen_k + (put_w - shown_w - astray_w) * per_w
+        ungiven_k = self.ungiven_k + (shown_w - put_w - astray_w) * per_w
         self.unseen_k = 0.0 if unseen_k < 0.0 else unseen_k
+        self.ungiven_k = 0.0 if ungiven_k < 0.0 else ungiven_k
+
+    @property
+    def lack(self) -> float:
+        """Heat that is missing from what the temperatures show, as a multiple of its allowance; 0 where none is."""
+        lack_j, may_j = self.lack_j, self.may_lack_j
+        return 0.0 if lack_j < 0.0 else lack_j / (may_j if may_j > LEAST_LACK_J else LEAST_LACK_J)
 
     def _follow_still(self, hub_c: float, dt: float) -> None:
         """Add up the heat that a hub takes while its reading does not move."""

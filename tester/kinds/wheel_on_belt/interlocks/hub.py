@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, sqrt
 from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
@@ -21,12 +21,12 @@ def _hub_known(v: Inputs) -> bool:
 
 JACKET_MARGIN_K: Final = Parameter(
     "jacket_margin_k", "K", "3 K", "the hub may overshoot limits.jacket by this; 155 degC is harm [A]", NOT_NEGATIVE,
-    hardest="4 K", because="150 degC and 4 K leave 1 K to harm, which 200 W add to a hub of 420 J/K in two seconds",
+    hardest="4 K", because="140 degC and 4 K leave 11 K to harm for what a sensor that drifts hides",
 )  # fmt: skip
 JACKET_DELAY_S: Final = Parameter(
     "jacket_delay_s", "s", "2 s", "... for this long", NOT_NEGATIVE,
     hardest="2 s",
-    because="200 W heat a hub of 420 J/K by 1 K in two seconds; above limits.jacket and its margin 2 K are left",
+    because="200 W heat a hub of 420 J/K by 1 K in two seconds",
 )  # fmt: skip
 
 JACKET_HOT: Final[Row] = Interlock(
@@ -193,8 +193,8 @@ HEAT_LEAK_W: Final = Parameter(
     hardest="10 W", because="85 degC take some 25 W: a common supply 30 % low puts in 10 W more",
 )  # fmt: skip
 UNSEEN_HEAT_K: Final = Parameter(
-    "unseen_heat_k", "K", "5 K",
-    "... adds up to this much of hub: 10 s of full output; a sensor may be 5 s late [A]",
+    "unseen_heat_k", "K", "4 K",
+    "... adds up to this much of hub: 8 s of full output; a sensor may be 5 s late [A]",
     hardest="8 K", because="a hub sensor 20 s late hides 9 K at full output",
 )  # fmt: skip
 SHOWN_SHARE: Final = 0.5
@@ -226,10 +226,55 @@ HEAT_NOT_SHOWN: Final[Row] = Interlock(
     reaction=CONTROLLED,
 )
 
+UNGIVEN_HEAT_K: Final = Parameter(
+    "ungiven_heat_k", "K", "5 K", "heat that shows beyond the output, heat_leak and the shares, in K of hub [A]",
+    hardest="8 K", because="as unseen_heat: a relay that sticks beside a sensor that drifts heats by so much unseen",
+)  # fmt: skip
+
+HEAT_NOT_GIVEN: Final[Row] = Interlock(
+    name="heat not given",
+    cause="more heat shows than the heater's output puts in: relay sticks, or hub sensor rises by itself",
+    watch=at_most("heat shown beyond output, heat_leak and shares > {} of hub", lambda v: v.heat.ungiven_k,
+                  UNGIVEN_HEAT_K),
+    applies=lambda v: not v.heat.ungiven_k <= 0.0 and _hub_known(v),
+    delay=RUNAWAY_DELAY_S,
+    reaction=CONTROLLED,
+)  # fmt: skip
+
+HIDDEN_MODEL_K: Final = Parameter(
+    "hidden_model_k", "K", "6 K", "surface off the thermal model, while the hub heats ...",
+    hardest="8 K", because="as model: with 8 K a common drift of both sensors hides 20 K of hub",
+)  # fmt: skip
+HIDDEN_DELAY_S: Final = Parameter(
+    "hidden_delay_s", "s", "5 s", "... or less, where heat is missing as well, for this long [A]", NOT_NEGATIVE,
+    hardest="30 s", because="sensors that drift by 10 K/min hide 5 K more in that time",
+)  # fmt: skip
+
+
+def _hidden(v: Inputs) -> float:
+    """Return how much speaks for a hub hotter than shown: surface off the model and heat missing, each as a multiple of
+    its allowance, as independent errors add up. Heat of which less than half shows has rows of its own."""
+    heat = v.heat
+    off = (v.readings.surface_c - v.model_c) / v.parameters[HIDDEN_MODEL_K]
+    lack = heat.lack if heat.shown_w >= SHOWN_SHARE * heat.put_w else 0.0
+    return sqrt(off * off + lack * lack)
+
+
+HUB_HOTTER: Final[Row] = Interlock(
+    name="hub hotter than shown",
+    cause="hub sensor, alone or together with the thermometer, drifts or reads low; or observer wrong",
+    watch=at_most("root of squares of surface off model / hidden_model and heat missing / its shares > 1", _hidden, 1.0,
+                  "1"),
+    parameters=(HIDDEN_MODEL_K, HEAT_SHARE, HEAT_SHARE_KNOWN, HEAT_LEAK_W),
+    applies=lambda v: v.setpoints.heat and v.turning and v.readings.surface_valid and _hub_known(v),
+    delay=HIDDEN_DELAY_S,
+    reaction=CONTROLLED,
+)  # fmt: skip
+
 FROZEN_HUB_K: Final = Parameter(
     "frozen_hub_k", "K", "0.5 K", "heat beyond that of before must have moved the reading by now [A] ...",
     hardest="1 K",
-    because="a hub at limits.jacket is 5 K from harm, and went on for 3 K while the output had begun to rise",
+    because="a hub goes on for 3 K while the output has begun to rise",
 )  # fmt: skip
 FROZEN_HUB_SHARE: Final = Parameter(
     "frozen_hub_share", "1", "0.3", "... or this share of what limits.jacket is away, where that is more [A]",
@@ -261,7 +306,7 @@ HUB_FROZEN: Final[Row] = Interlock(
 STALE_JACKET_S: Final = Parameter(
     "stale_jacket_s", "s", "1 s", "age of the hub temperature",
     hardest="3 s",
-    because="full output heats the hub by 1.4 K in that time, and 2 K are left above limits.jacket and its margin",
+    because="full output heats the hub by 1.4 K in that time",
 )  # fmt: skip
 
 
@@ -292,5 +337,5 @@ HUB_NOT_VALID: Final[Row] = Interlock(
 
 ROWS: Final[tuple[Row, ...]] = (
     JACKET_HOT, JACKET_RUNAWAY, HEATER_STUCK, HEATER_LINE_OPEN, HEATING_AT_STANDSTILL, HUB_JUMP, HUB_FROZEN,
-    HEAT_NOT_SHOWN, JACKET_SILENT, HUB_NOT_VALID,
+    HEAT_NOT_SHOWN, HUB_HOTTER, HEAT_NOT_GIVEN, JACKET_SILENT, HUB_NOT_VALID,
 )  # fmt: skip

@@ -135,7 +135,7 @@ QUICK_STOP_FAILED: Final = quick_stop_failed(
 HEAT_OFF_S: Final = Parameter(
     "heat_off_s", "s", "1 s", "after a stop: no heat by then, or the contactor is open [A]",
     hardest="2 s",
-    because="full output heats the hub by 1 K in 2 s, and 2 K are left above limits.jacket and its margin",
+    because="full output heats the hub by 1 K in 2 s",
 )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from sim.physics.slip import cornering_factor, slip_velocity
 from tester.base.axes import Axis
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import Quantity, UnitError, show, shown
+from tester.kinds.wheel_on_belt.control.loops import hub_needed_c
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.recipe.references import AT
 from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD
@@ -249,8 +250,8 @@ class _Limits:
             elif entry.value + band > surface_c - OVERHEAT_K:
                 nearer = f"leaves less than {show(OVERHEAT_K, 'K')}, by which a burst overshoots, to what rubber may be"
                 yield self._beyond(entry, f"{reached} {nearer}", "limits.surface", surface_c, "degC")
-            if entry.value > jacket_c:
-                message = f"{reached} is hotter than the jacket may get"
+            elif (hub_c := hub_needed_c(self.rig, entry.value)) > jacket_c:
+                message = f"{reached} needs a hub of {show(round(hub_c, 1), 'degC')}, hotter than the jacket may get"
                 yield self._beyond(entry, message, "limits.jacket", jacket_c, "degC")
             if entry.value + band < self.ambient_c:
                 source = f"({show(self.ambient_c, 'degC')}: {self.ambient_from})"

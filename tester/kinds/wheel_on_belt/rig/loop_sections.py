@@ -9,7 +9,7 @@ from tester.base.config_reader import Range
 from tester.inputs.rig.key_classes import HIGHER, LOWER, Bounded, Free, Held
 
 HUB: Final = Bounded(
-    LOWER, "150 degC", "3 K of margin and 2 K of rise after the heat is off make 155 degC, which harms"
+    LOWER, "140 degC", "a hub sensor that drifts hides up to 15 K; harm begins at 155 degC"
 )
 _POSITIVE: Final = Range(gt=0.0)
 _NOT_NEGATIVE: Final = Range(ge=0.0)

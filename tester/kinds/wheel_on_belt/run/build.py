@@ -10,6 +10,7 @@ from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.control.loops import hub_needed_c
 from tester.kinds.wheel_on_belt.control.permissives import Bounds, rig_bounds
 from tester.kinds.wheel_on_belt.control.step import WheelControl
 from tester.kinds.wheel_on_belt.image.axes import held_by, straight
@@ -79,7 +80,8 @@ def plan_bounds(plan: Plan, rig: RigConfig) -> Bounds:
             if not conditions:
                 load, wheel = max(load, DEFAULT_LOAD_N), max(wheel, DEFAULT_SPEED_M_S)
     # Matched speeds: without slip the belt runs as fast as the wheel.
-    return Bounds(load, wheel, max(belt, wheel), surface, rig_bounds(rig).hub_c, positions)
+    hub = min(rig_bounds(rig).hub_c, hub_needed_c(rig, surface))
+    return Bounds(load, wheel, max(belt, wheel), surface, hub, positions)
 
 
 def build_run(

@@ -34,7 +34,7 @@ def file_problems(path: Path, text: str) -> list[str]:
 def test_packaged_rig_has_the_hard_limits_of_the_interface(rig: RigConfig) -> None:
     limits = rig.limits
     assert (limits.load_n, limits.wheel_speed_m_s, limits.belt_speed_m_s, limits.slip_power_w) == (440, 1.1, 1.3, 350)
-    assert (limits.jacket_c, limits.surface_c, limits.sideslip_deg, limits.camber_deg) == (150, 95, 30, 10)
+    assert (limits.jacket_c, limits.surface_c, limits.sideslip_deg, limits.camber_deg) == (138, 95, 30, 10)
 
 
 def test_packaged_rig_has_nodes_1_to_5_and_the_pc_at_127(rig: RigConfig) -> None:
@@ -154,8 +154,8 @@ def test_every_bad_override_is_told() -> None:
         ("devices.jacket.profile=eurotherm", "no device profile 'eurotherm'"),
         ("devices.jacket.profile=calex_pyrominibus", "kind ir_thermometer (expected jacket)"),
         ("lines.heat.baud=0", "baud rate above 0"),
-        ("loops.heat.hub_max=151 degC", "above limits.jacket"),
-        ("loops.heat.hub_min=150 degC", "not below hub_max"),
+        ("loops.heat.hub_max=141 degC", "above limits.jacket"),
+        ("loops.heat.hub_min=140 degC", "not below hub_max"),
         ("loops.load.lift_speed=70 mm/s", "above axes.press.max_speed"),
         ("loops.load.acceleration=1.1 m/s2", "above what axes.press can follow"),
         ("lines.heat.port=/dev/ttyUSB0", 'a simulated rig has "sim" here'),

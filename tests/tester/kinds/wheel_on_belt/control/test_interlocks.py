@@ -91,6 +91,22 @@ def _hidden_heat(bench: Bench) -> None:
     heat.unseen_k, heat.put_w = 5.2, heat.shown_w
 
 
+def _lacking(off_k: float) -> Break:
+    """Let heat be missing by nine tenths of its allowance, and the model be this far off the surface."""
+
+    def apply(bench: Bench) -> None:
+        heat = bench.control.view.heat
+        heat.lack_j, heat.may_lack_j, heat.shown_w = 90e3, 100e3, heat.put_w
+        _model(off_k)(bench)
+
+    return apply
+
+
+def _ungiven_heat(bench: Bench) -> None:
+    """More heat shows than the heater gives."""
+    bench.control.view.heat.ungiven_k = 9.0
+
+
 def _frozen_hub(bench: Bench) -> None:
     """The hub's reading stands although more is given."""
     bench.control.view.heat.still_k = 31.0
@@ -197,6 +213,8 @@ CAUSES: dict[str, list[Break]] = {
     "thermometer frozen": [_frozen_thermometer],
     "surface off model": [_model(8.5), _model(-8.5), _model(NAN)],
     "heat not shown": [_hidden_heat],
+    "hub hotter than shown": [_model(6.5), _model(-6.5), _lacking(3.5)],
+    "heat not given": [_ungiven_heat],
     "hub sensor frozen": [_frozen_hub],
     "thermometer silent": [_stale("surface_at_s"), _set(surface_silent=True, surface_valid=False)],
     "surface not valid": [_set(surface_valid=False)],
@@ -254,6 +272,7 @@ QUICKER = {
     ("surface hot", 0): "surface sensor jump", ("surface hot", 1): "surface sensor jump",
     ("jacket runaway", 1): "jacket hot", ("heating at standstill", 0): "drive standing under load",
     ("heating at standstill", 1): "drive standing under load", ("surface off model", 2): "thermometer frozen",
+    ("surface off model", 0): "hub hotter than shown", ("surface off model", 1): "hub hotter than shown",
 }  # fmt: skip
 """A cause may raise several levels: for these the row that trips first is another."""
 

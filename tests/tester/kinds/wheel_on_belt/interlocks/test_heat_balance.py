@@ -146,6 +146,33 @@ def test_what_a_person_did_to_the_wheel_is_forgotten(rig: RigConfig) -> None:
     assert balance.unseen_k == 0.0
 
 
+def lack(rig: RigConfig, drift_k_s: float, ratio: float = 1.0) -> float:
+    """Hold a reading at 110 degC for 20 min that falls behind the hub by ``drift_k_s``; return what is missing."""
+    balance = balance_of(rig, 0.12)
+    balance.ratio, balance.spread = ratio, 0.12
+    lost_w = balance.shaft_w_k * (110.0 - balance.ambient_c)
+    put_w = ratio * (lost_w + balance.capacity_j_k * drift_k_s)
+    for i in range(2400):
+        balance.update(0.5 * i, 110.0, 100.0 * put_w / balance.power_w, 0.0)
+    return balance.lack
+
+
+@pytest.mark.parametrize("ratio", [0.9, 1.0, 1.1])
+def test_heat_is_missing_where_a_reading_drifts_and_not_where_the_history_explains_it(
+    rig: RigConfig, ratio: float
+) -> None:
+    assert lack(rig, 0.0, ratio) < 0.01
+    assert lack(rig, 2.0 / 60.0, ratio) > 1.0
+    assert lack(rig, -2.0 / 60.0, ratio) == 0.0
+
+
+def test_heat_that_the_output_does_not_explain_adds_up(rig: RigConfig) -> None:
+    balance = balance_of(rig, 0.3)
+    for i in range(120):
+        balance.update(0.5 * i, 60.0 + 0.1 * i, 0.0, 0.0)
+    assert balance.ungiven_k > rig.interlocks.ungiven_heat_k and balance.unseen_k == 0.0
+
+
 def stands(rig: RigConfig, hub_k: float, percent: Callable[[float], float]) -> float:
     """Hold the reading at 110 degC, ``hub_k`` to and fro, for 4 min; return the greatest heat that did not move it."""
     balance, most_k = balance_of(rig, 0.3), 0.0

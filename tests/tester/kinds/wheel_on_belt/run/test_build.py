@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from tester.kinds.wheel_on_belt.control.loops import loss_ratios
+from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
+from tester.kinds.wheel_on_belt.control.loops import WheelState, loss_ratios
+from tester.kinds.wheel_on_belt.image.process_image import Demand, Readings
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
-from tester.kinds.wheel_on_belt.run.build import build_run
+from tester.kinds.wheel_on_belt.run.build import build_run, plan_bounds
 from tester.machine.prompts import Prompts
 from tester.machine.run_parts import RunSetup
 from tester.machine.state import Mode
 from tester.run.simulated import simulated_ports
 from tester.store.recorder import NullRecorder
 from tests.tester.inputs.recipe.texts import rig
-from tests.tester.kinds.wheel_on_belt.bench import Simulation, plan_of
+from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation, plan_of
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +64,30 @@ def test_rolling_contact_costs_more_heat_than_air_alone() -> None:
 
 def test_a_belt_that_draws_more_heat_needs_a_hotter_hub() -> None:
     assert loss_ratios(rig("observer.belt_conductance=0.3"))[1] > 2.0 * loss_ratios(rig())[1]
+
+
+@pytest.mark.parametrize(
+    ("surface_c", "least_c", "most_c"), [(85.0, 134.0, 138.0), (70.0, 105.0, 115.0), (40.0, 115.0, 115.0)]
+)
+def test_the_hub_gets_no_hotter_than_the_hottest_condition_needs(
+    surface_c: float, least_c: float, most_c: float
+) -> None:
+    plan = plan_of(SHORT.replace("25 degC", f"{surface_c:g} degC"))
+    assert least_c <= plan_bounds(plan, rig()).hub_c <= most_c
+
+
+@pytest.mark.parametrize(("air_c", "believed_c"), [(10.0, 10.0), (24.0, 23.0), (38.0, 38.0), (50.0, 23.0)])
+def test_a_cold_rig_shows_the_air_around_it(air_c: float, believed_c: float) -> None:
+    view = InterlockInputs(state=WheelState(20.0), rig=rig())
+    r = Readings(hub_c=air_c, surface_c=air_c + 1.0, surface_valid=True, jacket_valid=True)
+    view.look(Demand(), r, 0.05, 0.05)
+    assert view.heat.ambient_c == believed_c and view.warmer_k == max(0.0, believed_c - 23.0)
+
+
+def test_a_hub_warmer_than_its_rubber_does_not_show_the_air() -> None:
+    view = InterlockInputs(state=WheelState(20.0), rig=rig())
+    view.look(Demand(), Readings(hub_c=35.0, surface_c=30.0, surface_valid=True, jacket_valid=True), 0.05, 0.05)
+    assert view.heat.ambient_c == 23.0
 
 
 def test_without_a_history_the_heat_balance_takes_the_file_s_share(simulation: Simulation) -> None:

@@ -1,0 +1,216 @@
+"""`python -m tests.campaigns.liars [--sample] [--jobs N]`: temperature sensors that lie, and honest heats.
+
+Twins differ from the rig file in air, heater, hub, rubber and friction, as a seed draws it. Each heats a wheel to the
+hottest temperature that `tester check` accepts. The hub's sensor drifts or has another gain, alone, with the
+thermometer, or beside a relay that is shorted or sticks: the true hub must stay below harm, except in the rows of
+``docs/hardware-magnitudes.csv``. Honest heats in air of 10 to 40 degC must not trip. Prints a line a figure, and the
+magnitudes that harm, and exits 1 where a figure misses.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache
+from random import Random
+
+from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt.interlocks.heat_balance import KnownRatio
+from tester.kinds.wheel_on_belt.rig import RigConfig
+from tests.campaigns.faults.corners import COMPOUNDS, corners
+from tests.campaigns.faults.magnitudes import written
+from tests.campaigns.faults.wheel_harm import HUB_C
+from tests.campaigns.liars.kiln import HONEST, SHORTED, STICKS, Heated, Kiln, Lie, Twin, history
+
+CASES, HEATS, SAMPLE_CASES, SAMPLE_HEATS = 400, 200, 24, 8
+AIR_C, NEAR_AIR_K = (10.0, 40.0), 5.0
+"""Air of an honest heat, and how far it is off the file's at most where a sensor lies."""
+UNLIKE = {
+    "hub_capacity": 0.05, "jacket_power": 0.05, "conductivity": 0.05, "film_rotating": 0.1, "film_sides": 0.1,
+    "hub_to_shaft": 0.2, "hub_to_rubber": 0.1,
+}  # fmt: skip
+"""Greatest difference of a twin from the rig file's ``sim.thermal``, as a share."""
+FRICTION = (0.7, 1.3)
+MOST_K_MIN, SLOW_K_MIN, MOST_PERCENT = 10.0, (0.05, 1.0), 20.0
+SLOW_SHARE = 0.4
+"""Share of the drifts that are slow."""
+HOT_S, HEAT_S, ASTRAY_K, LONGEST_S = 900.0, 1500.0, 35.0, 7200.0
+"""Time from which some drifts begin; length of a heat; error until which a drift is watched, K; the longest heat."""
+NAMES = {
+    (False, False): "hub sensor gain", (False, True): "common supply of hub sensor and thermometer",
+    (True, False): "hub sensor drift", (True, True): "common drift of hub sensor and thermometer",
+}  # fmt: skip
+"""The catalogue's phrase of (drifts, common)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """One heat to be made; ``lie`` is HONEST in an honest one."""
+
+    twin: Twin
+    lie: Lie
+    seconds: float
+
+    @property
+    def text(self) -> str:
+        """Return it in words."""
+        lie, words = self.lie, f"{self.twin.compound}, air {self.twin.air_c:.1f} degC, seed {self.twin.seed}"
+        if lie is HONEST:
+            return words
+        error = f"{lie.k_min:+.2f} K/min from {lie.at_s:.0f} s" if lie.k_min else f"{lie.percent:.1f} %"
+        relay = f", {lie.relay} from {lie.relay_s:.0f} s" if lie.relay else ""
+        return f"{words}: {NAMES[bool(lie.k_min), lie.common]} {error}{relay}"
+
+
+def value_of(lie: Lie) -> float:
+    """Return the magnitude in the catalogue's unit: K/s, or percent."""
+    return lie.k_min / 60.0 if lie.k_min else lie.percent
+
+
+def listed(lie: Lie) -> bool:
+    """Tell whether the written table of hardware lists this lie."""
+    name, value = NAMES[bool(lie.k_min), lie.common], value_of(lie)
+    return any(row.fault == name and row.least <= value <= row.most for row in written())
+
+
+@cache
+def rig() -> RigConfig:
+    """Return the rig as its file states it."""
+    return load_rig("sim")
+
+
+@cache
+def hottest_c() -> int:
+    """Return the hottest temperature that the check of a recipe accepts, degC."""
+    return max(one.temperature_c for one in corners().values())
+
+
+def twin_of(number: int) -> Twin:
+    """Return the twin of a number, in air evenly from AIR_C."""
+    rng = Random(f"liars {number}")
+    shares = {key: 1.0 + rng.uniform(-most, most) for key, most in UNLIKE.items()}
+    return Twin(COMPOUNDS[number % len(COMPOUNDS)], rng.uniform(*AIR_C), shares, rng.uniform(*FRICTION), number)
+
+
+def near(twin: Twin) -> Twin:
+    """Return the twin in air at most NEAR_AIR_K off the file's."""
+    middle_c, half_k = 0.5 * sum(AIR_C), 0.5 * (AIR_C[1] - AIR_C[0])
+    return replace(twin, air_c=rig().ambient_c + (twin.air_c - middle_c) / half_k * NEAR_AIR_K)
+
+
+def lie_of(number: int) -> Lie:
+    """Return the lie of a number: every second one drifts."""
+    rng = Random(f"lie {number}")
+    slow, drifts = rng.random() < SLOW_SHARE, number % 2 == 0
+    k_min = rng.choice((-1.0, 1.0)) * rng.uniform(*SLOW_K_MIN) if slow else rng.uniform(-MOST_K_MIN, MOST_K_MIN)
+    percent = 100.0 + rng.uniform(-MOST_PERCENT, MOST_PERCENT)
+    # A gain that changes in the heat is a jump, which "hub sensor jump" reports at once.
+    at_s = HOT_S if drifts and rng.random() < 0.5 else 0.0
+    relay = rng.choice(("", "", SHORTED, STICKS))
+    relay_s = at_s + rng.uniform(0.0, HEAT_S)
+    return Lie(percent, k_min if drifts else 0.0, at_s, rng.random() < 0.5, relay, relay_s)
+
+
+def seconds_of(lie: Lie) -> float:
+    """Return how long a lie is watched, s."""
+    astray_s = ASTRAY_K / abs(lie.k_min) * 60.0 if lie.k_min else 0.0
+    begun_s = lie.relay_s + 0.1 * HEAT_S if lie.relay else lie.at_s
+    return max(begun_s, lie.at_s + min(max(HEAT_S, astray_s), LONGEST_S))
+
+
+def orders(cases: int, heats: int) -> list[Order]:
+    """Return every heat to be made."""
+    made = [Order(near(twin_of(number)), lie, seconds_of(lie)) for number in range(cases) for lie in (lie_of(number),)]
+    return made + [Order(twin_of(number), HONEST, HEAT_S) for number in range(heats)]
+
+
+def known(twin: Twin) -> KnownRatio:
+    """Return what the rig knows of its heat from earlier heatings in the file's air."""
+    earlier = replace(twin, air_c=rig().ambient_c, seed=-1)
+    return history(rig(), Kiln(rig(), earlier, hottest_c()).heat(HONEST, HOT_S).ratio)
+
+
+def carry_out(order: Order) -> tuple[Heated, ...]:
+    """Heat on a rig with a history; an honest heat also on one without."""
+    found = [Kiln(rig(), order.twin, hottest_c(), known(order.twin)).heat(order.lie, order.seconds)]
+    if order.lie is HONEST:
+        found.append(Kiln(rig(), order.twin, hottest_c()).heat(HONEST, order.seconds))
+    return tuple(found)
+
+
+def bounds(jobs: int) -> Iterable[str]:
+    """Yield, for each lie of the sensors, the magnitudes that harm on a rig like its file, by the hub's ceiling."""
+    wanted = [(drifts, common, step) for drifts, common in NAMES for step in (1, 2)]
+    with ProcessPoolExecutor(jobs) as pool:
+        yield from pool.map(_bound, wanted)
+
+
+def _bound(wanted: tuple[bool, bool, int]) -> str:
+    drifts, common, step = wanted
+    twin = Twin(COMPOUNDS[-1], rig().ambient_c, dict.fromkeys(UNLIKE, 1.0), 1.0, 0)
+    past = known(twin) if step == 1 else None
+    if drifts:
+        tried = [Lie(k_min=-0.05 * 1.5**n, common=common) for n in range(14)]
+    else:
+        tried = [Lie(percent=100.0 - n, common=common) for n in range(1, 31)]
+    harmed = [one for one in tried if Kiln(rig(), twin, hottest_c(), past).heat(one, seconds_of(one)).hub_c > HUB_C]
+    words = f"{NAMES[drifts, common]}, {'with' if step == 1 else 'without'} a history"
+    if not harmed:
+        return f"{words}: none harms"
+    unit, values = ("K/min", [one.k_min for one in harmed]) if drifts else ("%", [one.percent for one in harmed])
+    return f"{words}: {min(values):.2f} to {max(values):.2f} {unit} harm"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Conduct the campaign; return the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m tests.campaigns.liars", description=__doc__)
+    parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_CASES} lies, {SAMPLE_HEATS} honest heats")
+    parser.add_argument("--every", action="store_true", help="print every heat")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processors to use")
+    options = parser.parse_args(arguments)
+    made = orders(*((SAMPLE_CASES, SAMPLE_HEATS) if options.sample else (CASES, HEATS)))
+    with ProcessPoolExecutor(options.jobs) as pool:
+        found = list(zip(made, pool.map(carry_out, made, chunksize=4), strict=True))
+    for order, heats in found if options.every else ():
+        for heat in heats:
+            print(f"     {line(order, heat)}")
+    if not options.sample:
+        for text in bounds(options.jobs):
+            print(f"     {text}")
+    return judged(found)
+
+
+def line(order: Order, heat: Heated) -> str:
+    """Return a heat in a line."""
+    end = f"{heat.trip} at {heat.at_s:.0f} s" if heat.trip else "no trip"
+    return f"{order.text}: hub {heat.hub_c:.1f} degC, surface {heat.surface_c:.1f} degC, {end}"
+
+
+def judged(found: Sequence[tuple[Order, tuple[Heated, ...]]]) -> int:
+    """Print the figures; return the exit status."""
+    lies = [(order, heats[0]) for order, heats in found if order.lie is not HONEST]
+    harmed = [(order, heat) for order, heat in lies if heat.hub_c > HUB_C]
+    unlisted = [one for one in harmed if not listed(one[0].lie)]
+    hottest = max((heat.hub_c for order, heat in lies if heat.hub_c <= HUB_C), default=0.0)
+    honest = [(order, heat) for order, heats in found if order.lie is HONEST for heat in heats]
+    false = [one for one in honest if one[1].trip]
+    cold = sum(heat.hot_s > HEAT_S for order, heat in honest)
+    figure(f"hub above {HUB_C:g} degC outside the table of hardware", len(unlisted), len(lies), unlisted)
+    print(f"     in the table: {len(harmed) - len(unlisted)}; hottest hub otherwise: {hottest:.1f} degC")
+    figure("honest heats that trip", len(false), len(honest), false)
+    print(f"     honest heats that do not reach {hottest_c()} degC in {HEAT_S:.0f} s: {cold}")
+    return 1 if unlisted or false else 0
+
+
+def figure(name: str, count: int, of: int, missed: Sequence[tuple[Order, Heated]]) -> None:
+    """Print one figure, and what has missed it."""
+    print(f"{'MISS' if missed else 'ok  '} {name}: {count} of {of} (asked: 0)")
+    for order, heat in missed:
+        print(f"       {line(order, heat)}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
