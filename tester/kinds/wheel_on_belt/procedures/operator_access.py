@@ -66,23 +66,25 @@ class HeaterProof:
         """``creep_m_s``: speed of both lines."""
         self.moves = Sequence(Power(True), Lift(), Turn(creep_m_s, creep_m_s))
         self.turning = False
-        self.closed_s = inf
-        """Time since which the contactor has been closed."""
+        self.closed_s = self.open_s = inf
+        """Time since which the contactor has been closed, or open although heat is demanded."""
 
     def resume(self, ctx: Context) -> None:
         """Prove it again."""
         self.moves.resume(ctx)
-        self.closed_s = inf
+        self.closed_s = self.open_s = inf
 
     def step(self, ctx: Context) -> bool:
-        """Done when the contactor has been closed for PROOF_S."""
+        """Done when the contactor has been closed for PROOF_S, or has stayed open for so long: no heat passes it."""
         if not self.turning:
             self.turning = self.moves.step(ctx)
             return False
         ctx.progress.phase = "heater off before a person comes near"
         ctx.demand.surface_c, ctx.demand.freeze_heat = NO_HEAT_C, False
-        self.closed_s = min(self.closed_s, ctx.now) if ctx.readings.contactor_closed else inf
-        if ctx.now - self.closed_s < PROOF_S:
+        closed = ctx.readings.contactor_closed
+        self.closed_s = min(self.closed_s, ctx.now) if closed else inf
+        self.open_s = inf if closed else min(self.open_s, ctx.now)
+        if ctx.now - min(self.closed_s, self.open_s) < PROOF_S:
             return False
         ctx.demand.surface_c = NAN
         return True

@@ -80,6 +80,12 @@ def test_a_contactor_that_drops_out_begins_the_proof_anew(bench: Bench) -> None:
     assert bench.ctx.prompts.waiting is None
 
 
+def test_a_contactor_that_never_closes_lets_no_heat_pass(bench: Bench) -> None:
+    bench.ctx.heat.put_j = 1.0
+    assert asked(bench, AskAtRest("check wear")).text == "check wear"
+    assert bench.now > PROOF_S
+
+
 def test_a_relay_that_welds_when_the_heat_ends_trips_before_a_person_is_asked() -> None:
     two = SHORT.replace("25 degC", "28 degC").replace('  - compound: "1#"', '  - compound: "1#"\n  - compound: "2#"')
     simulation = Simulation(two)
