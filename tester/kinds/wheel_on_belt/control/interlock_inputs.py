@@ -99,17 +99,22 @@ class InterlockInputs(Inputs):
                 observer.rub(power, dt)
         else:
             self.friction_n = self.friction_w = 0.0
-        if self._air_unknown and r.surface_valid and r.jacket_valid:
-            self._look_at_air(r)
         if r.now_s >= observer.due_s:
-            hub_c = r.hub_c if r.jacket_valid else self.jacket.hub_c
-            observer.step(r.now_s, hub_c, wheel_m_s, r.surface_c)
-            self.heat.update(r.now_s, hub_c, r.heat_percent if r.contactor_closed else 0.0, observer.given_j)
+            self._follow_heat(r)
         if r.jacket_at_s > self.jacket.stamp_s:
             self.jacket.update(r, state.setpoints.heat, state.setpoints.hub_c)
         self.model_c = model_c = observer.surface_c
         if r.surface_at_s > self.surface.stamp_s:
             self.surface.update(r, model_c)
+
+    def _follow_heat(self, r: Readings) -> None:
+        """Advance the thermal observer and the heat balance."""
+        if self._air_unknown and r.surface_valid and r.jacket_valid:
+            self._look_at_air(r)
+        observer = self.observer
+        hub_c = r.hub_c if r.jacket_valid else self.jacket.hub_c
+        observer.step(r.now_s, hub_c, r.wheel_speed_m_s, r.surface_c)
+        self.heat.update(r.now_s, hub_c, r.heat_percent if r.contactor_closed else 0.0, observer.given_j)
 
     def _look_at_air(self, r: Readings) -> None:
         """Take the air's temperature from a rig that has it everywhere, where its file states a clearly different one.
