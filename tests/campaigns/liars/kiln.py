@@ -161,7 +161,8 @@ class Kiln:
                 self.pid.reset()
                 self.output = 0.0
         element = self.output
-        if now >= lie.relay_s and (lie.relay == SHORTED or (now - lie.relay_s) % STICKS_EVERY_S < STICKS_S):
+        since_s = now - lie.relay_s if lie.relay else -1.0
+        if since_s >= 0.0 and (lie.relay == SHORTED or since_s % STICKS_EVERY_S < STICKS_S):
             element = 100.0
         self.heater_w = 0.01 * element * self.power_w if out.contactor else 0.0
         r.contactor_closed = out.contactor

@@ -159,7 +159,7 @@ def loss_ratios(rig: RigConfig) -> tuple[float, float]:
 
 AMPLE_C: Final = 115.0
 """A hub setpoint that harms nothing even where the hub is hotter than shown by 30 % of its excess over air, degC."""
-HUB_HEADROOM_K: Final = 3.5
+HUB_HEADROOM_K: Final = 2.5
 """Hub setpoint beyond the steady one, K [A]: for air some kelvin colder, and to reach the end of a heating."""
 
 

@@ -242,7 +242,7 @@ HEAT_NOT_GIVEN: Final[Row] = Interlock(
 )  # fmt: skip
 
 HIDDEN_MODEL_K: Final = Parameter(
-    "hidden_model_k", "K", "6 K", "surface off the thermal model, while the hub heats ...",
+    "hidden_model_k", "K", "5 K", "surface off the thermal model, while the hub heats ...",
     hardest="8 K", because="as model: with 8 K a common drift of both sensors hides 20 K of hub",
 )  # fmt: skip
 HIDDEN_DELAY_S: Final = Parameter(
@@ -272,9 +272,9 @@ HUB_HOTTER: Final[Row] = Interlock(
 )  # fmt: skip
 
 FROZEN_HUB_K: Final = Parameter(
-    "frozen_hub_k", "K", "0.5 K", "heat beyond that of before must have moved the reading by now [A] ...",
-    hardest="1 K",
-    because="a hub goes on for 3 K while the output has begun to rise",
+    "frozen_hub_k", "K", "3 K", "heat beyond that of before must have moved the reading by now [A] ...",
+    hardest="4 K",
+    because="a hub at limits.jacket is 15 K from harm, and rises by 3 K more while the output begins to rise",
 )  # fmt: skip
 FROZEN_HUB_SHARE: Final = Parameter(
     "frozen_hub_share", "1", "0.3", "... or this share of what limits.jacket is away, where that is more [A]",
