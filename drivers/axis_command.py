@@ -21,6 +21,7 @@ _IO_MAX: Final = 0xFFFF_FFFF
 _DISABLED: Final = Goal.DISABLED
 _ENABLED: Final = Goal.ENABLED
 _QUICK_STOP: Final = Goal.QUICK_STOP
+_FREE: Final = Goal.FREE
 _OPERATING: Final = State.OPERATION_ENABLED
 
 _STOPPED_BY_ITSELF: Final = frozenset(
@@ -214,7 +215,9 @@ class AxisCommand(CanNode):
         if not self.connected:
             self._rpdo = None
             return
-        goal = _QUICK_STOP if self.lost else self._goal
+        goal = self._goal
+        if self.lost and goal is not _FREE:
+            goal = _QUICK_STOP
         if goal is _ENABLED and (self.inhibited or not self.remote):
             goal = _DISABLED
         word = cia402.controlword(self.state, goal)

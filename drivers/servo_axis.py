@@ -38,15 +38,15 @@ class ServoAxis(AxisCommand):
     the first; the user of a reading decides how old it may be. ``changed_s`` is the arrival of the last TPDO1 with
     another ``actual``. ``actual`` and ``torque_nm`` are NaN before the first reading.
 
-    ``online``: configured, OPERATIONAL and with a heartbeat. ``lost``: the heartbeat stopped, or the drive
-    booted while in use (``rebooted``). This stays until the next connect, and until then the drive is sent a quick stop
-    (nothing, once rebooted). ``refused`` is the reason why connect or home failed. ``emergency`` is the last EMCY that
-    was neither reset by the device nor acknowledged. ``parameters`` holds the values read back from the device,
-    by (index, sub-index). Since connect ``plan`` lists the objects that the drive lacks, and the loss by that
-    (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is the
-    arrival of the last TPDO2, -inf before the first. A caller that sees no effect of the outputs sets
-    ``outputs_unanswered``: they are then sent again. ``stands``: between two SYNCs the drive reported standstill;
-    the caller clears it.
+    ``online``: configured, OPERATIONAL and with a heartbeat. ``lost``: the heartbeat stopped, or the drive booted while
+    in use (``rebooted``). This stays until the next connect, and until then the drive is sent a quick stop unless
+    ``goal`` is FREE (nothing, once rebooted). ``refused`` is the reason why connect or home failed. ``emergency`` is
+    the last EMCY that was neither reset by the device nor acknowledged. ``parameters`` holds the values read back from
+    the device, by (index, sub-index). Since connect ``plan`` lists the objects that the drive lacks, and the loss by
+    that (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is
+    the arrival of the last TPDO2, -inf before the first. A caller that sees no effect of the outputs sets
+    ``outputs_unanswered``: they are then sent again. ``stands``: between two SYNCs the drive reported standstill; the
+    caller clears it.
 
     The master calls the methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds``.
     """

@@ -418,7 +418,7 @@ def test_a_goal_set_during_the_fault_does_not_count_after_it() -> None:
 
 # --- heartbeat, boot-up, emergencies ------------------------------------------------------------------------
 
-def test_a_lost_drive_is_sent_a_quick_stop_whatever_the_goal() -> None:
+def test_a_lost_drive_is_sent_a_quick_stop_until_its_voltage_is_to_be_disabled() -> None:
     drive = enabled_wheel()
     drive.target = 8.0
     drive.check_heartbeat(now=0.149)
@@ -426,6 +426,8 @@ def test_a_lost_drive_is_sent_a_quick_stop_whatever_the_goal() -> None:
     drive.check_heartbeat(now=0.151)
     assert (drive.lost, drive.online) == (True, False)
     assert rpdo1(drive) == (0x02, 0)
+    drive.goal = Goal.FREE
+    assert rpdo1(drive) == (0x00, 0)
 
 
 def test_a_heartbeat_that_comes_back_does_not_undo_the_loss() -> None:

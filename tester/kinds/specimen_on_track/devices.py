@@ -22,6 +22,8 @@ CELL_CHANNELS: Final = ("fx",)
 """Tangential force (N)."""
 SURFACE_CHANNELS: Final = ("surface",)
 """Temperature of the pyrometer's target (degC)."""
+REPEATED_S: Final = 0.002
+"""A place that arrives this soon after another is the same frame again, s [A]: it would show a track at rest."""
 SPEED_S: Final = 0.5
 """Averaging time of the speed of a track with position feedback, s [A]: 500 increments at 1 um/s."""
 
@@ -48,6 +50,7 @@ class TrackDevices(DeviceList):
         self.metres = rig.metres
         self.by_hand_mm = nan
         self._places = rig.axes.track.feedback == "position"
+        self._repeated_s = REPEATED_S if self._places else 0.0
         self._seen: deque[tuple[float, float]] = deque()
         self._way_m = 0.0
         self._speed_m_s = self._now_m_s = self._track_mm = nan
@@ -57,7 +60,7 @@ class TrackDevices(DeviceList):
         """Process all arrived data; count the track's way from its first reading, also while connecting."""
         super().receive(now)
         track = self.track
-        if track.stamp_s > self._track_s:
+        if track.stamp_s > self._track_s + self._repeated_s:
             self._follow_track(track.stamp_s, track.actual * self.metres)
 
     def fill(self, r: TrackReadings, now: float) -> None:
