@@ -24,12 +24,18 @@ from tests.campaigns.faults.campaign import (
 )
 from tests.campaigns.faults.corners import corners
 from tests.campaigns.faults.effort import Effort
-from tests.campaigns.faults.hardware import HARDWARE_MUST_HOLD, UNEXPOSED, held_by_hardware, press_must_lift
+from tests.campaigns.faults.hardware import (
+    HARDWARE_MUST_HOLD,
+    UNEXPOSED,
+    MustHold,
+    held_by_hardware,
+    press_must_lift,
+)
 from tests.campaigns.faults.judge import JUDGED, Verdict, connecting, fault_of
-from tests.campaigns.faults.moments import rehearse
+from tests.campaigns.faults.moments import Moment, rehearse
 
 SAMPLE_CASES = 420
-TRACK_CASES = 300
+TRACK_CASES, TRACK_PAIRS = 300, 150
 SAMPLE_CPU_S, FULL_CPU_S, SHORT_LIMITS_CPU_S = 140.0, 2100.0, 60.0
 """Processor time at most, s on the machine that limits are thought on (``effort.LOOP_S``).
 
@@ -120,12 +126,19 @@ def on_track(options: argparse.Namespace) -> int:
         print("a specimen on a track has --sample, --full and --list")
         return 2
     report, effort = Report(), Effort()
-    cases = [one for one in all_cases(rehearsals(track.GRID), track.FAULTS) if track.fits(one[0].recipe, one[1][0])]
+    moments = rehearsals(track.GRID)
+    cases = [one for one in all_cases(moments, track.FAULTS) if track.fits(one[0].recipe, one[1][0])]
     report.figure("faults in the catalogue", len(track.FAULTS), ">= 40", len(track.FAULTS) >= 40)
     wanted = len(cases) if options.full else TRACK_CASES
     grid(report, conduct("track grid", cases if options.full else sample(cases, wanted), options.jobs), wanted,
          options.causes)
     first(report, options.causes, track.FIRST, track.left_out())
+    count = track.PAIRS if options.full else TRACK_PAIRS
+    tally = conduct("pairs", track.some_pairs(moments, count), options.jobs, budgets=False)
+    doubles(report, tally, options.causes, count, track.HARDWARE_MUST_HOLD)
+    if options.full:
+        some = [moment for moment in moments if not moment.step.startswith("0 ")]
+        needed(report, options.jobs, some[:: len(some) // 9], track.HARDWARE_MUST_HOLD)
     effort.look()
     print(f"     processor time: {effort.used_s:.0f} s", flush=True)
     print(f"{len(report.missed)} figures missed" if report.missed else "every figure met")
@@ -161,7 +174,7 @@ def full(report: Report, jobs: int, most: int) -> None:
     spent(report, effort, FULL_CPU_S)
     first(report, most)
     doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
-    needed(report, jobs)
+    needed(report, jobs, [m for m in rehearse("heated")[0] if m.place in DOUBLES_AT])
     held = sample(all_cases(moments, faults), SAMPLE_CASES)
     held_press(report, conduct("grid, press held without power", held, jobs, (HOLD,)), most)
     late(report, most)
@@ -277,10 +290,9 @@ def again(report: Report, most: int) -> None:
     scans(report, tally, len(second_stops.SECOND), most)
 
 
-def needed(report: Report, jobs: int) -> None:
+def needed(report: Report, jobs: int, at: Sequence[Moment], rows: tuple[MustHold, ...] = HARDWARE_MUST_HOLD) -> None:
     """Print for each row of hardware's list in how many of its cases software alone would not do."""
-    at = [m for m in rehearse("heated")[0] if m.place in DOUBLES_AT]
-    for row in HARDWARE_MUST_HOLD:
+    for row in rows:
         tally = conduct("doubles", [(moment, pair) for moment in at for pair in row.pairs], jobs, budgets=False)
         name = f"hardware must hold: {row.one} + {row.others[0]}{', ...' if len(row.others) > 1 else ''}"
         report.figure(name, f"{len(tally.unsafe)} of {len(tally.verdicts)} unsafe", ">= 1", bool(tally.unsafe))
@@ -298,10 +310,12 @@ def held_press(report: Report, tally: Tally, most: int) -> None:
     report.causes(outside, most)
 
 
-def doubles(report: Report, tally: Tally, most: int) -> None:
-    """Print the figures of the pairs."""
-    outside: list[Verdict] = [v for v in tally.unsafe if held_by_hardware(v.case.faults) is None]
-    report.figure("pairs", len(tally.verdicts), ">= 700", len(tally.verdicts) >= 700)
+def doubles(
+    report: Report, tally: Tally, most: int, asked: int = 700, rows: tuple[MustHold, ...] = HARDWARE_MUST_HOLD
+) -> None:
+    """Print the figures of the pairs; ``rows``: those that hardware must hold."""
+    outside: list[Verdict] = [v for v in tally.unsafe if held_by_hardware(v.case.faults, rows) is None]
+    report.figure("pairs", len(tally.verdicts), f">= {asked}", len(tally.verdicts) >= asked)
     held = len(tally.unsafe) - len(outside)
     report.figure("pairs: unsafe, held by hardware", held, "written list", True)
     report.figure("pairs: unsafe outside the list", len(outside), "0", not outside)

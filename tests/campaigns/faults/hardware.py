@@ -110,6 +110,8 @@ def press_must_lift(verdict: Verdict) -> bool:
     return len(faults) == 1 and verdict.only_force and any(faults[0].startswith(row[0]) for row in UNLIFTED)
 
 
-def held_by_hardware(faults: tuple[str, ...]) -> MustHold | None:
+def held_by_hardware(
+    faults: tuple[str, ...], rows: tuple[MustHold, ...] = HARDWARE_MUST_HOLD
+) -> MustHold | None:
     """Return the row that covers a pair, or None."""
-    return next((row for row in HARDWARE_MUST_HOLD if row.covers(faults)), None)
+    return next((row for row in rows if row.covers(faults)), None)

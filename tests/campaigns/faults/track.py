@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from math import isfinite
 
@@ -21,7 +21,10 @@ from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.run_parts import RunSetup
 from tester.run.simulated import simulated_ports
+from tests.campaigns.faults.campaign import pairs
 from tests.campaigns.faults.first_up import First
+from tests.campaigns.faults.hardware import MustHold
+from tests.campaigns.faults.moments import Moment
 from tests.campaigns.faults.recipes import TRACKS
 from tests.campaigns.faults.stage import Ledger, Stage
 from tests.campaigns.faults.track_harm import TrackHarmObserver, TrackTruth
@@ -241,7 +244,7 @@ FIRST: tuple[First, ...] = (
     First("force with the arm raised", ("t=0 s: load cell offset 8 N",), LIFT),
     First("chamber beyond its range", ("t=0 s: chamber runs away",), TEMPER, 200.0,
           ("limits.air_high=26.2 degC", "interlocks.range=0.5 K")),
-    First("air sensor frozen", ("t=0 s: chamber sensor frozen",), TEMPER, 200.0),
+    First("air sensor frozen", ("t=0 s: chamber sensor offset -8 K", "t=5 s: chamber sensor frozen"), TEMPER, 300.0),
     First("chamber runaway", ("t=0 s: chamber sensor offset 15 K",), SLIDE, 60.0),
     First("air silent", ("t=0 s: chamber silent",), SLIDE),
     First("air sensor broken", ("t=0 s: chamber sensor open",), SLIDE),
@@ -265,6 +268,27 @@ NEVER_FIRST: dict[str, str] = {
     "scan delayed": "a warning; shown on the wheel, whose row is the same",
 }
 """Rows without a fault that trips them first; their levels and delays are shown in tests/tester/kinds."""
+
+
+HARDWARE_MUST_HOLD: tuple[MustHold, ...] = (
+    MustHold("track overspeeds",
+             ("track drive off the bus", "track drive in local mode", "track drive fault", "CAN adapter gone",
+              "CAN bus off", "process killed"),
+             "emergency stop circuit with safe torque off", "the order to lose its power does not reach its drive"),
+    MustHold("track overspeeds", ("track drive feedback frozen", "track drive reading frozen", "track drive data lost"),
+             "end switches of the travel, in the emergency stop circuit",
+             "it moves until its voltage is disabled, half a second after a stop that its data call ended"),
+    MustHold("track overspeeds", ("scan stalled",), "end switches of the travel, in the emergency stop circuit",
+             "no program commands it meanwhile"),
+)  # fmt: skip
+"""Pairs in which harm is possible whatever the software does."""
+PAIRS = 1200
+
+
+def some_pairs(moments: Sequence[Moment], count: int) -> list[tuple[Moment, tuple[str, ...]]]:
+    """Return ``count`` pairs of faults that their moment's rig can have."""
+    drawn = pairs(moments, FAULTS, 3 * count)
+    return [one for one in drawn if all(fits(one[0].recipe, fault) for fault in one[1])][:count]
 
 
 def left_out() -> list[str]:
