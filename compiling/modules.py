@@ -75,6 +75,7 @@ HOT = (
     "tester/kinds/wheel_on_belt/procedures/operator_access.py",
     "tester/kinds/wheel_on_belt/procedures/steps.py",
     "tester/kinds/wheel_on_belt/procedures/thermal_steps.py",
+    "tester/kinds/wheel_on_belt/procedures/wear_estimate.py",
     "tester/kinds/wheel_on_belt/procedures/wheel_life.py",
     "tester/kinds/wheel_on_belt/procedures/wheel_steps.py",
     "tester/kinds/wheel_on_belt/image/process_image.py",

@@ -27,6 +27,7 @@ class Flag:
 NOT_SHOWN: Final = "drift not shown"
 THERMOMETER: Final = "thermometer off"
 CHANGED: Final = "friction changed"
+SLIP_UNSURE: Final = "slip not sure"
 STICK_SLIP: Final = "stick-slip"
 STICK_SLIP_UNKNOWN: Final = "stick-slip not known"
 SHORT: Final = "short"
@@ -64,6 +65,12 @@ FLAGS: Final[Mapping[str, Flag]] = {
             "After the soak the surface's thermometer and the hub's sensor part by more than both are believed to.",
             "compare them at a soak (tester commission), clean the thermometer's window, look at its emissivity and at"
             " observer in the rig file",
+            doubt=True,
+        ),
+        Flag(
+            SLIP_UNSURE,
+            "The wheel's diameter leaves the slip velocity uncertain by more than 3 mm/s and 2 %.",
+            "check the diameter (wear_check: each_condition), then measure the condition again",
             doubt=True,
         ),
         Flag(

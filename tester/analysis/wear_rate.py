@@ -28,14 +28,17 @@ from tester.analysis.terms import Size
 from tester.base.arrays import Array
 
 NO_CONDITION = 0
+TOUCH = "touch"
+"""Method of a check by the place of a touch: its diameter is an estimate from all touches of the wheel so far."""
 
 
 @dataclass(frozen=True, slots=True)
 class WearCheck:
     """One check of a wheel's diameter.
 
-    ``method``: roll (the press's position under a light load) or person (a number in an answer). ``reference_s``: time
-    of the series' first check, rig seconds. ``before``, ``after``: the conditions on either side, 0 for none.
+    ``method``: roll (the press's position under a light load), person (a number in an answer) or touch.
+    ``reference_s``: time of the series' first check, rig seconds. ``before``, ``after``: the conditions on either side,
+    0 for none.
     """
 
     piece: int
@@ -102,13 +105,17 @@ class ConditionWear:
     rate: WearRate
 
 
-def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
+def wear_rate(checks: Sequence[WearCheck], installed_mm: float = NAN) -> WearRate:
     """Return the rate over a wheel's life: a line through the volume worn off against load times distance.
+
+    Touches alone give the mean rate since the wheel was new, of ``installed_mm``.
 
     A rate that varies between conditions scatters the checks about the line by more than their uncertainties; the
     uncertainty of their mean is then widened by that scatter (Birge ratio).
     """
-    used = [check for check in checks if check.used]
+    used = [check for check in checks if check.used and check.method != TOUCH]
+    if not used:
+        return _by_touch(checks, installed_mm)
     references = sorted({check.reference_s for check in used})
     count, unknown = len(used), len(references) + 1
     if count < unknown or len({check.exposure_n_m for check in used}) < 2:
@@ -135,9 +142,17 @@ def wear_rate(checks: Sequence[WearCheck]) -> WearRate:
     return WearRate(rate, hypot(sqrt(variance), relative * rate), count)
 
 
+def _by_touch(checks: Sequence[WearCheck], installed_mm: float) -> WearRate:
+    last = next((check for check in reversed(checks) if check.used), None)
+    if last is None or not last.exposure_n_m > 0.0:
+        return WearRate(checks=len(checks))
+    volume_mm3 = 0.25 * pi * last.width_mm * (installed_mm**2 - last.diameter_mm**2)
+    return WearRate(volume_mm3 / last.exposure_n_m, _volume_per_mm(last) * last.u_mm / last.exposure_n_m, len(checks))
+
+
 def condition_wear(checks: Sequence[WearCheck], condition: int) -> ConditionWear | None:
     """Return the wear by a condition, from the check before it and the one after; None without both."""
-    used = [check for check in checks if check.used]
+    used = [check for check in checks if check.used and check.method != TOUCH]
     after = next((check for check in used if check.after == condition), None)
     if condition == NO_CONDITION or after is None:
         return None
@@ -201,6 +216,8 @@ class Worn:
         before = next((check for check in reversed(used) if check.sliding_m <= at_m), None)
         if before is None:
             return self._believed(at_m)
+        if before.method == TOUCH:
+            return self._touched(before, at_m)
         later = [check for check in used if check.sliding_m > at_m and check.reference_s == before.reference_s]
         if later:
             return self._between(before, later[0], at_m)
@@ -215,6 +232,12 @@ class Worn:
         off_mm = after.expected_mm - after.diameter_mm if isfinite(after.expected_mm) else worn_mm
         u_mm = hypot(self._begun_u(before), self._read_u({before: 1.0 - share, after: share}), share * off_mm)
         return self._sized(self._loss(before) + share * worn_mm, u_mm, "checks of the diameter before and after it")
+
+    def _touched(self, touch: WearCheck, at_m: float) -> Size:
+        """Return the size by the last touch: its uncertainty counts the distance from the diameter in use."""
+        since_mm = max(touch.expected_mm - self.last_mm, 0.0) * _share(touch.sliding_m, at_m, self.last_m)
+        u_mm = hypot(touch.u_mm, since_mm * min(0.01 * touch.u_rate_percent, 1.0))
+        return self._sized(self.installed_mm - touch.expected_mm + since_mm, u_mm, "touches of the wheel before it")
 
     def _believed(self, at_m: float) -> Size:
         loss_mm = max(self.installed_mm - self.last_mm, 0.0) if isfinite(self.last_mm) else 0.0

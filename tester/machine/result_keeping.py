@@ -115,6 +115,9 @@ class StoredResults(Generic[ContextT]):
                 alone=step.repeats <= ALONE,
                 swing=None if measured.rolling_only else swing_of(measured.counter.trace),
             )
+            doubts = self.doubts(ctx, step)
+            if doubts and result.valid:
+                result = replace(result, flags=joined([*flags_in(result.flags), *doubts]))
         self.repeats.append(result)
         self.keys.append(key)
         self.blocks.append(counted(blocks, window))
@@ -219,6 +222,10 @@ class StoredResults(Generic[ContextT]):
         return n >= LEAST_REPEATS and self._pooled(step).expanded_percent(n * each) <= step.until_percent
 
     # -- a kind may record more ----------------------------------------------------------------------------------
+
+    def doubts(self, ctx: ContextT, step: ConditionStep) -> tuple[str, ...]:
+        """Return the flags of a repeat that ends now, of causes that its samples do not show."""
+        return ()
 
     def mounted(self, ctx: ContextT) -> int:
         """Return the number of the mounted specimen."""

@@ -12,10 +12,10 @@ from tester.analysis.left_out import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.reference import RESERVED, ReferenceWatch, doubted, is_reference
 from tester.analysis.repeats import combine_replicates
-from tester.analysis.results import SoakCheck
+from tester.analysis.results import NAN, SoakCheck
 from tester.analysis.ring_errors import RingRun
 from tester.analysis.schemes import Misalignment, misalignment
-from tester.analysis.wear_rate import ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
+from tester.analysis.wear_rate import TOUCH, ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
 from tester.base.axes import Axes
 from tester.base.quantities import Quantities
 from tester.results.settings_compared import RepeatedSetting, settings_of
@@ -87,19 +87,22 @@ class RunResults:
 
     def wear_of(self, piece: int) -> WearRate:
         """Return the wear rate over the life of a mounted piece, by number."""
-        return wear_rate([check for check in self.checks if check.piece == piece])
+        installed_mm = next((one.installed_diameter_mm for one in self.pieces if one.piece == piece), NAN)
+        return wear_rate([check for check in self.checks if check.piece == piece], installed_mm)
 
     def condition_wear(self, condition: int) -> ConditionWear | None:
         """Return the wear by a condition; None without checks around it."""
         return condition_wear(self.checks, condition) if self.checks else None
 
     def wear_lines(self) -> Iterator[str]:
-        """Yield, for each mounted piece with checks, its diameter and its wear rate as a line for people."""
+        """Yield the diameter and the wear rate of each piece with checks, or with a rate that touches resolve."""
         for piece in self.pieces:
             checks = [check for check in self.checks if check.piece == piece.piece]
             if not checks:
                 continue
-            rate = wear_rate(checks)
+            rate = wear_rate(checks, piece.installed_diameter_mm)
+            if not rate.resolved and all(check.method == TOUCH for check in checks):
+                continue
             text = (
                 f"{self.worn} {piece.piece} ({piece.compound}): {piece.diameter_mm:.3f} mm after {len(checks)} checks"
             )

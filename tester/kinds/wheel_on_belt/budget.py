@@ -81,6 +81,8 @@ def instruments_budget(
 
 ROLL_CHECK_N: Final = 50.0
 """Load of the automatic diameter check, N [A]: small indentation, but more than the press's friction."""
+TOUCHES_U_MM: Final = 0.15
+"""Expected standard uncertainty of a worn diameter by the wheel's touches, mm [A] (procedures.wear_estimate)."""
 ROLL_CHECK_TURNS: Final = 6.0
 """Whole turns averaged by the check: runout and the load loop's ripple cancel."""
 

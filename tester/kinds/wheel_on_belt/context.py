@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import inf
+from math import hypot, inf, isfinite, nan
 from typing import ClassVar, Final, Protocol
 
+from tester.analysis.wear_rate import NO_CONDITION, TOUCH, WearCheck
 from tester.base.quantities import Quantities
+from tester.kinds.wheel_on_belt.budget import TOUCHES_U_MM
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.procedures.gates import GATES, Gates
+from tester.kinds.wheel_on_belt.procedures.wear_estimate import PRIOR_RATE, LoadMemory, loss_per_n_m
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife, wheel_of
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.context import BaseContext
@@ -21,6 +25,10 @@ CONTACT_N: Final = 5.0
 """Above this force the wheel counts as in contact, for recording and for its wear."""
 SLIDING_M_S: Final = 0.002
 """Below this slip a contact rolls: it wears nothing."""
+LEARNT_SHARE: Final = 0.2
+"""A wear rate is learnt once its standard uncertainty is at most this share of it [A]."""
+RATE_DIFFERS: Final = 0.1
+"""Share by which the rates of two wheels of one compound differ [A]."""
 _LOAD: Final = Press.LOAD
 
 
@@ -94,13 +102,24 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         """The wheels that were taken off: the last of each specimen and replicate."""
         self.belt_travel_m = 0.0
         """How far the belt has travelled under load since the run began."""
+        self.rates: dict[str, tuple[float, float]] = {}
+        """Wear rates learnt in this run by compound, mm3/(N m), with their standard uncertainties."""
         self._was_in_contact = self.contact.in_contact
+        self._open_since_s = -inf
+        self._place_mm = nan
         self._wear_mm3_per_n_m = rig.wear.rate_mm3_per_n_m
 
     def put_on(self, wheel: WheelLife) -> None:
         """Use another wheel from now on: its place of contact is unknown, and its turns count from zero."""
         self.wheel = wheel
+        rate, u_rate = self.rates.get(wheel.compound, (self._wear_mm3_per_n_m, PRIOR_RATE))
+        if wheel.compound in self.rates:
+            wheel.rate_mm3_per_n_m = rate
+        wheel.loads = LoadMemory()
+        u_mm = TOUCHES_U_MM if wheel.loss_mm > 0.0 else 0.0
+        wheel.estimate.begin(rate, u_rate, wheel.loss_mm, wheel.exposure_n_m, u_mm)
         self.contact.forget_contact()
+        self._place_mm = nan
         self.readings.wheel_angle_rev = 0.0
 
     def before_reading(self) -> None:
@@ -110,6 +129,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
     def after_reading(self) -> None:
         """Add this scan's wear of the wheel, and the belt's travel under load."""
         r = self.readings
+        self.wheel.loads.add(r.force_z_n if r.force_z_n > CONTACT_N else 0.0, self.dt)
         if r.force_z_n > CONTACT_N:
             travelled_m = r.belt_speed_m_s * self.dt
             if travelled_m > 0.0:  # also false for NaN
@@ -117,16 +137,84 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         if r.force_z_n > CONTACT_N and r.slip_m_s > SLIDING_M_S:
             self.wheel.slide(r.force_z_n, r.slip_m_s, self.dt, self._wear_mm3_per_n_m)
 
+    def most_loss_mm(self, load_n: float) -> float:
+        """Return the loss of diameter, mm, that the wheel may reach under a load: least diameter, travel of the press.
+
+        The press must reach the rubber and press it in; softer rubber gives way more.
+        """
+        wheel, rig = self.wheel, self.rig
+        most_mm = wheel.installed_mm - rig.interlocks.least_diameter_mm
+        limits, place_mm = rig.axes.press.software_limits, self.contact.contact_mm
+        if limits is None or not isfinite(place_mm):
+            return most_mm
+        deep_mm = rig.interlocks.depth_factor * depth_mm(load_n, rig.loops.load.stiffness_n_per_mm)
+        return min(most_mm, wheel.loss_mm + 2.0 * (limits[1] - deep_mm - place_mm))
+
     def closed_gates(self) -> int:
         """Evaluate the gates."""
         return self.gates.update(self.readings, self.dt)
 
     def after_control(self) -> None:
-        """Record when the wheel touches."""
+        """Record when the wheel touches, and where."""
         in_contact = self.contact.in_contact
         if in_contact is not self._was_in_contact:
             self._was_in_contact = in_contact
             self.gates.touched_s = self.now if in_contact else inf
+            if not in_contact:
+                self._open_since_s = self.now
+            elif self.contact.contact_mm != self._place_mm and self.wheel.wheel:
+                self._place_mm = self.contact.contact_mm
+                self._touched()
+
+    def _touched(self) -> None:
+        """Let the wheel's diameter follow from the place of a first touch."""
+        wheel, r, load = self.wheel, self.readings, self.rig.loops.load
+        touch_n, stiffness, estimate = load.touch_load_n, load.stiffness_n_per_mm, wheel.estimate
+        place_mm = self._place_mm - depth_mm(r.force_z_n, stiffness) + depth_mm(touch_n, stiffness)
+        place_mm += 0.5 * wheel.grown_mm
+        if not isfinite(place_mm):
+            return
+        estimate.slid(wheel.exposure_n_m, loss_per_n_m(wheel.cold_mm, wheel.width_mm))
+        remembered_n, open_s = wheel.loads.remembered_n(), self.now - self._open_since_s
+        if not estimate.touch(place_mm, touch_n, remembered_n, open_s, stiffness):
+            text = f"a touch and the learnt wear disagree by {estimate.off_mm:+.2f} mm of diameter: it is not used"
+            self.journal.event(self.now, "wear", text, "warning")
+            return
+        believed_mm, off_mm = wheel.loss_mm, wheel.follow()
+        if off_mm and not wheel.followed:
+            wheel.followed = True
+            text = f"loss of diameter {wheel.loss_mm:.2f} mm by the place of the touch (u {estimate.u_mm:.2f} mm)"
+            self.journal.event(self.now, "wear", f"{text}, {believed_mm:.2f} mm believed: speeds follow the touch")
+        # The place of contact is worn on from the diameter that it was touched with.
+        self.contact.diameter_mm = wheel.cold_mm + wheel.grown_mm
+        self._note_rate()
+        wheel.touched = self._touch_record(r.force_z_n)
+
+    def _note_rate(self) -> None:
+        """Keep a rate that the touches show clearly, and report it once where it is not the believed one."""
+        wheel, believed = self.wheel, self._wear_mm3_per_n_m
+        rate, u_rate = wheel.estimate.rate_mm3_per_n_m, wheel.estimate.u_rate
+        if not wheel.followed or u_rate > LEARNT_SHARE * rate:
+            return
+        self.rates[wheel.compound] = rate, hypot(u_rate, RATE_DIFFERS * rate)
+        if wheel.reported or abs(rate - believed) <= 2.0 * u_rate:
+            return
+        wheel.reported = True
+        how = "faster" if rate > believed else "more slowly"
+        text = f"wheel {wheel.wheel} wears {how} than believed: {rate:.3f} ± {2.0 * u_rate:.3f} mm3/(N m) by touches,"
+        text += f" wear.rate is {believed:g}; the run continues at the rate that was learnt"
+        self.journal.event(self.now, "wear", text, "warning" if rate > believed else "info")
+
+    def _touch_record(self, force_n: float) -> WearCheck:
+        """Return the last touch as a check of the diameter."""
+        wheel, estimate = self.wheel, self.wheel.estimate
+        rate = estimate.rate_mm3_per_n_m
+        return WearCheck(
+            wheel.wheel, TOUCH, self.now, self.now, NO_CONDITION, wheel.condition,
+            wheel.installed_mm - max(estimate.loss_mm, 0.0), wheel.u_mm, wheel.rubber_c,
+            self.rig.wear.growth_uncertainty_mm_per_k, self._place_mm, force_n, wheel.sliding_m, wheel.exposure_n_m,
+            wheel.width_mm, 100.0 * estimate.u_rate / rate if rate > 0.0 else 100.0, 1, wheel.cold_mm,
+        )  # fmt: skip
 
     def touching(self) -> bool:
         """Return whether contact is wanted, or measured."""

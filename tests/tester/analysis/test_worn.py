@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import hypot, isnan, nan
+from math import hypot, isnan, nan, pi
 
 import pytest
 
-from tester.analysis.wear_rate import Worn
+from tester.analysis.wear_rate import TOUCH, Worn, condition_wear, wear_rate
 from tests.tester.analysis.test_wear_rate import FIRST
 
 U = FIRST.u_mm
@@ -96,3 +96,23 @@ def test_a_check_of_a_later_series_does_not_end_an_interval() -> None:
 def test_a_check_by_a_person_has_its_own_zero() -> None:
     person = replace(NEW, method="person", diameter_mm=89.5, sliding_m=50.0)
     assert Worn(90.0, 89.5, 50.0, (person,)).size(50.0).checked_u_mm == pytest.approx(U)
+
+
+TOUCHED = replace(
+    FIRST, method=TOUCH, diameter_mm=88.8, u_mm=0.1, expected_mm=89.0, sliding_m=50.0, exposure_n_m=1e4,
+    u_rate_percent=20.0,
+)  # fmt: skip
+
+
+def test_the_size_by_a_touch_is_the_one_in_use_with_the_uncertainty_of_the_touch_and_of_the_wear_since() -> None:
+    found = Worn(90.0, 88.5, 100.0, (TOUCHED,)).size(100.0)
+    assert found.size_mm == pytest.approx(88.5) and found.source == "touches of the wheel before it"
+    assert found.checked_u_mm == pytest.approx(hypot(0.1, 0.2 * 0.5))
+
+
+def test_touches_give_the_mean_rate_since_the_wheel_was_new_and_no_rate_of_a_condition() -> None:
+    found = wear_rate([TOUCHED], 90.0)
+    volume_mm3 = 0.25 * pi * 30.0 * (90.0**2 - 88.8**2)
+    assert found.rate == pytest.approx(volume_mm3 / 1e4)
+    assert found.standard == pytest.approx(0.5 * pi * 30.0 * 88.8 * 0.1 / 1e4)
+    assert condition_wear([replace(TOUCHED, before=1), replace(TOUCHED, after=1)], 1) is None

@@ -20,6 +20,7 @@ from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.burst_state import FEW_REVOLUTIONS, BurstNotes, CentredBursts, Phase, RunIn
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
+from tester.kinds.wheel_on_belt.procedures.zero_check import deeper
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.machine.measured import Ending
 from tester.machine.motions import Power, Sequence, Settle
@@ -157,6 +158,9 @@ class MeasureRepeat(CentredBursts):
                 self._tare_again()
             else:
                 self._slip_in()
+        elif deeper(ctx):
+            self.phase = Phase.ROLL
+            self.moves = Sequence(Lift(), roll(self.setpoint.wheel_speed_m_s, self.setpoint.load_n))
         elif surface > target and ctx.now - self.rolling_since_s > LIFT_TO_COOL_S:
             self.phase = Phase.COOL
             self.cooling_since_s = ctx.now

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from dataclasses import replace
+from math import inf, isfinite
+from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.axes import held_by
@@ -11,19 +13,31 @@ from tester.kinds.wheel_on_belt.procedures.bursts import MeasureRepeat
 from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults, soak_check
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import SoakTo, roll, soak_within_k
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByRolling
+from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.machine.condition import MeasureCondition
 from tester.machine.measured import ConditionEnd, Ending
 from tester.machine.motions import Sequence
 
+REPEAT_MARGIN: Final = 1.5
+"""A repeat may wear off this times what the last repeat did [A]: it may take more pulses."""
+
 
 class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRepeat]):
     """The activity of one condition."""
 
-    def __init__(self, step: WheelCondition, results: WheelResults, reference_tare: list[float]) -> None:
-        """``reference_tare``: the wheel's first zero."""
+    def __init__(
+        self, step: WheelCondition, results: WheelResults, reference_tare: list[float], most_mm: float = inf
+    ) -> None:
+        """``reference_tare``: the wheel's first zero; ``most_mm``: the loss of diameter that the wheel may reach."""
         super().__init__(step, results)
+        self.repeat = self.done_before = max(self.done_before, results.repeats_kept(step))
+        self.most_mm = most_mm
+        self.worn_out = False
+        """Another repeat would wear the wheel beyond that: the condition continues on a new wheel."""
+        self.begun_n_m = self.rubbed_n_m = 0.0
+        """Load times distance when the last repeat began, and in it; the latter is 0 once it has been looked at."""
         self.reference_tare = reference_tare
         self.before: Sequence | None = None
         self.soak: SoakTo | None = None
@@ -84,13 +98,28 @@ class MeasureWheelCondition(MeasureCondition[Context, WheelCondition, MeasureRep
     def begin(self, ctx: Context, attempt: int) -> MeasureRepeat:
         """Return the repeat; it takes the start offset that the previous repeat learned."""
         step, repeat = self.condition, self.repeat
+        self.begun_n_m = ctx.wheel.exposure_n_m
         ctx.attendant.begin_repeat(step.row, repeat, attempt, step.setpoint.numbers())
         return MeasureRepeat(
             step, self.reference_tare, self.offset_k, ctx.quantities,
             reversed_slip=slides_reversed(step, repeat), run_in_m=run_in_m(step, repeat),
         )  # fmt: skip
 
+    def step(self, ctx: Context) -> bool:
+        """Advance by one scan; return True when the condition is committed, or a repeat has worn the wheel out."""
+        if self.measuring is None and self.rubbed_n_m > 0.0:
+            wheel = ctx.wheel
+            next_mm = REPEAT_MARGIN * wheel.loss_of(self.rubbed_n_m, ctx.rig.wear.rate_mm3_per_n_m)
+            self.worn_out = wheel.loss_mm + next_mm + SURE_U * wheel.u_mm > self.most_mm
+            self.rubbed_n_m = 0.0
+        return self.worn_out or super().step(ctx)
+
     def finish(self, ctx: Context, measured: MeasureRepeat) -> None:
-        """Reduce and commit a repeat, and keep its start offset."""
+        """Reduce and commit a repeat; keep its start offset, and what it has worn off."""
         self.offset_k = measured.offset_k
+        self.rubbed_n_m = ctx.wheel.exposure_n_m - self.begun_n_m
+        if self.repeat == self.done_before + 1 and self.condition.wear_check == "never":
+            touched = ctx.wheel.touched
+            if touched is not None:
+                ctx.journal.wear_check(replace(touched, before=self.condition.condition))
         super().finish(ctx, measured)

@@ -11,10 +11,12 @@ from __future__ import annotations
 from math import isfinite
 from typing import Final
 
+from tester.analysis.flags import SLIP_UNSURE
 from tester.analysis.results import SoakCheck
 from tester.inputs.recipe.plan import ConditionStep
 from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.estimate import predicted_loss_mm
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -52,11 +54,24 @@ class WheelResults(StoredResults[Context]):
         """Record the wheel's diameter and the distances."""
         record_state(self.recorder, ctx, ctx.now)
 
+    def repeats_kept(self, step: WheelCondition) -> int:
+        """Return how many repeats of the present condition are committed: it may continue on a new wheel."""
+        return len(self.repeats) if self.condition == step.condition else 0
+
+    def doubts(self, ctx: Context, step: ConditionStep) -> tuple[str, ...]:
+        """Return a flag where the wheel's diameter leaves the slip more uncertain than is allowed."""
+        held, wheel = held_by(step.setpoint), ctx.wheel
+        off_m_s = held.wheel_speed_m_s * wheel.u_mm / wheel.cold_mm
+        return (SLIP_UNSURE,) if off_m_s > max(SLIP_SHARE * abs(held.slip_velocity_m_s), SLIP_M_S) else ()
+
     def predicted_loss_mm(self, step: WheelCondition, rig: RigConfig) -> float:
         """Return the expected loss of diameter in a condition, mm."""
         return predicted_loss_mm(step, rig)
 
 
+SLIP_M_S: Final = 0.003
+SLIP_SHARE: Final = 0.02
+"""A slip velocity may be off by the greater of both, m/s and a share; else its repeats are flagged [A]."""
 THERMOMETER_K: Final = next(term.bound for term in TERMS if term.name == "thermometer")
 """Greatest bias of the thermometer, K."""
 HUB_K: Final = 0.5

@@ -14,6 +14,8 @@ from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown, HeatUp, RestStep
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling
+from tester.kinds.wheel_on_belt.procedures.wear_estimate import DISAGREEMENTS
+from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, ShowContact
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, wheel_change
@@ -68,7 +70,8 @@ class WheelProcedures(Procedures[Context]):
                 return _heat(step, to_come, ctx)
             case WheelCondition():
                 self.measured_wheel = ctx.wheel.wheel
-                return MeasureWheelCondition(step, self.results, self.reference_tare)
+                most_mm = ctx.most_loss_mm(step.setpoint.number("load"))
+                return MeasureWheelCondition(step, self.results, self.reference_tare, most_mm)
             case Cool():
                 return CoolDown(step, ctx.rig.interlocks.cooldown_speed_m_s)
             case PromptStep() if step.text == WEAR_CHECK:
@@ -86,7 +89,7 @@ class WheelProcedures(Procedures[Context]):
         if self._wheel_too_worn(step, ctx):
             if self.unchecked is not None:
                 return Unforeseen(self._last_check(self.unchecked), WEAR_CHECK)
-            return Unforeseen(steps=self._change_steps(step))
+            return self._change(step, ctx)
         if step.wear_check != "prompt" or step.condition == self.checked or self.results.over(step) is not None:
             return None
         self.checked = step.condition
@@ -103,6 +106,8 @@ class WheelProcedures(Procedures[Context]):
         if isinstance(activity, InstallWheel):
             return self._mounted(activity, to_come)
         if isinstance(activity, MeasureWheelCondition):
+            if activity.worn_out:
+                return self._change(activity.condition, ctx, [activity.condition])
             return self._measured(activity.condition, to_come, ctx)
         if isinstance(activity, AskAtRest | CheckByPerson) and to_come:
             return self._attended(to_come[0])
@@ -152,14 +157,28 @@ class WheelProcedures(Procedures[Context]):
     # -- a wheel that the plan did not foresee ----------------------------------------------------------------
 
     def _wheel_too_worn(self, step: WheelCondition, ctx: Context) -> bool:
-        """Return whether this condition's predicted wear exceeds the wheel's remaining rubber."""
-        left_mm = self.plan.replace_after_mm - ctx.wheel.loss_mm
-        return ctx.wheel.wheel == self.measured_wheel and self.results.predicted_loss_mm(step, ctx.rig) > left_mm
+        """Return whether this condition's predicted wear, at the learnt rate, exceeds the wheel's remaining rubber."""
+        wheel, believed = ctx.wheel, ctx.rig.wear.rate_mm3_per_n_m
+        if wheel.wheel != self.measured_wheel:
+            return False
+        if wheel.estimate.disagreed >= DISAGREEMENTS:
+            return True
+        predicted_mm = self.results.predicted_loss_mm(step, ctx.rig)
+        if believed > 0.0:
+            predicted_mm *= (wheel.rate_mm3_per_n_m or believed) / believed
+        most_mm = ctx.most_loss_mm(step.setpoint.number("load")) - SURE_U * wheel.u_mm
+        return predicted_mm > min(self.plan.replace_after_mm, most_mm) - wheel.loss_mm
 
-    def _change_steps(self, step: WheelCondition) -> list[Step]:
+    def _change(self, step: WheelCondition, ctx: Context, more: Sequence[Step] = ()) -> Unforeseen[Context]:
+        """Return the steps of a wheel change before a condition; ``more``: steps after it. Report why."""
+        wheel = ctx.wheel
+        why = f"{wheel.loss_mm:.2f} mm of diameter are worn off, {wheel.cold_mm:.2f} mm are left"
+        if wheel.estimate.disagreed >= DISAGREEMENTS:
+            why = f"its touches and the learnt wear disagree, last by {wheel.estimate.off_mm:+.2f} mm of diameter"
+        ctx.journal.event(ctx.now, "wear", f"a new wheel instead of wheel {wheel.wheel}: {why}")
         self.wheels += 1
         specimen = self.plan.specimen(step.specimen)
-        return list(wheel_change(self.plan, step, specimen, self.wheels))
+        return Unforeseen(steps=[*wheel_change(self.plan, step, specimen, self.wheels), *more])
 
 
 def _heat(step: Heat, to_come: Sequence[Step], ctx: Context) -> HeatUp:

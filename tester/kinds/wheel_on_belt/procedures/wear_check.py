@@ -205,6 +205,7 @@ def conclude(
     _learn_rate(wheel, check)
     wheel.last_check = check
     wheel.loss_mm = max(loss_mm, 0.0)
+    wheel.estimate.measured(wheel.loss_mm, u_mm)
     ctx.journal.piece_state(wheel.wheel, wheel.cold_mm, wheel.sliding_m, ctx.now)
 
 

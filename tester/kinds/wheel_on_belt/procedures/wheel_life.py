@@ -7,18 +7,25 @@ touch follow from it. ``Readings`` has them as ``cold_mm`` and ``diameter_mm``, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import inf, isfinite, nan, pi
+from dataclasses import dataclass, field
+from math import hypot, inf, isfinite, nan, pi
 from typing import Final
 
 from tester.analysis.wear_rate import WearCheck
 from tester.kinds.wheel_on_belt.image.process_image import Readings
+from tester.kinds.wheel_on_belt.procedures.wear_estimate import LoadMemory, WearEstimate, loss_per_n_m
 from tester.kinds.wheel_on_belt.rig.sections import GeometryConfig, WearConfig
 
 _INF: Final = inf
 SAME_SIZE_K: Final = 0.25
 """Least change of the rubber's temperature that updates the diameter, K [A]: 2 um, 0.02 mm/s at 0.8 m/s. Otherwise the
 thermometer's noise would change the drives' commands in every scan."""
+SURE_U: Final = 2.0
+"""Coverage factor of the diameter's uncertainty where a wheel is near its least diameter."""
+AGREES_U: Final = 3.0
+AGREES_MM: Final = 0.25
+"""The believed loss stands while the touches differ from it by at most so many of their standard uncertainties, and by
+at most this, mm [A]: 2.2 mm/s of slip at 0.8 m/s. The scatter of single touches then moves no drive."""
 
 
 def rubber_c(hub_c: float, surface_c: float) -> float:
@@ -45,8 +52,8 @@ class CheckReference:
 class WheelLife:
     """The wheel on the rig: its identity, its loss of diameter, and its growth by heat.
 
-    The loss between measurements is estimated by the wear law dR = k F v dt / (2 pi R w) with the rig file's k
-    (physics: load, wear, transients).
+    The loss between touches follows the wear law dR = k F v dt / (2 pi R w), with the rig file's k until touches
+    contradict it (physics: load, wear, transients).
     """
 
     specimen: int = 0
@@ -65,7 +72,7 @@ class WheelLife:
     """Mean temperature of the rubber for this growth."""
     sliding_m: float = 0.0
     rate_mm3_per_n_m: float = 0.0
-    """Wear rate from checks of this wheel; 0: none yet, the rig file's rate is used."""
+    """Wear rate from touches or checks of this wheel; 0: none yet, the rig file's rate is used."""
     exposure_n_m: float = 0.0
     """Normal force times distance slid since installation; wear is proportional to it."""
     condition: int = 0
@@ -75,6 +82,15 @@ class WheelLife:
     by_hand_s: float = nan
     """Time of a person's first measurement."""
     last_check: WearCheck | None = None
+    estimate: WearEstimate = field(default_factory=WearEstimate)
+    """What its touches show."""
+    loads: LoadMemory = field(default_factory=LoadMemory)
+    followed: bool = False
+    """The touches have contradicted the believed loss: it follows them."""
+    reported: bool = False
+    """People know that the wheel wears at another rate than believed."""
+    touched: WearCheck | None = None
+    """Its last touch, for the record."""
 
     @property
     def cold_mm(self) -> float:
@@ -88,6 +104,27 @@ class WheelLife:
         self.exposure_n_m += force_n * distance
         rate_mm3_per_n_m = self.rate_mm3_per_n_m or rate_mm3_per_n_m
         self.loss_mm += 2.0 * rate_mm3_per_n_m * force_n * distance / (pi * self.cold_mm * self.width_mm)
+
+    def loss_of(self, exposure_n_m: float, believed_mm3_per_n_m: float) -> float:
+        """Return the loss of diameter, mm, by a load times distance, at the learnt rate or else the believed one."""
+        rate_mm3_per_n_m = self.rate_mm3_per_n_m or believed_mm3_per_n_m
+        return rate_mm3_per_n_m * exposure_n_m * loss_per_n_m(self.cold_mm, self.width_mm)
+
+    def follow(self) -> float:
+        """Take the loss and the rate from the touches where they contradict the belief; return the change, mm."""
+        estimate = self.estimate
+        off_mm = estimate.loss_mm - self.loss_mm
+        if not self.followed and abs(off_mm) <= min(AGREES_U * estimate.u_mm, AGREES_MM):
+            return 0.0
+        self.loss_mm = max(estimate.loss_mm, 0.0)
+        self.rate_mm3_per_n_m = estimate.rate_mm3_per_n_m
+        return off_mm
+
+    @property
+    def u_mm(self) -> float:
+        """Standard uncertainty of the loss in use, mm: that of the touches, and the distance from them."""
+        estimate = self.estimate
+        return hypot(estimate.u_mm, 0.0 if self.followed else estimate.loss_mm - self.loss_mm)
 
     def show(self, r: Readings, wear: WearConfig) -> None:
         """Write both diameters, from the newest temperatures, to the process image.

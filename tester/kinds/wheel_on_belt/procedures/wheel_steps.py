@@ -11,9 +11,10 @@ from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, speeds_reached
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
-from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
+from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U, wheel_of
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind
+from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
 from tester.store.records import PieceInfo
 
@@ -194,6 +195,8 @@ class PreGrindStep:
             self.grind.counting = False
             self.moves = Sequence(ZeroCheck(self.pre_grind.wheel_speed_m_s, self.reference_tare), self._moves())
         if not self.moves.step(ctx):
+            if ctx.wheel.loss_mm + SURE_U * ctx.wheel.u_mm > ctx.most_loss_mm(self.pre_grind.load_n):
+                raise MoveFailedError(f"the wheel is worn out after {self.grind.done_s:.0f} s: grind it for less long")
             return False
         wheel = ctx.wheel
         ctx.journal.piece_ground(wheel.wheel, wheel.cold_mm, wheel.sliding_m, ctx.now)

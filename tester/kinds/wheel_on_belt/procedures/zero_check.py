@@ -9,12 +9,16 @@ from math import inf
 from typing import Final
 
 from tester.kinds.wheel_on_belt.context import Context
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, TakeTare, Turn
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Sequence, Settle
 
 TARE_S: Final = 1.0
 """Averaging time of the zero, s [A]: about three turns."""
+DEEPER_SHARE: Final = 0.5
+TOUCH_AGAIN_S: Final = 15.0
+"""Least time from one touch to the next, s [A]: a run with soft rubber gets on all the same."""
 SETTLE_S: Final = 0.4
 """Settling time of the cell after lifting, s [A]."""
 
@@ -25,8 +29,22 @@ def contact_s(ctx: Context) -> float:
 
 
 def is_due(ctx: Context) -> bool:
-    """Return whether to check the zero before the contact continues."""
-    return contact_s(ctx) > ctx.rig.interlocks.zero_check_every_s
+    """Return whether to lift, check the zero and touch again before the contact continues."""
+    return contact_s(ctx) > ctx.rig.interlocks.zero_check_every_s or deeper(ctx)
+
+
+def deeper(ctx: Context) -> bool:
+    """Return whether the press is deeper than its load needs, by half of what "contact too deep" allows.
+
+    The wheel wears faster than believed, or its rubber gives way: a new touch shows where it begins now. A cell that
+    reads too little touches at the old place, and the interlock trips.
+    """
+    if contact_s(ctx) < TOUCH_AGAIN_S:
+        return False
+    r, p = ctx.readings, ctx.rig.interlocks
+    needed_mm = depth_mm(r.force_z_n, ctx.rig.loops.load.stiffness_n_per_mm)
+    allowed_mm = (p.depth_factor - 1.0) * needed_mm + p.depth_margin_mm
+    return r.press_mm - ctx.view.contact_mm > needed_mm + DEEPER_SHARE * allowed_mm
 
 
 class ZeroCheck:

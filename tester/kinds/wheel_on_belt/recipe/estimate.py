@@ -16,7 +16,7 @@ from tester.base.axes import Setpoint
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
 from tester.inputs.recipe.repeats_section import MADE_UP, POOLED_DF, SURE, expected
 from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
-from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_TURNS, instruments_budget, roll_check_u_mm
+from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_TURNS, TOUCHES_U_MM, instruments_budget, roll_check_u_mm
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED, held_by
 from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConstants
 from tester.kinds.wheel_on_belt.recipe.cost import ROLLING_M_S, ConditionCosts
@@ -223,7 +223,7 @@ class WheelEstimator(Estimator):
             return None
         slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
         both = step.both_directions if outlook.both_directions is None else outlook.both_directions
-        u_mm = self.check_u_mm if outlook.checked else math.nan
+        u_mm = self.check_u_mm if outlook.checked else min(TOUCHES_U_MM, outlook.loss_mm)
         size = Size(self.diameter_mm - outlook.loss_mm, outlook.loss_mm, u_mm)
         return mu, instruments_budget(sp, mu, slip_m_s, size, outlook.slope, both_directions=both)
 

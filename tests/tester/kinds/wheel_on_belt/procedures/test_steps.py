@@ -10,8 +10,10 @@ import pytest
 from tester.inputs.recipe.plan import Plan, PromptStep
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import Press
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.procedures.first_contact import OFF
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
+from tester.kinds.wheel_on_belt.procedures.wear_estimate import DISAGREEMENTS, loss_per_n_m
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition
 from tester.machine.executor import Executor
 from tests.tester.inputs.recipe.texts import rig
@@ -218,3 +220,49 @@ def test_a_belt_that_a_person_left_running_the_wrong_way_ends_the_run_before_the
 )
 def test_a_title_says_what_a_step_does(step: Install | PreGrind | Rest | Heat | Cool | PromptStep, text: str) -> None:
     assert step.title == text
+
+
+def test_a_condition_continues_on_a_new_wheel_when_a_repeat_has_worn_out_the_old_one() -> None:
+    """The least diameter is 12 mm below the new one; a repeat costs 4 mm here."""
+    plan = replace(plan_of(LOADS.replace("repeats: 1", "repeats: 3")), replace_after_mm=20.0)
+    plan = replace(plan, steps=tuple(step for step in plan.steps if getattr(step, "condition", 1) == 1))
+    bench = make_bench()
+
+    class Rubs(Wearing):
+        def repeats_kept(self, step: WheelCondition) -> int:
+            return len(self.finished)
+
+        def begin_repeat(self, ctx: Context, step: WheelCondition, repeat: int, attempt: int) -> int:
+            bench.ctx.wheel.followed = True
+            bench.ctx.wheel.rate_mm3_per_n_m = 4.0 / (100.0 * loss_per_n_m(85.0, 30.0))
+            bench.ctx.wheel.exposure_n_m += 100.0
+            return super().begin_repeat(ctx, step, repeat, attempt)
+
+    results = Rubs(loss_mm=0.1)
+    walk(plan, results, bench, worn_mm=4.0)
+    assert [repeat for repeat, _ in results.begun] == [1, 2, 3]
+    assert steps_of(bench).count("install") == 2 and "a new wheel instead of wheel 1" in bench.notes.texts("wear")[0]
+
+
+def test_a_wheel_whose_touches_disagree_with_its_wear_is_changed() -> None:
+    bench = make_bench()
+
+    class Disagrees(Wearing):
+        def begin_repeat(self, ctx: Context, step: WheelCondition, repeat: int, attempt: int) -> int:
+            if not self.begun:
+                bench.ctx.wheel.estimate.disagreed = DISAGREEMENTS
+            return super().begin_repeat(ctx, step, repeat, attempt)
+
+    results = Disagrees()
+    walk(plan_of(LOADS), results, bench)
+    assert steps_of(bench).count("install") == 2
+    assert "its touches and the learnt wear disagree" in bench.notes.texts("wear")[0]
+
+
+def test_the_press_reaches_a_wheel_that_is_worn_to_its_least_diameter() -> None:
+    ctx = make_bench().ctx
+    ctx.wheel.loss_mm = 3.0
+    assert ctx.most_loss_mm(400.0) == 12.0
+    ctx.contact.contact_mm = 17.5
+    deep_mm = 1.3 * depth_mm(400.0, ctx.rig.loops.load.stiffness_n_per_mm)
+    assert ctx.most_loss_mm(400.0) == pytest.approx(3.0 + 2.0 * (20.0 - 17.5 - deep_mm))

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tester.kinds.wheel_on_belt.image.process_image import Press
+from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import PreGrindStep
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, contact_s, is_due
@@ -38,6 +39,19 @@ def test_it_is_due_after_ten_minutes_of_contact_without_a_break(bench: Bench) ->
     assert not is_due(bench.ctx)
     bench.ctx.gates.touched_s -= 2.0
     assert is_due(bench.ctx)
+
+
+def test_it_is_due_where_the_press_is_deeper_than_the_load_needs_by_half_of_what_is_allowed(bench: Bench) -> None:
+    ctx = bench.ctx
+    p, needed_mm = ctx.rig.interlocks, depth_mm(200.0, ctx.rig.loops.load.stiffness_n_per_mm)
+    allowed_mm = (p.depth_factor - 1.0) * needed_mm + p.depth_margin_mm
+    ctx.view.contact_mm = ctx.readings.press_mm - needed_mm - 0.49 * allowed_mm
+    ctx.gates.touched_s = ctx.now - 20.0
+    assert not is_due(ctx)
+    ctx.view.contact_mm -= 0.02 * allowed_mm
+    assert is_due(ctx)
+    ctx.gates.touched_s = ctx.now - 10.0  # touched just now: soft rubber
+    assert not is_due(ctx)
 
 
 def test_what_is_lifted_has_no_age_of_contact(bench: Bench) -> None:
