@@ -1,5 +1,6 @@
-"""`python -m tests.campaigns.wear [--sample] [--jobs N]`: does the wear rate put into the simulated rig come back?
+"""`python -m tests.campaigns.wear [--sample] [--lives] [--jobs N]`: is a wheel's wear found, whatever was believed?
 
+Lives of wheels are drawn by seed (``tests.campaigns.lives``): no trip, the slip that is asked for, the rate learnt.
 The recipe ``wear`` runs for several seeds at three rates. What the software believes of the rate is wrong by a factor
 of three or more each time, and how much the tread grows with heat is drawn, for every run, from the whole range that
 its stated uncertainty stands for. Prints a line a figure and exits 1 where one misses.
@@ -23,13 +24,11 @@ from tester.run.session import Session
 from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
+from tests.campaigns.lives import LIVES, RUBBER_EXPANSION, SAMPLE_LIVES, Lived, drawn, live, told
+from tests.campaigns.lives import figures as figures_of_lives
 
 RATES = {0.02: 0.08, 0.08: 0.24, 0.24: 0.08}
 """Rate put into the simulated rig, and the rate that the software believes, mm3/(N m)."""
-RUBBER_LAYER_MM = 8.0
-RUBBER_EXPANSION = (0.0029 / (2.0 * RUBBER_LAYER_MM), 0.0087 / (2.0 * RUBBER_LAYER_MM))
-"""Radial expansion of the layer, 1/K: the range of the rubber's part of the growth of the diameter, 0.0029 to
-0.0087 mm/K, that ``wear.growth_uncertainty`` stands for (sim/rig.yaml)."""
 SEEDS, SAMPLE = 20, 2
 OF_EACH, OF_ALL = 0.8, 53 / 60
 """Shares of seeds whose stated interval has to hold the rate: 16 of 20, 53 of 60."""
@@ -110,10 +109,14 @@ def main(arguments: list[str] | None = None) -> int:
     """Run everything; 1 where a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.wear", description=(__doc__ or "").partition("\n")[2])
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} seeds a rate instead of {SEEDS}")
+    parser.add_argument("--lives", action="store_true", help="the lives of wheels alone")
+    parser.add_argument("--seed", type=int, default=1, help="of the first life (default 1)")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="runs side by side (default 1)")
     read = parser.parse_args(arguments)
     seeds = SAMPLE if read.sample else SEEDS
-    cases = [Case(rate, seed) for seed in range(1, seeds + 1) for rate in RATES]
+    cases = [] if read.lives else [Case(rate, seed) for seed in range(1, seeds + 1) for rate in RATES]
+    lives = range(read.seed, read.seed + (SAMPLE_LIVES if read.sample else LIVES))
+    lived: list[Lived] = []
     found: list[Found] = []
     with ProcessPoolExecutor(read.jobs, mp_context=get_context("spawn")) as pool:
         for one in pool.map(carry_out, cases):
@@ -121,8 +124,14 @@ def main(arguments: list[str] | None = None) -> int:
             off = "" if one.covered else "  OUTSIDE"
             seed, rate = one.case.seed, one.case.rate
             print(f"   seed {seed:2} rate {rate:g}: {one.rate:.4f} +- {one.expanded:.4f}{off}", flush=True)
+        for one in pool.map(live, [drawn(seed, short=read.sample) for seed in lives]):
+            lived.append(one)
+            print(f"   {told(one)}", flush=True)
     missed = 0
-    for text, kept in figures(found, seeds):
+    for figure in figures_of_lives(lived):
+        missed += not figure.ok
+        print(figure, flush=True)
+    for text, kept in figures(found, seeds) if found else ():
         missed += not kept
         print(f"{'ok  ' if kept else 'MISS'} {text}", flush=True)
     return 1 if missed else 0

@@ -111,7 +111,7 @@ FIRST: tuple[First, ...] = (
 NEVER_FIRST: dict[str, str] = {
     "friction beyond load": "channels that are crossed step, or deny the press's torque, before they show so much",
     "clock jump": "a scan waits for its time on the same clock: one that goes back delays it, and that shows first",
-    "press travel": "a wheel is pressed flat long before 18 mm: force and press speed come first",
+    "press travel": "a wheel is pressed flat long before 20 mm: force and press speed come first",
     "slip power": "the speeds' own rows are as quick, and friction alone cannot reach 350 W at the speeds of the rig",
     "heating at standstill": "a wheel that stands against its command trips its own row in the same time",
     "heat not off": "needs contactor and output stuck together: the contactor's row sees them half a second sooner",
