@@ -69,11 +69,11 @@ def keys(kind: str) -> None:
     from tester.kinds import UnknownKindError, find
 
     try:
-        found = find(kind).rig()
+        rig_class = find(kind).rig()
     except UnknownKindError as error:
         raise click.UsageError(str(error)) from error
-    for names, one in classed(found):
-        text, because = in_words(one)
+    for names, key_class in classed(rig_class):
+        text, because = in_words(key_class)
         click.echo(f"{', '.join(names)}: {text}; {because}")
 
 

@@ -73,9 +73,9 @@ def unmeasured(rig: Rig, runs: Path) -> str:
     except (RecordError, OSError) as error:
         return str(error)
     missing = [
-        f"{one.step.name}: {one.words}"
-        for one in standing
-        if one.step.required and one.stands is None and _has(rig, one.step.sections[0])
+        f"{state.step.name}: {state.words}"
+        for state in standing
+        if state.step.required and state.stands is None and _has(rig, state.step.sections[0])
     ]
     return f"{'; '.join(missing)} (tester commission, record {path})" if missing else ""
 

@@ -26,7 +26,7 @@ from tester.run.endings import CannotStartError
 from tester.run.folder import part_time
 from tester.run.kind_lookup import load_rig, run_parts
 from tester.run.part_run import closed_early, left_safe
-from tester.run.preconditions import hold_rig
+from tester.run.preconditions import hold_rig, not_measured
 from tester.run.rig_wires import connect_ports
 from tester.run.session_options import SessionOptions
 from tester.service.command_handler import Orders
@@ -229,6 +229,8 @@ class Service:
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
         with ExclusiveUse() as use:
             try:
+                o = self.options
+                not_measured(SessionOptions("", o.rig, o.overrides, o.accept_risk, out=o.runs), rig)
                 hold_rig(use, rig, NAME)
                 record = open_record(self.options.runs, rig, order.name, self.options.accept_risk)
                 left = self._aside(lambda: left_on_rig(self.options.runs, rig, kind))

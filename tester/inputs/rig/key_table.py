@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from tester.inputs.rig.config import Rig
 
 Row: TypeAlias = tuple[list[str], KeyClass | None]
-"""Keys of one class, and the class; None for no class."""
+"""Keys of the same class, and the class; None for no class."""
 
 
 def ceiling_table(rows: Iterable[Row], elsewhere: Iterable[Row] = ()) -> str:
@@ -21,24 +21,24 @@ def ceiling_table(rows: Iterable[Row], elsewhere: Iterable[Row] = ()) -> str:
     ``elsewhere``: rows of another table; those that bound the same keys alike are left out.
     """
     lines = ["| key | tighter is | not looser than | because |", "|---|---|---|---|"]
-    known = [one for _, one in elsewhere]
+    known = [key_class for _, key_class in elsewhere]
     lines += [
-        f"| {', '.join(names)} | {one.direction.value} | {one.hardest} | {one.because} |"
-        for names, one in rows
-        if isinstance(one, Bounded) and one not in known
+        f"| {', '.join(names)} | {key_class.direction.value} | {key_class.hardest} | {key_class.because} |"
+        for names, key_class in rows
+        if isinstance(key_class, Bounded) and key_class not in known
     ]
     return "\n".join(lines) + "\n"
 
 
-def in_words(one: KeyClass | None) -> tuple[str, str]:
+def in_words(key_class: KeyClass | None) -> tuple[str, str]:
     """Return a class, and the reason for it or what contradicts a wrong value."""
-    if isinstance(one, Bounded):
-        words = "not above" if one.direction.value == "lower" else "not below"
-        return f"{words} {one.hardest}".replace("not below true", "true"), one.because
-    if isinstance(one, Held):
-        within = f" within {100.0 * one.within:.0f} %" if one.within < 1.0 else ""
-        return f"held{within}", one.against
-    return ("free", one.because) if isinstance(one, Free) else ("no class", "")
+    if isinstance(key_class, Bounded):
+        words = "not above" if key_class.direction.value == "lower" else "not below"
+        return f"{words} {key_class.hardest}".replace("not below true", "true"), key_class.because
+    if isinstance(key_class, Held):
+        within = f" within {100.0 * key_class.within:.0f} %" if key_class.within < 1.0 else ""
+        return f"held{within}", key_class.against
+    return ("free", key_class.because) if isinstance(key_class, Free) else ("no class", "")
 
 
 def classed(kind: type[Rig]) -> Iterator[Row]:
@@ -52,7 +52,7 @@ def classed(kind: type[Rig]) -> Iterator[Row]:
         places.setdefault(key.classes, []).append(key.place)
     for classes, shared in places.items():
         names = _names(shared, every)
-        yield from ((names, one) for one in classes or (None,))
+        yield from ((names, key_class) for key_class in classes or (None,))
 
 
 def _names(shared: list[Place], every: list[Place]) -> list[str]:
@@ -63,18 +63,18 @@ def _names(shared: list[Place], every: list[Place]) -> list[str]:
             continue
         covered, name = _widest(place, left, every)
         names.append(name)
-        for one in covered:
-            del left[one]
+        for key in covered:
+            del left[key]
     return names
 
 
 def _widest(place: Place, shared: Mapping[Place, None], every: list[Place]) -> tuple[list[Place], str]:
-    """Return the keys that come as one with a key, and their name."""
+    """Return the keys that a row names together with a key, and their name."""
     for depth in range(1, len(place)):
-        section = [one for one in every if one[:depth] == place[:depth]]
-        if len(section) > 1 and all(one in shared for one in section):
+        section = [other for other in every if other[:depth] == place[:depth]]
+        if len(section) > 1 and all(other in shared for other in section):
             return section, ".".join((*place[:depth], ANY))
-    alike = [one for one in every if one[:1] + one[2:] == place[:1] + place[2:] and len(place) > 2]
-    if len(alike) > 1 and all(one in shared for one in alike):
+    alike = [other for other in every if other[:1] + other[2:] == place[:1] + place[2:] and len(place) > 2]
+    if len(alike) > 1 and all(other in shared for other in alike):
         return alike, ".".join((*place[:1], ANY, *place[2:]))
     return [place], ".".join(place)

@@ -39,7 +39,7 @@ class RigKey:
     @property
     def ceilings(self) -> tuple[Ceiling, ...]:
         """Return the key's bounds."""
-        return tuple(Ceiling(self.key, self.unit, one) for one in self.classes if isinstance(one, Bounded))
+        return tuple(Ceiling(self.key, self.unit, bound) for bound in self.classes if isinstance(bound, Bounded))
 
     @property
     def described(self) -> bool:
@@ -67,11 +67,11 @@ def _section(
         place = (*above, entry.key)
         marks = tuple(mark for mark in entry.marks if isinstance(mark, Bounded | Held | Free))
         inside: Mapping[str, Classes] = next((mark.classes for mark in entry.marks if isinstance(mark, Inside)), _NONE)
-        given = stated.get(entry.key, ())
-        if isinstance(given, Mapping):
-            inside = given
-        elif given:
-            marks = given if isinstance(given, tuple) else (given,)
+        declared = stated.get(entry.key, ())
+        if isinstance(declared, Mapping):
+            inside = declared
+        elif declared:
+            marks = declared if isinstance(declared, tuple) else (declared,)
         yield from _below(entry.type, place, entry.unit, inside, marks or whole)
 
 
@@ -80,7 +80,7 @@ def _below(
 ) -> Iterator[RigKey]:
     """Yield the keys of a field: itself, or those of the section or sections that it holds."""
     if get_origin(hint) in (Union, UnionType):
-        hint = next((one for one in get_args(hint) if isinstance(one, type) and is_dataclass(one)), hint)
+        hint = next((kind for kind in get_args(hint) if isinstance(kind, type) and is_dataclass(kind)), hint)
     sections = get_args(hint)[1] if get_origin(hint) is _MAPPING else None
     if isinstance(sections, type) and is_dataclass(sections):
         yield from _section(sections, (*place, ANY), inside, classes)

@@ -52,8 +52,8 @@ def loosened(rig: Rig, than: Rig, *, packaged: bool = False) -> tuple[Risk, ...]
     """
     risks: list[Risk] = []
     for ceiling, place, value in _bounded(rig):
-        own = packaged and ceiling.bound.own
-        limit = ceiling.limit if own else _number(value_at(than, place))
+        to_hardest = packaged and ceiling.bound.own
+        limit = ceiling.limit if to_hardest else _number(value_at(than, place))
         if limit is not None and ceiling.looser(value, limit):
             beyond_too = ceiling.looser(value, ceiling.limit) and limit != ceiling.limit
             hardest = f" and than {ceiling.bound.hardest}" if beyond_too else ""
@@ -75,13 +75,15 @@ def apart(rig: Rig, than: Rig) -> tuple[Risk, ...]:
     """Return the held keys that differ from another rig's by more than their share (``Held.within``)."""
     risks: list[Risk] = []
     for key, place, value in values_of(rig):
-        held = key.classes[0] if key.classes else None
-        if isinstance(held, Held) and held.within < inf:
+        key_class = key.classes[0] if key.classes else None
+        if isinstance(key_class, Held) and key_class.within < inf:
             number, expected = _number(value), _number(value_at(than, place))
-            if number is not None and expected is not None and not abs(number - expected) <= held.within * expected:
+            if number is None or expected is None:
+                continue
+            if not abs(number - expected) <= key_class.within * expected:
                 unit = f" {key.unit}".removesuffix(" 1").rstrip()
-                share = f"is not within {100.0 * held.within:.0f} % of {expected:g}{unit}"
-                risks.append(Risk(place, f"{number:g}{unit} {share}", f"held against {held.against}"))
+                share = f"is not within {100.0 * key_class.within:.0f} % of {expected:g}{unit}"
+                risks.append(Risk(place, f"{number:g}{unit} {share}", f"held against {key_class.against}"))
     return tuple(risks)
 
 
