@@ -6,7 +6,7 @@ your own, and ``read_profile`` a text from elsewhere. A new device is a new file
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -93,17 +93,11 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
     )
     signals = _signals(top.table("signals", required=True))
     blocks = tuple(_block(read, signals, order) for read in top.tables("reads"))
-    if not blocks:
-        raise top.error("reads", "is missing")
-    for block in blocks:
-        if block.function not in functions:
-            expected = f"the device knows {', '.join(map(str, sorted(functions)))}"
-            raise top.error("reads", f"{block.signals[0].name} is read with function {block.function}, and {expected}")
     status = top.table("status")
     status_bits = {key: status.integer(key, 0, 31) for key in status.keys() if key != "invalid"}  # noqa: SIM118
     invalid = sum(1 << _whole(status, "invalid", item, 31) for item in status.items("invalid"))
     status.end()
-    _look_at_first_read(top, kind, blocks[0])
+    _look_at_reads(top, kind, blocks, functions)
     cell = kind == "load_cell"
     profile = DeviceProfile(
         name=name,
@@ -126,14 +120,24 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
         falls_back_s=top.number("falls_back_s") if "falls_back_s" in top else None,
     )
     top.end()
-    if kind in ("jacket", "chamber") and any(signal.offset for block in blocks for signal in block.signals):
-        raise top.error("signals", "a controller's registers have no offset")
     return profile
 
 
-def _look_at_first_read(top: ProfileTable, kind: Kind, first: RegisterBlock) -> None:
-    """Refuse a sensor whose first read lacks its channels or its status."""
-    names = {signal.name for signal in first.signals}
+def _look_at_reads(
+    top: ProfileTable, kind: Kind, blocks: Sequence[RegisterBlock], functions: Collection[int]
+) -> None:
+    """Refuse reads that the device does not know, a first read without the sensor's channels or status, and a
+    controller's register with an offset.
+    """
+    if not blocks:
+        raise top.error("reads", "is missing")
+    for block in blocks:
+        if block.function not in functions:
+            expected = f"the device knows {', '.join(map(str, sorted(functions)))}"
+            raise top.error("reads", f"{block.signals[0].name} is read with function {block.function}, and {expected}")
+    if kind in ("jacket", "chamber") and any(signal.offset for block in blocks for signal in block.signals):
+        raise top.error("signals", "a controller's registers have no offset")
+    names = {signal.name for signal in blocks[0].signals}
     if kind == "sensor" and names == {"status"}:
         raise top.error("reads", "the first read must hold a channel")
     wanted = _FIRST_READ.get(kind, ())

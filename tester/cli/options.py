@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -15,6 +16,7 @@ from tester.base.units import UnitError, parse
 
 if TYPE_CHECKING:
     from tester.inputs.rig import Rig
+    from tester.service.address import Address
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -152,3 +154,20 @@ def rig_options(function: Callable[..., Any]) -> Callable[..., Any]:
 def print_json(data: object) -> None:
     """Print data as one line of JSON, numbers in full precision; not-a-number is refused (ValueError)."""
     click.echo(json.dumps(data, ensure_ascii=False, allow_nan=False))
+
+
+connect_option = click.option(
+    "--connect", "address", default="", metavar="URL", help="The service: unix:PATH or ws://127.0.0.1:PORT."
+)
+
+
+def address_named(text: str) -> Address | None:
+    """Return the address that was typed, None for the user's own service; raises AddressError."""
+    from tester.service.address import address_of
+
+    return address_of(text) if text else None
+
+
+def name_here() -> str:
+    """Return this command's name at the service."""
+    return f"command of process {os.getpid()}"

@@ -10,8 +10,17 @@ import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_UNREACHABLE
 from tester.base.words import conditions_done, duration
-from tester.cli.options import RigChoice, command, json_option, print_json, rig_options, runs_option
-from tester.cli.stop_command import address_named, connect_option, name_here
+from tester.cli.options import (
+    RigChoice,
+    address_named,
+    command,
+    connect_option,
+    json_option,
+    name_here,
+    print_json,
+    rig_options,
+    runs_option,
+)
 from tester.cli.text_table import shown
 
 if TYPE_CHECKING:

@@ -2,20 +2,10 @@
 
 from __future__ import annotations
 
-import os
-from typing import TYPE_CHECKING
-
 import click
 
 from tester.base.processes import EXIT_DONE
-from tester.cli.options import command
-
-if TYPE_CHECKING:
-    from tester.service.address import Address
-
-connect_option = click.option(
-    "--connect", "address", default="", metavar="URL", help="The service: unix:PATH or ws://127.0.0.1:PORT."
-)
+from tester.cli.options import address_named, command, connect_option, name_here
 
 
 @command()
@@ -34,15 +24,3 @@ def stop(address: str, fast: bool) -> int:
 
         return give(address, Stop(fast=fast), take=False, control=False)
     return EXIT_DONE
-
-
-def address_named(text: str) -> Address | None:
-    """Return the address that was typed, None for the user's own service; raises AddressError."""
-    from tester.service.address import address_of
-
-    return address_of(text) if text else None
-
-
-def name_here() -> str:
-    """Return this command's name at the service."""
-    return f"command of process {os.getpid()}"

@@ -8,8 +8,16 @@ from pathlib import Path
 
 import click
 
-from tester.cli.options import SpeedType, ascii_option, command, rig_option, runs_option, theme_option
-from tester.cli.stop_command import address_named, connect_option
+from tester.cli.options import (
+    SpeedType,
+    address_named,
+    ascii_option,
+    command,
+    connect_option,
+    rig_option,
+    runs_option,
+    theme_option,
+)
 from tester.cli.stored_runs import run_folder
 
 SWITCH_S = 0.001
