@@ -37,7 +37,8 @@ SHARE_CHANGES: Final = 0.001
 """How much the share of the dent changes from touch to touch [A]: warm rubber gives way more."""
 LEAST_SHARE: Final = 0.005
 """Least share at which the dent's slope is computed: at 0 it is steepest."""
-DECADES_S: Final = (1.0, 10.0, 100.0, 1000.0, 10_000.0)
+DECADES: Final = 5
+"""Number of averages of the load, the first over 1 s, each further one over ten times as long."""
 FOLD_S: Final = 0.5
 """Period in which the loads are added to the memories, s."""
 FAR_U: Final = 3.0
@@ -52,7 +53,7 @@ DISAGREEMENTS: Final = 2
 class LoadMemory:
     """The loads of the last hours: their averages over one to 10,000 s."""
 
-    averages_n: list[float] = field(default_factory=lambda: [0.0] * len(DECADES_S))
+    averages_n: list[float] = field(default_factory=lambda: [0.0] * DECADES)
     _sum_n_s: float = 0.0
     _since_s: float = 0.0
 
@@ -69,9 +70,10 @@ class LoadMemory:
         since_s = self._since_s
         if not since_s > 0.0:
             return
-        mean_n, averages = self._sum_n_s / since_s, self.averages_n
-        for i, decade_s in enumerate(DECADES_S):
-            averages[i] += (mean_n - averages[i]) * since_s / (decade_s + since_s)
+        mean_n, averages, over_s = self._sum_n_s / since_s, self.averages_n, 1.0
+        for i in range(DECADES):
+            averages[i] += (mean_n - averages[i]) * since_s / (over_s + since_s)
+            over_s *= 10.0
         self._sum_n_s = self._since_s = 0.0
 
     def remembered_n(self) -> float:

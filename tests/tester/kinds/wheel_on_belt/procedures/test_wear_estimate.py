@@ -9,7 +9,7 @@ import pytest
 
 from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.procedures.wear_estimate import (
-    DECADES_S,
+    DECADES,
     DISAGREEMENTS,
     LoadMemory,
     WearEstimate,
@@ -121,7 +121,7 @@ def test_a_load_is_remembered_and_forgotten_decade_by_decade() -> None:
         memory.add(nan, 0.01)
     rested_n = memory.remembered_n()
     assert 0.2 * loaded_n < rested_n < 0.6 * loaded_n
-    assert len(memory.averages_n) == len(DECADES_S)
+    assert len(memory.averages_n) == DECADES
 
 
 def wheel(loss_mm: float, seen_mm: float, variance_mm2: float = 0.0036) -> WheelLife:
