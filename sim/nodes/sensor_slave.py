@@ -130,7 +130,7 @@ class SensorSlave(ModbusSlave):
                 value = 0.0
             count: float = (value - offset) / scale
             if whole:
-                count = floor(count + step)
+                count = float(floor(count + step))
             if not -limit < count < limit:
                 status |= self._overload
                 count = min(max(count, -limit), limit)
@@ -138,9 +138,10 @@ class SensorSlave(ModbusSlave):
                 status |= sign
                 count = -count
             if whole:
-                count = int(count)
-                count = least if count < least else most if count > most else count
-            counts.append(count)
+                number = int(count)
+                counts.append(least if number < least else most if number > most else number)
+            else:
+                counts.append(count)
         if self._status_place >= 0:
             counts[self._status_place] = status
         self._shown = data = self._block.pack(*counts)
