@@ -55,7 +55,7 @@ class Range:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class KeyEntry:
     """A field of a configuration class: its name, its key in the file, its type and its unit.
 
     ``unit`` is "" for anything but a quantity. ``marks``: everything else that its ``Annotated`` type carries.
@@ -69,16 +69,16 @@ class Entry:
 
 
 @cache
-def entries(kind: type[DataclassInstance]) -> tuple[Entry, ...]:
+def entries(kind: type[DataclassInstance]) -> tuple[KeyEntry, ...]:
     """Return the fields of a configuration class that a file sets, in their order."""
     hints = _hints(kind)
     return tuple(_entry(field.name, hints[field.name]) for field in fields(kind) if field.init)
 
 
-def _entry(name: str, hint: Any) -> Entry:
+def _entry(name: str, hint: Any) -> KeyEntry:
     marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
     bare: Any = get_args(hint)[0] if marks else hint
-    return Entry(name, _key(name, hint), bare, _unit(hint) or "", marks)
+    return KeyEntry(name, _key(name, hint), bare, _unit(hint) or "", marks)
 
 
 def key_of(kind: type[DataclassInstance], name: str) -> str:

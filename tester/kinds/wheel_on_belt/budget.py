@@ -9,7 +9,7 @@ from tester.analysis.kelvin import Slope
 from tester.analysis.measurand import expected_budget
 from tester.analysis.terms import Acts, BudgetPoint, Size, Term
 from tester.analysis.uncertainty import Budget
-from tester.kinds.wheel_on_belt.image.axes import Held
+from tester.kinds.wheel_on_belt.image.axes import HeldSetpoint
 from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
@@ -67,7 +67,7 @@ BETWEEN_PERCENT: Final = 100.0 * sum(term.standard for term in TERMS if term.act
 """Standard deviation from wheel to wheel of one compound, as stated."""
 
 def instruments_budget(
-    held: Held, mu: float, sliding_m_s: float, size: Size, slope: Slope, *, both_directions: bool = False
+    held: HeldSetpoint, mu: float, sliding_m_s: float, size: Size, slope: Slope, *, both_directions: bool = False
 ) -> Budget:
     """Return the measuring chain's part of the uncertainty of an expected coefficient.
 

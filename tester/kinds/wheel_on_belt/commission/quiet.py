@@ -58,7 +58,9 @@ def jog_rig(rig: RigConfig, speeds: dict[str, JogSpeeds]) -> RigConfig:
             most = min(axis.max_torque_per_mille, max(1, round(needed)))
         slow = replace(axis, max_torque_per_mille=most)
         if axis.mode == "position":
-            slow = replace(slow, max_speed=min(axis.max_speed, speeds[name].speed))
+            most_speed = min(axis.max_speed, speeds[name].speed)
+            homing = {key: min(getattr(axis, key), most_speed) for key in ("homing_speed", "homing_zero_speed")}
+            slow = replace(slow, max_speed=most_speed, **homing)
         axes[name] = slow
     return replace(rig, axes=replace(rig.axes, **axes))
 

@@ -82,7 +82,7 @@ def straight() -> dict[str, float]:
 _NAMES = tuple(axis.name for axis in POSITIONED)
 
 
-class Held(NamedTuple):
+class HeldSetpoint(NamedTuple):
     """The quantities of a setpoint on this machine. Speeds m/s, load N, surface temperature degC."""
 
     compound: str
@@ -99,7 +99,7 @@ class Held(NamedTuple):
         # Rounded to 1 nm/s: 0.8 - 0.3 is to be 0.5 in every output, not 0.5000000000000001.
         return round(self.wheel_speed_m_s - self.slip_velocity_m_s, 9)
 
-    def reversed(self) -> Held:
+    def reversed(self) -> HeldSetpoint:
         """Return the same setpoint with reversed slip: the belt is faster by as much as it was slower."""
         return self._replace(slip_velocity_m_s=-self.slip_velocity_m_s)
 
@@ -119,12 +119,12 @@ _BY_FIELD = {axis.field: axis.name for axis in AXES}
 
 @lru_cache(maxsize=8)
 def _numbers_of(axes: Axes) -> Callable[[tuple[AxisValue, ...]], tuple[float, ...]]:
-    return axes.numbers_of(*(_BY_FIELD[field] for field in Held._fields[1:-1]), *_NAMES)
+    return axes.numbers_of(*(_BY_FIELD[field] for field in HeldSetpoint._fields[1:-1]), *_NAMES)
 
 
-def held_by(setpoint: Setpoint) -> Held:
+def held_by(setpoint: Setpoint) -> HeldSetpoint:
     """Return the quantities of a setpoint; further axes of a laboratory's own kind are ignored."""
     slip_m_s, load_n, temperature_c, wheel_m_s, *positions = _numbers_of(setpoint.axes)(setpoint.values)
-    return Held(
+    return HeldSetpoint(
         setpoint.compound, slip_m_s, load_n, temperature_c, wheel_m_s, dict(zip(_NAMES, positions, strict=True))
     )

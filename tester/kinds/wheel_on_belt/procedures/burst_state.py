@@ -18,7 +18,7 @@ from sim.physics.slip import slip_velocity
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.directions import is_reversed
 from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.image.axes import Held
+from tester.kinds.wheel_on_belt.image.axes import HeldSetpoint
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.machine.measured import MeasuredRepeat
 
@@ -109,7 +109,7 @@ def run_in_m(step: WheelCondition, repeat: int) -> float:
 class CentredBursts(MeasuredRepeat):
     """The temperature rules of a repeat's bursts: start, end, and the learned start offset."""
 
-    def __init__(self, step: WheelCondition, setpoint: Held, offset_k: float, counter: BlockCounter) -> None:
+    def __init__(self, step: WheelCondition, setpoint: HeldSetpoint, offset_k: float, counter: BlockCounter) -> None:
         """``offset_k``: distance of the start below the setpoint, from the previous repeat."""
         super().__init__(counter)
         self.condition = step

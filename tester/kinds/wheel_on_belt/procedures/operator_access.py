@@ -41,7 +41,7 @@ class Standing(Move):
         )
 
 
-class Free(Move):
+class FreeWheel(Move):
     """Wait until the load cell, without tare, shows a free wheel: a person may have left it on the belt."""
 
     limit_s = 30.0  # [A]; a person may still touch the wheel
@@ -103,7 +103,7 @@ class AskAtRest:
         self.moves: list[CoolDown | HeaterProof | Sequence] = []
         self.ask: Ask | None = None
         self.answered = False
-        self.free = Sequence(Free())
+        self.free = Sequence(FreeWheel())
 
     def resume(self, ctx: Context) -> None:
         """Resume cooling, or stopping."""

@@ -19,7 +19,7 @@ from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.repeats_section import expected
 from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, StepEstimate
-from tester.kinds.wheel_on_belt.image.axes import Held, held_by
+from tester.kinds.wheel_on_belt.image.axes import HeldSetpoint, held_by
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
@@ -155,7 +155,7 @@ class ConditionCosts:
             repeats,
         )
 
-    def _motion(self, sp: Held, how: WheelSettings) -> ConditionMotion:
+    def _motion(self, sp: HeldSetpoint, how: WheelSettings) -> ConditionMotion:
         c = self.constants
         turn_s = self.turn_m / sp.wheel_speed_m_s
         yawed = sp.yawed

@@ -42,6 +42,8 @@ EQUAL_SIZES = 0.05
 """The same size in two sections may differ by this share: a wheel is ground before it is mounted [A]."""
 BEYOND = 0.5
 """Software limits may be wider than what the machine needs by this share of it, to either side [A]."""
+ANGLE_DEG = 10.0
+"""Range of a positioned axis to either side that is never too wide, deg [A]."""
 EQUAL_DECELERATIONS = 0.05
 """Wheel and belt must decelerate alike, in m/s2, within this share [A]: otherwise one stops before the other."""
 
@@ -100,7 +102,8 @@ def _sizes(rig: RigConfig) -> _Found:
             name = f"geometry.wheel_{key.removeprefix('outer_')}"
             yield ("observer", "wheel", key), f"{believed:g} mm, and {name} is {mm:g} mm: expected within 5 %"
     widest = {"press": (0.0, geometry.touch_mm + wheel.rubber_layer)}
-    widest |= {name: (-limit, limit) for name, limit in rig.limits.positions().items()}
+    # A smaller limit of the recipes' angles changes no machine.
+    widest |= {name: (-max(limit, ANGLE_DEG), max(limit, ANGLE_DEG)) for name, limit in rig.limits.positions().items()}
     for name, axis in rig.axes.driven().items():
         if name in widest and axis.software_limits is not None:
             (low, high), (first, last) = axis.software_limits, widest[name]

@@ -184,7 +184,7 @@ CAUSES: dict[str, list[Break]] = {
     "wheel speed": [_set(wheel_speed_m_s=0.7), _set(wheel_speed_m_s=0.9), _set(wheel_speed_m_s=NAN)],
     "belt speed": [_set(belt_speed_m_s=0.4), _set(belt_speed_m_s=0.6), _set(belt_speed_m_s=NAN)],
     "press speed": [_set(press_mm=12.2), _set(press_mm=NAN)],
-    "press travel": [_set(press_mm=18.1), _set(press_mm=-1.1), _set(press_mm=NAN)],
+    "press travel": [_set(press_mm=20.1), _set(press_mm=-1.1), _set(press_mm=NAN)],
     "drive standing under load": [_set(belt_speed_m_s=0.0), _set(wheel_speed_m_s=0.0), _set(belt_speed_m_s=NAN)],
     "belt torn": [_torn],
     "load cell silent": [_stale("cell_at_s"), _set(cell_silent=True, cell_valid=False)],

@@ -34,6 +34,7 @@ def rest(bench: Bench, mode: Mode = Mode.IDLE) -> None:
 def creep(bench: Bench) -> None:
     """Stop with a hot hub, and be in the cool-down."""
     bench.control.view.jacket.forget(bench.readings.now_s)
+    bench.control.view.heat.forget()
     bench.readings.hub_c = 65.0
     bench.control.request_stop(bench.readings.now_s, "test")
     bench.scan()
