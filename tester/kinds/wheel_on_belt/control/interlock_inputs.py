@@ -22,8 +22,9 @@ _INF: Final = inf
 _LOAD: Final = Press.LOAD  # bound once: a look-up on the enum class costs several times as much (CPython 3.11)
 ALIKE_K: Final = 1.5
 """Hub and surface of a rig at the air's temperature differ by less, K [A]: the bias of the thermometer and noise."""
-AIR_OFF_K: Final = (3.0, 20.0)
-"""Air this far off the file's is believed, K [A]: less changes little, more is a sensor that is wrong."""
+AIR_OFF_K: Final = 3.0
+AIR_WRONG_K: Final = 20.0
+"""Air off the file's by more than the first is believed, K [A]; by more than the second, a sensor is wrong."""
 
 
 @dataclass(slots=True)
@@ -124,7 +125,7 @@ class InterlockInputs(Inputs):
         self._air_unknown = False
         off_k = r.hub_c - self.rig.ambient_c
         even = -ALIKE_K <= r.surface_c - r.hub_c <= ALIKE_K
-        if even and AIR_OFF_K[0] < abs(off_k) <= AIR_OFF_K[1]:
+        if even and AIR_OFF_K < abs(off_k) <= AIR_WRONG_K:
             self.observer.air(r.hub_c)
             self.heat.ambient_c = r.hub_c
             self.warmer_k = max(0.0, off_k)
