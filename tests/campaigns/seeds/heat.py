@@ -51,13 +51,14 @@ UNLIKE: Final = {
     "heater power -20 %": ("observer.thermal.jacket_power=250 W",),
     "air 6 K colder": ("sim.ambient=17 degC",),
     "air 6 K warmer": ("sim.ambient=29 degC",),
-    "losses +20 %": (
-        "sim.thermal.film_rotating=16.8 W/(m2 K)", "sim.thermal.film_sides=9.6 W/(m2 K)",
-        "sim.thermal.hub_to_shaft=0.18 W/K", "sim.belt_conductance=0.072 W/K",
+    "losses +15 %": (
+        "sim.thermal.film_rotating=16.1 W/(m2 K)", "sim.thermal.film_sides=9.2 W/(m2 K)",
+        "sim.thermal.hub_to_shaft=0.1725 W/K", "sim.belt_conductance=0.069 W/K",
     ),
 }  # fmt: skip
 """What the twin's heat is (``sim``) where it is not what the file believes, or what else that believes (``observer``).
-Air that is 8 K off is told by "surface off model" before anything is heated, and losses of +30 % at 85 degC."""
+Air that is 8 K off trips "surface off model" before anything is heated. Losses of +20 % at 85 degC trip "hub hotter
+than shown": a hub sensor and a thermometer that both read low look the same."""
 
 
 class Heard(NullRecorder):

@@ -157,6 +157,7 @@ class InterlockInputs(Inputs):
         """Take over the history of the rig's heatings, before the first scan."""
         widest, beyond = self.parameters[hub.HEAT_SHARE], self.parameters[hub.HEAT_SHARE_KNOWN]
         self.heat.share = known.share(widest, beyond)
+        self.heat.ungiven_share = known.ungiven_share(widest, beyond)
         if known.count:
             self.heat.ratio, self.heat.spread = known.ratio, beyond
         self.heat_known = known.words(widest, beyond)
@@ -206,7 +207,7 @@ def _heat_balance(rig: RigConfig, p: Values) -> HeatBalance:
     thermal = rig.observer.thermal
     return HeatBalance(
         thermal.hub_capacity, thermal.hub_to_shaft, thermal.jacket_power, rig.ambient_c, p[hub.HEAT_SHARE],
-        p[hub.HEAT_LEAK_W],
+        p[hub.HEAT_LEAK_W], p[hub.HEAT_SHARE],
     )  # fmt: skip
 
 

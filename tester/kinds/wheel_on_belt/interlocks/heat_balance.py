@@ -41,6 +41,8 @@ class HeatBalance:
     """Allowed error of the parameters, as a share of the heat stored and lost; a history tightens it (KnownRatio)."""
     leak_w: float
     """Allowed further loss, W."""
+    ungiven_share: float = 0.3
+    """Allowed error where more heat shows than is put in: a history moves it the other way."""
     unseen_k: float = 0.0
     """Heat not shown, in K of hub ..."""
     ungiven_k: float = 0.0
@@ -116,9 +118,9 @@ class HeatBalance:
         self.lack_j = self.lack_j * fades + (put_w - self.ratio * shown_w) * dt
         self.may_lack_j = self.may_lack_j * fades + (self.spread * put_w + self.leak_w) * dt
         moved_w = abs(self._stored_w) + abs(rubber_w) + abs(shaft_w)
-        astray_w, per_w = self.share * moved_w + self.leak_w, dt / self.capacity_j_k
-        unseen_k = self.unseen_k + (put_w - shown_w - astray_w) * per_w
-        ungiven_k = self.ungiven_k + (shown_w - put_w - astray_w) * per_w
+        per_w = dt / self.capacity_j_k
+        unseen_k = self.unseen_k + (put_w - shown_w - self.share * moved_w - self.leak_w) * per_w
+        ungiven_k = self.ungiven_k + (shown_w - put_w - self.ungiven_share * moved_w - self.leak_w) * per_w
         self.unseen_k = 0.0 if unseen_k < 0.0 else unseen_k
         self.ungiven_k = 0.0 if ungiven_k < 0.0 else ungiven_k
 
@@ -167,6 +169,12 @@ class KnownRatio:
         if self.count == 0:
             return widest
         return min(widest, max(self.ratio * (1.0 + known) - 1.0, LEAST_SHARE))
+
+    def ungiven_share(self, widest: float, known: float) -> float:
+        """Return the share by which the heat put in may fall short of the heat shown: ``known`` below the ratio."""
+        if self.count == 0:
+            return widest
+        return min(widest, max(1.0 - self.ratio * (1.0 - known), LEAST_SHARE))
 
     def words(self, widest: float, known: float) -> str:
         """Return the history and its share, in words."""

@@ -234,6 +234,17 @@ def test_the_first_that_agree_begin_the_history() -> None:
     assert known_ratio((0.8, 1.1, 1.0, 1.0, 1.02), WIDEST, KNOWN).ratio == 1.0
 
 
+@pytest.mark.parametrize(
+    ("ratio", "share"), [(1.0, KNOWN), (0.9, 1.0 - 0.9 * (1.0 - KNOWN)), (0.75, WIDEST), (1.2, LEAST_SHARE)]
+)
+def test_a_history_moves_the_share_of_heat_not_given_the_other_way(ratio: float, share: float) -> None:
+    assert known_ratio((ratio,) * 3, WIDEST, KNOWN).ungiven_share(WIDEST, KNOWN) == pytest.approx(share)
+
+
+def test_without_a_history_heat_not_given_has_the_widest_share() -> None:
+    assert NO_HISTORY.ungiven_share(WIDEST, KNOWN) == WIDEST
+
+
 def test_a_supply_that_drifts_does_not_take_the_share_along() -> None:
     drifting = [1.0 + 0.01 * run for run in range(3 * NEWEST)]
     shares = [share(*drifting[:runs]) for runs in range(FIRST, len(drifting))]
