@@ -258,10 +258,13 @@ def _setup(table: ProfileTable, order: NumberOrder, functions: Collection[int]) 
         "",
     )
     value = table.number("value")
-    words = number.words(value, order)
-    if number.type != "f32" and number.value(b"".join(word.to_bytes(2, "big") for word in words), order) != value:
-        least, greatest = LIMITS[number.type]
+    least, greatest = LIMITS[number.type]
+    if number.type != "f32" and not (value.is_integer() and least <= value <= greatest):
         raise table.error("value", f"must be a whole number {least}..{greatest} for {number.type}, not {value:g}")
+    try:
+        words = number.words(value, order)
+    except ValueError as error:
+        raise table.error("value", str(error)) from error
     writes = table.flag("write", True)
     if writes:
         _writable(table, number, functions)

@@ -1,4 +1,4 @@
-"""``tester stop``: it imports only what it needs to send STOP, because somebody waits for it beside the machine."""
+"""``tester stop``: it imports only what it needs to send STOP, because a person at the machine waits for it."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ def _connected(address: Address) -> socket.socket:
 def _queue_up(connection: socket.socket, path: str) -> None:
     """Connect, and wait while the door's queue is full. Raises OSError, TimeoutError."""
     if sys.platform == "linux":
-        # The kernel lets those who wait in connect in by their turn. Whoever tries again later loses every race.
+        # The kernel serves blocked callers in turn. A caller that retries later would lose every race.
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("@ll", int(WITHIN_S), 0))
     else:
         connection.settimeout(WITHIN_S)

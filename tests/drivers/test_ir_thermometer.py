@@ -240,3 +240,18 @@ def test_a_set_up_that_waits_in_vain_refuses_the_device() -> None:
     rig, thermometer, _ = waiting(0.7)
     rig.run(2.5)
     assert thermometer.refused == "self-test done: register holds 0, expected 3"
+
+
+@pytest.mark.parametrize(
+    ("type_", "value", "message"),
+    [
+        ("u16", "70000", "whole number 0..65535 for u16, not 70000"),
+        ("i16", "1.5", "whole number -32768..32767 for i16, not 1.5"),
+        ("u16", "inf", "whole number 0..65535"),
+        ("f32", "1e39", "does not fit into its register"),
+    ],
+)
+def test_a_set_up_value_that_its_register_cannot_hold_is_refused(type_: str, value: str, message: str) -> None:
+    step = f'[[setup]]\nname = "range"\naddress = 22\ntype = "{type_}"\nvalue = {value}\n'
+    with pytest.raises(ProfileError, match=message):
+        profile_of("f32", more=step)
