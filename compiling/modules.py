@@ -37,6 +37,7 @@ HOT = (
     "sim/wires/modbus_wire.py",
     "sim/nodes/canopen_device.py",
     "sim/nodes/cia402_slave.py",
+    "sim/nodes/control_loop.py",
     "sim/nodes/controller_slave.py",
     "sim/nodes/drive_modes.py",
     "sim/nodes/drive_positioning.py",

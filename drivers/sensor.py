@@ -7,7 +7,8 @@ from math import floor, inf, nan, nextafter
 from typing import Any, Final
 
 from drivers.modbus import Device, ModbusLink, Request
-from drivers.profiles.model import DeviceProfile, Signal
+from drivers.profiles.model import DeviceProfile
+from drivers.profiles.registers import RegisterBlock, Signal
 
 STALE_PERIODS: Final = 3.0
 """Number of poll periods without a reading before the last one is stale [A]."""
@@ -42,19 +43,14 @@ class Sensor(Device):
         """
         profile.expect_sensor()
         super().__init__(profile, unit_id, link)
-        block = profile.blocks[0]
-        names = [signal.name for signal in block.signals]
         self.channels: tuple[str, ...] = tuple(channels) or profile.channels
-        self._unpack = block.unpack
-        self._status_place = names.index("status") if "status" in names else -1
-        self._rows = tuple(
-            _row(number, names.index(name), profile.signal(name), profile.saturated)
-            for number, name in enumerate(self.channels)
-            if name in names
+        self._reads: tuple[_SensorRead, ...] = tuple(
+            _SensorRead(block, self.channels, profile.saturated) for block in profile.blocks
         )
+        self._in_one = len(self._reads) == 1
         self._invalid_bits = profile.invalid_bits
         self._poll = self._polls[0]
-        self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * block.period_s)
+        self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * max(block.period_s for block in profile.blocks))
         """Age above which a reading is stale, s."""
         size = len(self.channels)
         self.counts: list[float] = [0.0] * size
@@ -102,14 +98,15 @@ class Sensor(Device):
             Device.received(self, request, data, t)
 
     def take(self, block: int, data: bytes, t: float) -> None:
-        """Update the readings from the registers of the first block; other blocks are ignored."""
-        if block:
-            return
-        found: tuple[Any, ...] = self._unpack(data)  # whole numbers, and floats of f32
-        status = int(found[self._status_place]) if self._status_place >= 0 else 0
+        """Update the readings from the registers of a block; they are as old as the oldest block."""
+        read = self._reads[block]
+        found: tuple[Any, ...] = read.unpack(data)  # whole numbers, and floats of f32
+        if read.status_place >= 0:
+            self.status = int(found[read.status_place])
+        status = self.status
         counts, raw, values, tare = self.counts, self.raw, self.values, self.tare
-        valid = not status & self._invalid_bits
-        for number, place, sign, scale, offset, low, high in self._rows:
+        valid = True
+        for number, place, sign, scale, offset, low, high in read.rows:
             count = float(found[place])
             if sign and status & sign:
                 count = -count
@@ -121,16 +118,43 @@ class Sensor(Device):
                 self.changed_s = t
             raw[number] = value
             values[number] = value - tare[number]
-        self.status = status
-        self.valid = valid
-        self.stamp_s = t
+        if self._in_one:
+            self.valid = valid and not status & self._invalid_bits
+            self.stamp_s = t
+            return
+        read.plausible, read.stamp_s = valid, t
+        stamp_s = t
+        for one in self._reads:
+            valid = valid and one.plausible
+            if one.stamp_s < stamp_s:
+                stamp_s = one.stamp_s
+        self.valid = valid and not status & self._invalid_bits
+        self.stamp_s = stamp_s
 
     def suspend(self) -> None:
         """Mark the last reading as invalid."""
         self.valid = False
+        for one in self._reads:
+            one.plausible = False
 
     def resume(self) -> None:
         """Leave the last reading invalid until the next one comes."""
+
+
+class _SensorRead:
+    """One block of a sensor's registers: how its numbers become values, and the state of the last reading of it."""
+
+    def __init__(self, block: RegisterBlock, channels: Sequence[str], saturated: float | None) -> None:
+        names = [signal.name for signal in block.signals]
+        self.unpack = block.unpack
+        self.status_place: int = names.index("status") if "status" in names else -1
+        self.rows: tuple[tuple[int, int, int, float, float, float, float], ...] = tuple(
+            _row(number, names.index(name), block.signals[names.index(name)], saturated)
+            for number, name in enumerate(channels)
+            if name in names
+        )
+        self.plausible = False
+        self.stamp_s: float = -inf
 
 
 def _row(

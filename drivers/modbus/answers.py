@@ -85,7 +85,7 @@ def serial_answer(request: Request, data: bytes) -> ReplySoFar:
         counters.garbage += at > 0  # noise before it, as when a line driver switches on
         return ReplySoFar(AnswerKind.GOOD, whole[3:-2])
     while data:
-        used, unit_id, _, pdu = codec.next_frame("rtu", data)
+        used, unit_id, _, pdu = codec.next_frame("rtu", data, request.function)
         if not used:
             break
         if not pdu:

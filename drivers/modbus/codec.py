@@ -13,6 +13,16 @@ from typing import Literal
 
 from pymodbus.framer import FramerRTU, FramerSocket
 from pymodbus.pdu import DecodePDU, ExceptionResponse, ModbusPDU
+from pymodbus.pdu.bit_message import (
+    ReadCoilsRequest,
+    ReadCoilsResponse,
+    ReadDiscreteInputsRequest,
+    ReadDiscreteInputsResponse,
+    WriteMultipleCoilsRequest,
+    WriteMultipleCoilsResponse,
+    WriteSingleCoilRequest,
+    WriteSingleCoilResponse,
+)
 from pymodbus.pdu.register_message import (
     ReadHoldingRegistersRequest,
     ReadHoldingRegistersResponse,
@@ -29,11 +39,18 @@ from drivers.crc16 import with_crc
 Framing = Literal["rtu", "socket"]
 """Modbus RTU (serial line) or Modbus TCP."""
 
+READ_COILS = 1
+READ_DISCRETE = 2
 READ_HOLDING = 3
 READ_INPUT = 4
+WRITE_COIL = 5
 WRITE_ONE = 6
+WRITE_COILS = 15
 WRITE_MANY = 16
 """Function codes in use (Modbus application protocol V1.1b3)."""
+_BIT_FUNCTIONS = frozenset({READ_COILS, READ_DISCRETE, WRITE_COIL, WRITE_COILS})
+_COIL_ON = 0xFF00
+"""Value of function 5 that switches a coil on (6.5)."""
 
 MOST_WRITTEN = 123
 """Registers in one write (6.12)."""
@@ -67,9 +84,24 @@ class _Replies(DecodePDU):
     }
 
 
+class _BitReplies(DecodePDU):
+    """Decoder of the possible replies to requests for coils and discrete inputs only."""
+
+    pdu_table = {  # noqa: RUF012 - the library's own class attribute, narrowed
+        READ_COILS: (ReadCoilsRequest, ReadCoilsResponse),
+        READ_DISCRETE: (ReadDiscreteInputsRequest, ReadDiscreteInputsResponse),
+        WRITE_COIL: (WriteSingleCoilRequest, WriteSingleCoilResponse),
+        WRITE_COILS: (WriteMultipleCoilsRequest, WriteMultipleCoilsResponse),
+    }
+
+
 _FRAMERS: dict[str, FramerRTU | FramerSocket] = {
     "rtu": FramerRTU(_Replies(False)),
     "socket": FramerSocket(_Replies(False)),
+}
+_BIT_FRAMERS: dict[str, FramerRTU | FramerSocket] = {
+    "rtu": FramerRTU(_BitReplies(False)),
+    "socket": FramerSocket(_BitReplies(False)),
 }
 
 
@@ -83,30 +115,43 @@ class DecodedAnswer(Enum):
 
 
 def read_request(framing: Framing, unit_id: int, function: int, address: int, count: int) -> bytes:
-    """Return the request to read ``count`` registers from ``address``; transaction number 0 on TCP.
+    """Return the request to read ``count`` registers, coils or discrete inputs from ``address``; transaction number 0
+    on TCP.
 
-    Raises ValueError for a function that does not read, a count outside 1..125 or an address outside 16 bits.
+    Raises ValueError for a function that does not read, a count outside 1..125 (of bits 1..2000) or an address outside
+    16 bits.
     """
     if function == READ_HOLDING:
         return _build(framing, ReadHoldingRegistersRequest(dev_id=unit_id, address=address, count=count))
     if function == READ_INPUT:
         return _build(framing, ReadInputRegistersRequest(dev_id=unit_id, address=address, count=count))
-    raise ValueError(f"function {function} does not read registers (expected 3 or 4)")
+    if function == READ_COILS:
+        return _build(framing, ReadCoilsRequest(dev_id=unit_id, address=address, count=count))
+    if function == READ_DISCRETE:
+        return _build(framing, ReadDiscreteInputsRequest(dev_id=unit_id, address=address, count=count))
+    raise ValueError(f"function {function} does not read (expected 1 to 4)")
 
 
 def write_request(framing: Framing, unit_id: int, function: int, address: int, values: Sequence[int]) -> bytes:
-    """Return the request to write ``values`` (0..65535 each) from ``address``; transaction number 0 on TCP.
+    """Return the request to write ``values`` (0..65535 each, coils 0 or 1) from ``address``; transaction number 0 on
+    TCP.
 
     Raises ValueError for a function that does not write, for no or too many values, and for values out of range.
     """
-    if any(not 0 <= value <= 0xFFFF for value in values):
-        raise ValueError(f"a register holds 0..65535, not {list(values)}")
+    coils = function in (WRITE_COIL, WRITE_COILS)
+    if any(not 0 <= value <= (1 if coils else 0xFFFF) for value in values):
+        raise ValueError(f"a {'coil holds 0 or 1' if coils else 'register holds 0..65535'}, not {list(values)}")
+    if function == WRITE_COIL and len(values) == 1:
+        return _build(framing, WriteSingleCoilRequest(dev_id=unit_id, address=address, bits=[values[0] == 1]))
+    if function == WRITE_COILS and 1 <= len(values) <= MOST_WRITTEN:
+        bits = [value == 1 for value in values]
+        return _build(framing, WriteMultipleCoilsRequest(dev_id=unit_id, address=address, bits=bits))
     if function == WRITE_ONE and len(values) == 1:
         return _build(framing, WriteSingleRegisterRequest(dev_id=unit_id, address=address, registers=values))
     if function == WRITE_MANY and 1 <= len(values) <= MOST_WRITTEN:
         return _build(framing, WriteMultipleRegistersRequest(dev_id=unit_id, address=address, registers=values))
-    expected = f"expected 6 for one, 16 for up to {MOST_WRITTEN}"
-    raise ValueError(f"function {function} does not write {len(values)} registers ({expected})")
+    expected = f"expected 6 for one register, 16 for up to {MOST_WRITTEN}; 5 for one coil, 15 for several"
+    raise ValueError(f"function {function} does not write {len(values)} values ({expected})")
 
 
 def _build(framing: Framing, message: ModbusPDU) -> bytes:
@@ -114,22 +159,31 @@ def _build(framing: Framing, message: ModbusPDU) -> bytes:
 
 
 def write_reply(request: bytes) -> bytes:
-    """Return the good RTU reply to a write request: function 6 repeats it, function 16 its address and count."""
-    return request if request[1] == WRITE_ONE else with_crc(request[:6])
+    """Return the good RTU reply to a write: functions 5 and 6 repeat it, 15 and 16 its address and count."""
+    return request if request[1] in (WRITE_COIL, WRITE_ONE) else with_crc(request[:6])
+
+
+def data_length(function: int, count: int) -> int:
+    """Return the bytes of data in a good reply to a read of ``count`` registers or bits; 0 for a write."""
+    if function in (READ_COILS, READ_DISCRETE):
+        return (count + 7) // 8
+    return 2 * count if function in (READ_HOLDING, READ_INPUT) else 0
 
 
 def reply_length(framing: Framing, function: int, count: int) -> int:
-    """Return the length in bytes of a good reply to a request of ``count`` registers."""
-    data = 1 + 2 * count if function in (READ_HOLDING, READ_INPUT) else 4
-    return data + (4 if framing == "rtu" else 8)
+    """Return the length in bytes of a good reply to a request of ``count`` registers or bits."""
+    data = data_length(function, count)
+    return (1 + data if data else 4) + (4 if framing == "rtu" else 8)
 
 
-def next_frame(framing: Framing, buffer: bytes) -> tuple[int, int, int, bytes]:
+def next_frame(framing: Framing, buffer: bytes, function: int = READ_HOLDING) -> tuple[int, int, int, bytes]:
     """Return (bytes consumed, unit id, transaction number, PDU) of the first frame in ``buffer``.
 
+    ``function``: that of the request; a reply of registers is not looked for where bits were asked for, and vice versa.
     0 bytes consumed: no frame yet. Bytes consumed without a PDU: a frame that fails its CRC.
     """
-    used, unit_id, transaction, pdu = _FRAMERS[framing].decode(buffer)
+    framers = _BIT_FRAMERS if function in _BIT_FUNCTIONS else _FRAMERS
+    used, unit_id, transaction, pdu = framers[framing].decode(buffer)
     if pdu and framing == "rtu":
         # The library drops the bytes after the frame; they may be the answer we wait for.
         used = buffer.index(pdu) + len(pdu) + 2
@@ -161,7 +215,8 @@ def tcp_reply(data: bytes, transaction: int, unit_id: int, function: int, length
     answered = {function} if counted == good else {function | 0x80}
     if len(data) >= 8 and data[7] not in (answered if good != refused else {function, function | 0x80}):
         raise FramingError(f"function {data[7]} in a reply of {counted} bytes")
-    if len(data) >= 9 and data[7] == function and function in (READ_HOLDING, READ_INPUT) and data[8] != length - 9:
+    reads = function <= READ_INPUT
+    if len(data) >= 9 and data[7] == function and reads and data[8] != length - 9:
         raise FramingError(f"{data[8]} bytes of registers, expected {length - 9}")
     if len(data) > 6 + counted and len(data) >= 6:
         raise FramingError(f"{len(data) - 6 - counted} bytes after the reply")
@@ -174,18 +229,13 @@ def classify(pdu: bytes, function: int, address: int, values: Sequence[int], cou
         return DecodedAnswer.EXCEPTION
     if pdu[0] != function:
         return DecodedAnswer.OTHER
-    good = False
-    if function in (READ_HOLDING, READ_INPUT):
-        good = len(pdu) == 2 + 2 * count and pdu[1] == 2 * count
-    elif len(pdu) == 5:
-        if function == WRITE_ONE:
-            one = WriteSingleRegisterResponse()
-            one.decode(pdu[1:])
-            good = one.address == address and list(one.registers) == list(values)
-        else:
-            many = WriteMultipleRegistersResponse()
-            many.decode(pdu[1:])
-            good = many.address == address and many.count == count
+    data = data_length(function, count)
+    if data:
+        good = len(pdu) == 2 + data and pdu[1] == data
+    else:
+        one = function in (WRITE_COIL, WRITE_ONE) and len(values) == 1
+        repeated = count if not one else values[0] * _COIL_ON if function == WRITE_COIL else values[0]
+        good = pdu[1:] == address.to_bytes(2, "big") + repeated.to_bytes(2, "big")
     return DecodedAnswer.GOOD if good else DecodedAnswer.OTHER
 
 

@@ -6,11 +6,12 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import inf
 
-from drivers.modbus.codec import READ_HOLDING, WRITE_MANY
+from drivers.modbus.codec import READ_COILS, READ_HOLDING, WRITE_COIL, WRITE_COILS, WRITE_MANY
 from drivers.modbus.link import ModbusLink
 from drivers.modbus.request import Request
 from drivers.modbus.schedule import PROBE_S
 from drivers.profiles.model import DeviceProfile, SetupWrite
+from drivers.profiles.numbers import Number
 
 ASK_AGAIN_S = 0.1
 """Time between two reads of a register that is to change by itself, s [A]."""
@@ -26,6 +27,16 @@ class SetupStep:
     """Expected content of the registers read, as on the wire; None = any answer will do."""
     within_s: float = 0.0
     """Time from the first answer within which the registers must hold it, s."""
+    mask: int = 0
+    """Bits of the content that count; 0 = all."""
+
+    def holds(self, data: bytes) -> bool:
+        """Return whether the registers read hold what is expected."""
+        expected = self.expected
+        if expected is None or data[: len(expected)] == expected:
+            return True
+        both = (int.from_bytes(data[: len(expected)], "big"), int.from_bytes(expected, "big"))
+        return self.mask != 0 and both[0] & self.mask == both[1] & self.mask
 
 
 class Device(ABC):
@@ -77,26 +88,27 @@ class Device(ABC):
             self._steps.append(SetupStep("first reading", self._polls[0]))
         self.link.enable(self._steps[0].request)
 
-    def write_function(self, registers: int) -> int:
-        """Return the function that writes so many registers in one request."""
+    def write_function(self, registers: int, coil: bool = False) -> int:
+        """Return the function that writes so many registers, or a coil, in one request."""
+        if coil:
+            return WRITE_COIL if WRITE_COIL in self.profile.functions else WRITE_COILS
         return self.profile.write_function if registers == 1 else WRITE_MANY
 
-    def add_write(self, what: str, address: int, words: tuple[int, ...], read_back: bool) -> None:
-        """Add a write to the set-up, and a comparison of the registers afterwards."""
-        write = self.link.write(self.station, self.write_function(len(words)), address, words)
-        self._steps.append(SetupStep(what, write))
-        if read_back:
-            read = self.link.read(self.station, READ_HOLDING, address, len(words))
-            self._steps.append(SetupStep(what, read, b"".join(word.to_bytes(2, "big") for word in words)))
+    def add_write(self, what: str, address: int, words: tuple[int, ...], read_back: bool, coil: bool = False) -> None:
+        """Add a write of registers, or of a coil, to the set-up, and a comparison of them afterwards."""
+        number: Number = "bit" if coil else "u16" if len(words) == 1 else "u32"
+        read = READ_COILS if coil else READ_HOLDING
+        self.add_setup(SetupWrite(what, address, words, read_back, type=number, read=read))
 
     def add_setup(self, setup: SetupWrite) -> None:
-        """Add a step of the profile's set-up: a write, a wait for a value, or both."""
+        """Add a step of the profile's set-up: a write with its comparison, a wait for a value, or both."""
         if setup.writes:
-            self.add_write(setup.name, setup.address, setup.words, setup.read_back and not setup.within_s)
-        if setup.within_s:
-            read = self.link.read(self.station, READ_HOLDING, setup.address, len(setup.words))
-            expected = b"".join(word.to_bytes(2, "big") for word in setup.words)
-            self._steps.append(SetupStep(setup.name, read, expected, setup.within_s))
+            function = self.write_function(len(setup.words), setup.type == "bit")
+            write = self.link.write(self.station, function, setup.address, setup.words)
+            self._steps.append(SetupStep(setup.name, write))
+        if setup.read_back:
+            read = self.link.read(self.station, setup.read, setup.address, setup.count)
+            self._steps.append(SetupStep(setup.name, read, setup.expected, setup.within_s, setup.mask))
 
     def received(self, request: Request, data: bytes, t: float) -> None:
         """Process a good reply that arrived at ``t`` s: continue the set-up, or update the readings."""
@@ -122,13 +134,13 @@ class Device(ABC):
         """End a step of the set-up and begin the next one."""
         if step.expected is not None:
             found, expected = data[: len(step.expected)], step.expected
-            if found != expected:
+            if not step.holds(data):
                 self._waits_until_s = min(self._waits_until_s, t + step.within_s)
                 if t < self._waits_until_s:
                     self.link.disable(step.request)
                     self.link.enable(step.request, t + ASK_AGAIN_S)
                     return
-                one = len(expected) == 2  # for people: a number, or the bytes of several registers
+                one = len(expected) <= 2  # for people: a number, or the bytes of several registers
                 shown = [str(int.from_bytes(held, "big")) if one else held.hex(" ") for held in (found, expected)]
                 self.station.refused = f"{step.what}: register holds {shown[0]}, expected {shown[1]}"
                 return

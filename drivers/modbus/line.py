@@ -38,7 +38,7 @@ class LineType:
         request = Request(station, function, address, count, period_s, slack_s)
         request.frame = codec.read_request(self.framing, station.unit_id, function, address, count)
         if not self.socket:
-            request.head = bytes((station.unit_id, function, 2 * count))
+            request.head = bytes((station.unit_id, function, codec.data_length(function, count)))
         return self._timed(request)
 
     def write(

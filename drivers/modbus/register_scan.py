@@ -134,7 +134,7 @@ class LineScan:
             self._buffer = self._buffer.removeprefix(self._frame)
         at, data = 0, self._buffer
         while at < len(data):
-            used, unit_id, transaction, pdu = codec.next_frame(self.framing, data[at:])
+            used, unit_id, transaction, pdu = codec.next_frame(self.framing, data[at:], question.function)
             if not used:
                 return
             at += used

@@ -162,4 +162,5 @@ class Request:
     def describe(self) -> str:
         """Return a description of the request for people."""
         what = "writing" if self.writes else "reading"
-        return f"{what} {self.count} register{'s' if self.count > 1 else ''} from address {self.address}"
+        thing = {1: "coil", 2: "input", 5: "coil", 15: "coil"}.get(self.function, "register")
+        return f"{what} {self.count} {thing}{'s' if self.count > 1 else ''} from address {self.address}"

@@ -12,23 +12,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Literal, cast, get_args
 
-from drivers.profiles.model import (
-    LIMITS,
-    SIZES,
-    DeviceProfile,
-    Identity,
-    Kind,
-    LineData,
-    Number,
-    NumberOrder,
-    Order,
-    ProfileError,
-    RegisterBlock,
-    SetupWrite,
-    Signal,
-    Switch,
-    Timing,
-)
+from drivers.profiles.model import DeviceProfile, Identity, Kind, LineData, ProfileError, SetupWrite, Switch, Timing
+from drivers.profiles.numbers import BIT_READS, LIMITS, SIZES, Number, NumberOrder, Order
+from drivers.profiles.registers import RegisterBlock, Signal
 from drivers.profiles.table import ProfileTable, read_table
 
 __all__ = [
@@ -45,8 +31,10 @@ __all__ = [
 _FOLDER = Path(__file__).parent
 _WRITE_MANY = 16
 """Function code that writes several registers in one request."""
-_MOST_REGISTERS = 125
-"""Registers in one read (Modbus application protocol V1.1b3, 6.3)."""
+_WRITE_COILS = {5, 15}
+"""Function codes that write coils, one or several."""
+_MOST_REGISTERS, _MOST_BITS = 125, 2000
+"""Registers, and coils or discrete inputs, in one read (Modbus application protocol V1.1b3, 6.1 to 6.4)."""
 _LONGEST_WAIT_MS = 60_000
 """Longest time that a step of the set-up may wait for a value, ms [A]."""
 SATURATED_SHARE = 0.98
@@ -55,7 +43,7 @@ _FORCES = ("fx", "fy", "fz", "mz", "force")
 """Longitudinal, lateral and normal force (N), moment about the vertical (N m), in the wheel's frame; ``force`` (N) is
 the channel of a transmitter with only one: the rig file states which of the forces it measures."""
 _FIRST_READ: dict[Kind, tuple[str, ...]] = {"load_cell": _FORCES, "ir_thermometer": ("surface",)}
-"""The first read of each kind must hold at least one of these channels, and the status."""
+"""The first read of each kind must hold at least one of these channels."""
 
 
 def profile_names() -> list[str]:
@@ -114,10 +102,11 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
         identity=_identity(top.table("identity")) if "identity" in top else None,
         setup=tuple(_setup(write, order, functions) for write in top.tables("setup")),
         writes=_signals(top.table("writes"), functions),
-        switches=_switches(top.table("switches")),
+        switches=_switches(top.table("switches"), functions),
         tare=top.flag("tare", cell),
         saturated=top.share("saturated", SATURATED_SHARE if cell else None),
         falls_back_s=top.number("falls_back_s") if "falls_back_s" in top else None,
+        standby_c=top.number("standby_c") if "standby_c" in top else None,
     )
     top.end()
     return profile
@@ -126,8 +115,8 @@ def _profile(name: str, top: ProfileTable) -> DeviceProfile:
 def _look_at_reads(
     top: ProfileTable, kind: Kind, blocks: Sequence[RegisterBlock], functions: Collection[int]
 ) -> None:
-    """Refuse reads that the device does not know, a first read without the sensor's channels or status, and a
-    controller's register with an offset.
+    """Refuse reads that the device does not know, a first read without the sensor's channels, a name that is read
+    twice, and a controller's register with an offset.
     """
     if not blocks:
         raise top.error("reads", "is missing")
@@ -137,12 +126,16 @@ def _look_at_reads(
             raise top.error("reads", f"{block.signals[0].name} is read with function {block.function}, and {expected}")
     if kind in ("jacket", "chamber") and any(signal.offset for block in blocks for signal in block.signals):
         raise top.error("signals", "a controller's registers have no offset")
+    every = [signal.name for block in blocks for signal in block.signals]
+    for name in every:
+        if every.count(name) > 1:
+            raise top.error("reads", f"{name} is in two of them")
     names = {signal.name for signal in blocks[0].signals}
     if kind == "sensor" and names == {"status"}:
         raise top.error("reads", "the first read must hold a channel")
     wanted = _FIRST_READ.get(kind, ())
-    if wanted and not ("status" in names and names.intersection(wanted)):
-        raise top.error("reads", f"the first read must hold status and {' or '.join(wanted)}")
+    if wanted and not names.intersection(wanted):
+        raise top.error("reads", f"the first read must hold {' or '.join(wanted)}")
 
 
 def _whole(table: ProfileTable, key: str, item: object, greatest: int) -> int:
@@ -159,16 +152,18 @@ def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> d
         scale = row.number("scale", 1.0)
         if scale <= 0.0:
             raise row.error("scale", f"must be above 0, not {scale}")
+        number = cast(Number, row.choice("type", get_args(Number)))
         found[key] = Signal(
             name=key,
             address=row.integer("address", 0, 0xFFFF),
-            type=cast(Number, row.choice("type", get_args(Number))),
+            type=number,
             scale=scale,
             unit=row.text("unit", ""),
             offset=row.number("offset", 0.0),
             least=row.number("least", float("-inf")),
             greatest=row.number("greatest", float("inf")),
             sign_bit=row.integer("sign_bit", 0, 31) if "sign_bit" in row else None,
+            bit=row.integer("bit", 0, 15) if number == "bit" and "bit" in row else 0,
             default=row.number("default") if "default" in row else None,
         )
         if functions is not None:
@@ -179,7 +174,11 @@ def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> d
 
 
 def _writable(row: ProfileTable, signal: Signal, functions: Collection[int]) -> None:
-    """Refuse a count that is coarser than the range, and several registers if one request cannot write them."""
+    """Refuse a count that is coarser than the range, and what no function of the device writes in one request."""
+    if signal.type in ("bit", "u8"):
+        if signal.type == "u8" or not _WRITE_COILS.intersection(functions):
+            raise row.error("type", f"{signal.type}: a device that knows function 5 or 15 writes coils, as bit")
+        return
     if signal.type != "f32" and signal.scale > signal.greatest - signal.least:
         raise row.error("scale", f"{signal.scale:g} is coarser than the range, {signal.least:g} to {signal.greatest:g}")
     if signal.size > 1 and _WRITE_MANY not in functions:
@@ -207,16 +206,21 @@ def _block(table: ProfileTable, signals: dict[str, Signal], order: NumberOrder) 
         chosen.append(signals[item])
     if not chosen:
         raise table.error("signals", "is missing")
-    chosen.sort(key=lambda signal: signal.address)
-    end = 0
+    function = table.integer("function", 1, 4, 3)
+    of_bits = function in BIT_READS
+    chosen.sort(key=lambda signal: (signal.address, signal.bit))
+    end, before = 0, chosen[0]
     for signal in chosen:
-        if signal.address < end:
+        if (signal.type in ("bit", "u8")) != of_bits and (of_bits or signal.type == "u8"):
+            raise table.error("signals", f"{signal.name} is a {signal.type}, and function {function} reads none")
+        shared = signal.type == before.type == "bit" and signal.bit > before.bit and not of_bits
+        if signal.address < end and not shared:
             raise table.error("signals", f"{signal.name} overlaps the one before it")
-        end = signal.address + SIZES[signal.type]
+        end, before = signal.address + SIZES[signal.type], signal
     address = chosen[0].address
-    if end - address > _MOST_REGISTERS:
-        raise table.error("signals", f"span {end - address} registers, more than {_MOST_REGISTERS}")
-    function = table.integer("function", 3, 4, 3)
+    what, most = ("bits", _MOST_BITS) if of_bits else ("registers", _MOST_REGISTERS)
+    if end - address > most:
+        raise table.error("signals", f"span {end - address} {what}, more than {most}")
     period_s = 1e-3 * table.integer("period_ms", 0, 10_000)
     table.end()
     return RegisterBlock(function, address, end - address, period_s, tuple(chosen), order)
@@ -225,8 +229,9 @@ def _block(table: ProfileTable, signals: dict[str, Signal], order: NumberOrder) 
 def _line(table: ProfileTable) -> LineData:
     baud = table.integer("baud", 300, 10_000_000)
     parity = cast(Literal["N", "E", "O"], table.choice("parity", ("N", "E", "O")))
+    stop_bits = cast(Literal[1, 2], table.integer("stop_bits", 1, 2, 1))
     table.end()
-    return LineData(baud, parity)
+    return LineData(baud, parity, stop_bits)
 
 
 def _timing(table: ProfileTable) -> Timing:
@@ -271,18 +276,28 @@ def _setup(table: ProfileTable, order: NumberOrder, functions: Collection[int]) 
     within_s = 1e-3 * table.integer("within_ms", 0, _LONGEST_WAIT_MS, 0)
     if not writes and not within_s:
         raise table.error("within_ms", "is missing: a step that writes nothing waits for its value")
-    step = SetupWrite(number.name, number.address, words, table.flag("read_back", True), within_s, writes)
+    read = table.integer("function", 1, 4, 1 if number.type == "bit" else 3)
+    if (number.type in ("bit", "u8")) != (read in BIT_READS):
+        raise table.error("function", f"{read} does not read a {number.type}")
+    mask = table.integer("mask", 1, 0xFFFF) if "mask" in table else 0
+    if mask and (writes or number.type not in ("u8", "u16")):
+        raise table.error("mask", "is for a step that waits for some bits of a u8 or u16 and writes nothing")
+    read_back = table.flag("read_back", True)
+    step = SetupWrite(number.name, number.address, words, read_back, within_s, writes, number.type, read, mask)
     if within_s and not step.read_back:
         raise table.error("read_back", "must not be false where the step waits for its value")
     table.end()
     return step
 
 
-def _switches(table: ProfileTable) -> dict[str, Switch]:
+def _switches(table: ProfileTable, functions: Collection[int]) -> dict[str, Switch]:
     found: dict[str, Switch] = {}
     for key in table.keys():  # noqa: SIM118 - not a dictionary
         row = table.table(key)
-        address = row.integer("address", 0, 0xFFFF)
-        found[key] = Switch(address, row.integer("on", 0, 0xFFFF), row.integer("off", 0, 0xFFFF))
+        address, coil = row.integer("address", 0, 0xFFFF), row.flag("coil", False)
+        if coil and not _WRITE_COILS.intersection(functions):
+            raise row.error("coil", "the device knows no function that writes coils (5, 15)")
+        most = 1 if coil else 0xFFFF
+        found[key] = Switch(address, row.integer("on", 0, most), row.integer("off", 0, most), coil)
         row.end()
     return found

@@ -2,178 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from math import isfinite
-from struct import Struct
-from typing import Literal, get_args
+from typing import Literal
+
+from drivers.profiles.numbers import BIT_READS, SIZES, Number, NumberOrder, on_wire
+from drivers.profiles.registers import RegisterBlock, Signal
 
 Kind = Literal["load_cell", "ir_thermometer", "jacket", "chamber", "sensor"]
 """Role of a device in a rig; ``sensor`` is one that measures anything else."""
-Number = Literal["u16", "i16", "u32", "i32", "f32"]
-Order = Literal["high_first", "low_first"]
-
-CODES: dict[Number, str] = {"u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
-"""struct codes of the register types."""
-SIZES: dict[Number, int] = {"u16": 1, "i16": 1, "u32": 2, "i32": 2, "f32": 2}
-"""Number of registers of each type."""
-LIMITS: dict[Number, tuple[int, int]] = {
-    "u16": (0, 0xFFFF),
-    "i16": (-0x8000, 0x7FFF),
-    "u32": (0, 0xFFFF_FFFF),
-    "i32": (-0x8000_0000, 0x7FFF_FFFF),
-    "f32": (-(1 << 24), 1 << 24),
-}
-"""Least and greatest count of each type; for f32, the range of exact whole numbers."""
-
-
-MOST_F32 = 3.4028234e38
-"""Greatest number of an f32."""
 
 
 class ProfileError(ValueError):
     """A profile that is missing, incomplete, or unsuitable for the driver."""
-
-
-@dataclass(frozen=True, slots=True)
-class NumberOrder:
-    """Order of a number that takes two registers. A number of one register always has its high byte first (Modbus)."""
-
-    words: Order = "high_first"
-    """Order of the two registers."""
-    bytes: Order = "high_first"
-    """Order of the two bytes in each register."""
-
-    @property
-    def places(self) -> tuple[int, int, int, int]:
-        """Return the place on the wire of each byte of a number, the highest byte first; it is its own inverse."""
-        a, b, c, d = (1, 0, 3, 2) if self.bytes == "low_first" else (0, 1, 2, 3)
-        return (c, d, a, b) if self.words == "low_first" else (a, b, c, d)
-
-    def sorted(self, data: bytes) -> bytes:
-        """Return the four bytes of a number with the highest first, or from there in the order of the wire."""
-        return bytes([data[place] for place in self.places])
-
-
-HIGH_FIRST = NumberOrder()
-ORDERS = tuple(NumberOrder(words, in_words) for in_words in get_args(Order) for words in get_args(Order))
-"""Every order."""
-
-
-@dataclass(frozen=True, slots=True)
-class Signal:
-    """One number in the registers of a device."""
-
-    name: str
-    address: int
-    """Protocol address, counted from 0."""
-    type: Number
-    scale: float
-    """Value of one count, in ``unit``."""
-    unit: str
-    offset: float = 0.0
-    """Value at a count of 0, in ``unit``."""
-    least: float = float("-inf")
-    """A value below it is not plausible; the device does not accept it for a parameter."""
-    greatest: float = float("inf")
-    sign_bit: int | None = None
-    """Status bit that makes the value negative, if the register holds the magnitude."""
-    default: float | None = None
-    """For a parameter: value written if the rig file states none; None = the rig file must state one."""
-
-    @property
-    def size(self) -> int:
-        """Number of registers."""
-        return SIZES[self.type]
-
-    def words(self, value: float, order: NumberOrder = HIGH_FIRST) -> tuple[int, ...]:
-        """Return the registers for ``value``, in the order of sending; the value is rounded to the register's type.
-
-        Raises ValueError for a value that is not finite, or that the type cannot hold.
-        """
-        if not isfinite(value):
-            raise ValueError(f"{self.name} must be a finite number, not {value}")
-        counts = (value - self.offset) / self.scale
-        whole = self.type != "f32"
-        least, greatest = LIMITS[self.type] if whole else (-MOST_F32, MOST_F32)
-        if not least <= (round(counts) if whole else counts) <= greatest:
-            raise ValueError(f"{self.name} does not fit into its register, {self.type}: {value}")
-        data = Struct(">" + CODES[self.type]).pack(round(counts) if whole else counts)
-        if self.size == 2:
-            data = order.sorted(data)
-        return tuple(int.from_bytes(data[at : at + 2], "big") for at in range(0, len(data), 2))
-
-    def value(self, data: bytes, order: NumberOrder = HIGH_FIRST) -> float:
-        """Return the number in the registers ``data``, their bytes in the order of sending."""
-        if self.size == 2:
-            data = order.sorted(data)
-        counts: float = Struct(">" + CODES[self.type]).unpack(data)[0]
-        return counts * self.scale + self.offset
-
-
-@dataclass(frozen=True, slots=True)
-class RegisterBlock:
-    """Registers read in one request, and their conversion to numbers."""
-
-    function: int
-    address: int
-    count: int
-    period_s: float
-    signals: tuple[Signal, ...]
-    """In order of address; ``unpack`` returns and ``pack`` takes their counts in this order."""
-    order: NumberOrder = HIGH_FIRST
-    unpack: Callable[[bytes], tuple[int, ...]] = field(init=False, compare=False)
-    """Returns the counts of the signals from the block's bytes."""
-    pack: Callable[..., bytes] = field(init=False, compare=False)
-    """Returns the block's bytes from the counts of the signals."""
-
-    def __post_init__(self) -> None:
-        """Compile the conversions between bytes and counts."""
-        codes, at = ">", self.address
-        for signal in self.signals:
-            codes += f"{2 * (signal.address - at)}x" if signal.address > at else ""
-            codes += CODES[signal.type]
-            at = signal.address + signal.size
-        layout = Struct(codes)
-        unpack, pack = layout.unpack, layout.pack
-        if self.order != HIGH_FIRST and any(signal.size > 1 for signal in self.signals):
-            sorter = _ByteSorter(layout, self)
-            unpack, pack = sorter.unpack, sorter.pack
-        object.__setattr__(self, "unpack", unpack)
-        object.__setattr__(self, "pack", pack)
-
-    def __deepcopy__(self, memo: dict[int, object]) -> RegisterBlock:
-        """Return itself: it never changes."""
-        return self
-
-    def index(self, name: str) -> int:
-        """Return the place of a signal in the counts. Raises KeyError."""
-        for place, signal in enumerate(self.signals):
-            if signal.name == name:
-                return place
-        raise KeyError(name)
-
-
-class _ByteSorter:
-    """Puts the highest byte of each number of a block first, and back."""
-
-    def __init__(self, layout: Struct, block: RegisterBlock) -> None:
-        self._layout = layout
-        order = list(range(layout.size))
-        for signal in block.signals:
-            if signal.size > 1:
-                at = 2 * (signal.address - block.address)
-                order[at : at + 4] = [at + place for place in block.order.places]
-        self._order = tuple(order)
-
-    def unpack(self, data: bytes) -> tuple[int, ...]:
-        """Return the counts."""
-        return self._layout.unpack(bytes([data[at] for at in self._order]))
-
-    def pack(self, *counts: int) -> bytes:
-        """Return the bytes: the order of the wire is its own inverse."""
-        data = self._layout.pack(*counts)
-        return bytes([data[at] for at in self._order])
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,15 +39,31 @@ class SetupWrite:
     """Time that the device may take until its registers hold the value, s; 0 = the first read-back must hold it."""
     writes: bool = True
     """False: only wait for the value, and write nothing."""
+    type: Number = "u16"
+    read: int = 3
+    """Function that reads it back."""
+    mask: int = 0
+    """Bits of the value that count when it is read back; 0 = all."""
+
+    @property
+    def count(self) -> int:
+        """Number of registers; of coils or discrete inputs where these hold it."""
+        return SIZES[self.type]
+
+    @property
+    def expected(self) -> bytes:
+        """Bytes of a reply that holds the value."""
+        return bytes(self.words) if self.read in BIT_READS else on_wire(self.words)
 
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """A register with one value for on and one for off."""
+    """A register, or a coil, with one value for on and one for off."""
 
     address: int
     on: int
     off: int
+    coil: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,6 +84,7 @@ class LineData:
 
     baud: int
     parity: Literal["N", "E", "O"]
+    stop_bits: Literal[1, 2] = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +121,8 @@ class DeviceProfile:
     falls_back_s: float | None = None
     """For a controller: time without a setpoint, s, after which it continues with its own setpoint. Its set-up makes
     that a setpoint without heat. None = it never does so."""
+    standby_c: float | None = None
+    """For a controller without a switch ``run``: the setpoint that asks for no heat, degC, which takes its place."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> DeviceProfile:
         """Return itself: it never changes."""
@@ -281,8 +140,8 @@ class DeviceProfile:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels of a sensor: the names in its first read except the status, in order of address."""
-        return tuple(signal.name for signal in self.blocks[0].signals if signal.name != "status")
+        """Channels of a sensor: the names in its reads except the status, read by read in order of address."""
+        return tuple(signal.name for block in self.blocks for signal in block.signals if signal.name != "status")
 
     def signal(self, name: str) -> Signal:
         """Return a signal that is read. Raises ProfileError if the device has none of this name."""

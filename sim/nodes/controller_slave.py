@@ -1,63 +1,20 @@
-"""A simulated temperature controller, with registers of 16 bits: the heating jacket's, or a climate chamber's."""
+"""A simulated temperature controller: the heating jacket's, or a climate chamber's."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from math import floor, inf, isfinite
 from typing import Final, Protocol
 
-from drivers.profiles.model import LIMITS, DeviceProfile, Kind, ProfileError
+from drivers.profiles.model import DeviceProfile, ProfileError
+from drivers.profiles.numbers import BIT_READS, LIMITS, on_wire
+from sim.nodes.control_loop import CONTROLLED, LIMIT_RESET_C, ControlledPlant, Pid
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, PATTERN, ModbusSlave
 
-JACKET_CYCLE_S: Final = 0.125
-"""Time between two runs of the jacket's loop [A]."""
-CHAMBER_CYCLE_S: Final = 0.5
-"""Time between two runs of the chamber's loop [A]."""
 POWER_W: Final = 200.0
 """Heat of the jacket at 100 %, W [A]."""
-JACKET_HOTTEST_C: Final = 155.0
-"""The jacket's own limiter: from this temperature there is no heat until a standby below LIMIT_RESET_C [A]."""
-LIMIT_RESET_C: Final = 145.0
-CHAMBER_HOTTEST_C: Final = 105.0
-CHAMBER_COLDEST_C: Final = -55.0
-"""The chamber's own limiter: outside these temperatures it goes to standby [A]."""
 _SHOWN: Final = ("pv", "output", "setpoint", "status")
 _PV_MOST: Final = LIMITS["i16"][1]
-"""Content of the temperature register when the sensor is broken."""
-
-
-@dataclass(frozen=True, slots=True)
-class ControlledPlant:
-    """A loop and its limiter, tuned for the plant under control."""
-
-    cycle_s: float
-    band_k: float
-    """Proportional band, K: its width is 100 % of output."""
-    integral_s: float
-    derivative_s: float
-    least_percent: float
-    """Least output, %; an output below 0 cools."""
-    hottest_c: float
-    coldest_c: float
-    latches: bool
-    """Whether the limiter holds until standby below LIMIT_RESET_C; otherwise it puts the controller in standby."""
-    refuses: bool
-    """Whether a setpoint beyond the profile's range is refused; otherwise the end of the range is used."""
-
-
-CONTROLLED: Final[Mapping[Kind, ControlledPlant]] = {
-    "jacket": ControlledPlant(
-        JACKET_CYCLE_S, 2.5, 60.0, 1.0, 0.0, JACKET_HOTTEST_C, -inf, latches=True, refuses=False
-    ),
-    "chamber": ControlledPlant(
-        CHAMBER_CYCLE_S, 3.0, 300.0, 0.0, -100.0, CHAMBER_HOTTEST_C, CHAMBER_COLDEST_C, latches=False, refuses=True
-    ),
-}
-"""Plants by the kind of profile. The jacket's is tuned for 200 W on a hub of 420 J/K with 20 W/K to the rubber and a
-sensor lag of 1 s; the chamber has full output at 3 K off its setpoint. [A]"""
-FILTER_S: Final = 2.0
-"""Time constant of the derivative's filter, s [A]."""
+"""Count of the temperature when the sensor is broken."""
 
 
 class TemperatureSource(Protocol):
@@ -66,38 +23,6 @@ class TemperatureSource(Protocol):
     def controller_measured_c(self, t: float) -> float:
         """Return the controlled temperature in degC at ``t`` s; NaN when the sensor is broken."""
         ...
-
-
-class Pid:
-    """Output in % from setpoint and measurement; derivative of the measurement, integral without wind-up."""
-
-    def __init__(self, plant: ControlledPlant) -> None:
-        """Take the tuning of a plant; output 0."""
-        self.plant = plant
-        self.reset()
-
-    def reset(self) -> None:
-        """Forget everything: output 0."""
-        self.integral = self._derivative = 0.0
-        self._last_pv: float | None = None
-
-    def step(self, setpoint: float, pv: float, dt: float) -> float:
-        """Advance by ``dt`` s and return the output in %."""
-        plant = self.plant
-        if self._last_pv is not None:
-            rate = (pv - self._last_pv) / dt
-            self._derivative += (rate - self._derivative) * dt / (FILTER_S + dt)
-        self._last_pv = pv
-        gain = 100.0 / plant.band_k
-        error = setpoint - pv
-        direct = gain * (error - plant.derivative_s * self._derivative)
-        wanted, least = direct + self.integral, plant.least_percent
-        # The integral stops while the output is at a limit and the error would drive it further there.
-        driven_up, driven_down = wanted >= 100.0 and error > 0.0, wanted <= least and error < 0.0
-        if not driven_up and not driven_down:
-            self.integral += gain * error * dt / plant.integral_s
-            self.integral = min(max(self.integral, least), 100.0)
-        return min(max(direct + self.integral, least), 100.0)
 
 
 class ControllerSlave(ModbusSlave):
@@ -111,9 +36,10 @@ class ControllerSlave(ModbusSlave):
 
     __slots__ = (
         "_blocks", "_break_bits", "_broken", "_cold_bits", "_coldest_c", "_cycle_s", "_expired_bits", "_falls_back_s",
-        "_hot_bits", "_latches", "_lease", "_pid", "_power_w", "_read_only", "_refuses", "_renewed_s", "_scales",
-        "_setpoint", "_setup", "_switch", "dither", "heater_w", "hottest_c", "lease_expired", "lease_s", "limited",
-        "output", "pv_c", "running", "sensor_broken", "setpoint_c", "source", "stuck_element", "stuck_output",
+        "_floats", "_hot_bits", "_latches", "_lease", "_order", "_pid", "_power_w", "_read_only", "_refuses",
+        "_renewed_s", "_scales", "_setpoint", "_setup", "_standby_c", "_switch", "dither", "heater_w", "hottest_c",
+        "lease_expired", "lease_s", "limited", "output", "pv_c", "running", "sensor_broken", "setpoint_c", "source",
+        "stuck_element", "stuck_output",
     )  # fmt: skip
 
     def __init__(self, profile: DeviceProfile, unit_id: int, source: TemperatureSource) -> None:
@@ -127,7 +53,9 @@ class ControllerSlave(ModbusSlave):
             (block, tuple(_SHOWN.index(signal.name) for signal in block.signals)) for block in profile.blocks
         )
         self.blocks = {(block.address, block.count): number for number, block in enumerate(profile.blocks)}
-        self._scales = tuple(profile.signal(name).scale for name in ("pv", "output", "setpoint"))
+        shown = [profile.signal(name) for name in _SHOWN[:3]]
+        self._scales = tuple(signal.scale for signal in shown)
+        self._floats = tuple(signal.type == "f32" for signal in shown)
         # If the profile has an alarm of its own, over_range is for its sensor.
         self._hot_bits = profile.bit("alarm_1") or profile.bit("over_range")
         self._cold_bits = profile.bit("under_range")
@@ -136,13 +64,20 @@ class ControllerSlave(ModbusSlave):
         self._setpoint = profile.writes["setpoint"]
         self._lease = profile.writes.get("lease")
         self._falls_back_s = profile.falls_back_s
-        self._switch = profile.switches["run"]
-        self._setup = frozenset((write.address, write.words[0]) for write in profile.setup)
-        kept = {self._switch.address, *(write.address for write in profile.setup)}
+        self._order = profile.order
+        self._switch = profile.switches.get("run")
+        self._standby_c = profile.standby_c
+        steps = [write for write in profile.setup if write.read not in BIT_READS]
+        self._setup = frozenset(
+            (write.address + place, word) for write in steps for place, word in enumerate(write.words)
+        )
+        kept = {address for address, _ in self._setup}
+        if self._switch is not None and not self._switch.coil:
+            kept.add(self._switch.address)
         if self._lease is not None:
             kept.add(self._lease.address)
         self.stored = frozenset(kept)
-        self.put(self._switch.address, self._switch.off.to_bytes(2, "big"))
+        self._place(profile)
         self.source = source
         self._pid = Pid(plant)
         self._cycle_s, self._coldest_c, self._latches = plant.cycle_s, plant.coldest_c, plant.latches
@@ -157,6 +92,20 @@ class ControllerSlave(ModbusSlave):
         self._broken = False
         self._renewed_s = -inf
         self.dither = 0
+
+    def _place(self, profile: DeviceProfile) -> None:
+        """Set the type, the switch to standby, and what the set-up waits for."""
+        if profile.identity is not None:
+            self.put(profile.identity.address, profile.identity.value.to_bytes(2, "big"))
+        for write in profile.setup:
+            held = 0 if write.writes else write.words[0]
+            if write.read in BIT_READS:
+                self.bits.update({write.address + place: held >> place & 1 for place in range(write.count)})
+            elif not write.writes:
+                self.put(write.address, on_wire(write.words))
+        if self._switch is not None and self._switch.coil:
+            self.bits[self._switch.address] = self._switch.off
+        self._show_standby()
 
     # the controller --------------------------------------------------------------------------------------------
 
@@ -215,7 +164,14 @@ class ControllerSlave(ModbusSlave):
     def _stand_by(self) -> None:
         self.running = False
         self._pid.reset()
-        self.put(self._switch.address, self._switch.off.to_bytes(2, "big"))
+        self._show_standby()
+
+    def _show_standby(self) -> None:
+        switch = self._switch
+        if switch is not None and switch.coil:
+            self.bits[switch.address] = switch.off
+        elif switch is not None:
+            self.put(switch.address, switch.off.to_bytes(2, "big"))
 
     def _heat(self, output: float) -> None:
         self.output = output
@@ -236,10 +192,15 @@ class ControllerSlave(ModbusSlave):
         which, places = self._blocks[block]
         return which.pack(*[shown[place] for place in places])
 
-    def _show(self) -> tuple[int, int, int, int]:
+    def _show(self) -> list[object]:
         """Return the counts of _SHOWN for one more reading."""
         self.dither = phase = (self.dither + 1) & 3
         pv, output, setpoint = self._scales
+        counts = self.pv_c / pv
+        if self._broken:
+            counts = float(_PV_MOST)
+        elif not self._floats[0]:
+            counts = float(min(floor(counts + PATTERN[phase]), _PV_MOST))
         status = 0
         if self.limited:
             status = self._cold_bits if self.pv_c <= self._coldest_c else self._hot_bits
@@ -247,38 +208,69 @@ class ControllerSlave(ModbusSlave):
             status |= self._break_bits
         if self.lease_expired:
             status |= self._expired_bits
-        return (
-            _PV_MOST if self._broken else min(floor(self.pv_c / pv + PATTERN[phase]), _PV_MOST),
-            round(self.output / output),
-            round(self.setpoint_c / setpoint),
-            status,
-        )
+        wanted = (counts, self.output / output, self.setpoint_c / setpoint)
+        shown: list[object] = [_count(one, self._floats[place]) for place, one in enumerate(wanted)]
+        shown.append(status)
+        return shown
+
+    def _follow(self, asked_c: float, t: float) -> int:
+        """Use a setpoint within the profile's range; return 0, or an exception code."""
+        setpoint = self._setpoint
+        taken_c = min(max(asked_c, setpoint.least), setpoint.greatest)
+        if taken_c != asked_c and (self._refuses or not isfinite(asked_c)):
+            return ILLEGAL_VALUE
+        self.setpoint_c = taken_c
+        self._renewed_s = t
+        self.lease_expired = False
+        if self._standby_c is not None:
+            self.running = taken_c > self._standby_c
+        return 0
+
+    def wrote(self, address: int, count: int, t: float) -> None:
+        """Use a setpoint of two registers."""
+        setpoint = self._setpoint
+        if setpoint.size == 2 and address <= setpoint.address and setpoint.address + 2 <= address + count:
+            words = (self.get(setpoint.address), self.get(setpoint.address + 1))
+            self._follow(setpoint.value(on_wire(words), self._order), t)
+
+    def coil_written(self, address: int, value: int, t: float) -> int:
+        """Accept run or standby as a coil."""
+        switch = self._switch
+        if switch is not None and switch.coil and address == switch.address:
+            if value == switch.on:
+                self.running = True
+            else:
+                self._stand_by()
+        return 0
 
     def written(self, address: int, value: int, t: float) -> int:
         """Accept setpoint, run or standby, lease and the options of the set-up; nothing else can be written."""
         if address in self._read_only:
             return ILLEGAL_ADDRESS
         setpoint, lease, switch = self._setpoint, self._lease, self._switch
-        if address == setpoint.address:
+        if setpoint.size == 1 and address == setpoint.address:
             counts = value - 0x10000 if value > LIMITS[setpoint.type][1] else value
-            asked_c = counts * setpoint.scale
-            taken_c = min(max(asked_c, setpoint.least), setpoint.greatest)
-            if self._refuses and taken_c != asked_c:
-                return ILLEGAL_VALUE
-            self.setpoint_c = taken_c
-            self._renewed_s = t
-            self.lease_expired = False
-        elif lease is not None and address == lease.address:
+            return self._follow(counts * setpoint.scale, t)
+        if setpoint.address <= address < setpoint.address + setpoint.size:
+            return 0  # its second register completes it: wrote
+        if lease is not None and address == lease.address:
             if not lease.least <= value * lease.scale <= lease.greatest:
                 return ILLEGAL_VALUE
             self.lease_s = value * lease.scale
-        elif address == switch.address and value == switch.on:
+        elif switch is not None and address == switch.address and value == switch.on:
             self.running = True
-        elif address == switch.address and value == switch.off:
+        elif switch is not None and address == switch.address and value == switch.off:
             self._stand_by()
         elif (address, value) not in self._setup:
             return ILLEGAL_VALUE
         return 0
+
+
+def _count(value: float, is_float: bool) -> object:
+    """Return a count as its register holds it, whole or not."""
+    if is_float:
+        return value
+    return round(value)
 
 
 def _plant(profile: DeviceProfile) -> ControlledPlant:
@@ -286,18 +278,16 @@ def _plant(profile: DeviceProfile) -> ControlledPlant:
     plant = CONTROLLED.get(profile.kind)
     if plant is None:
         raise ProfileError(f"profile {profile.name} describes a {profile.kind}, not a temperature controller")
-    shown = [signal for block in profile.blocks for signal in block.signals]
-    sizes = {signal.size for signal in (*profile.writes.values(), *shown)}
-    if sizes != {1} or any(len(write.words) != 1 or not write.writes for write in profile.setup):
-        raise ProfileError(f"profile {profile.name}: the simulated controller has registers of 16 bits, without waits")
-    if {signal.name for signal in shown} != set(_SHOWN) or profile.identity is not None:
-        raise ProfileError(f"profile {profile.name}: the simulated controller shows {', '.join(_SHOWN)}, and no type")
+    shown = {signal.name for block in profile.blocks for signal in block.signals}
+    if not set(_SHOWN[:3]) <= shown <= set(_SHOWN) or any(block.function in BIT_READS for block in profile.blocks):
+        raise ProfileError(f"profile {profile.name}: the simulated controller shows {', '.join(_SHOWN)} in registers")
     return plant
 
 
 def _registers(profile: DeviceProfile) -> list[tuple[int, int]]:
     """Return (address, count) of every register in use."""
     registers = [(block.address, block.count) for block in profile.blocks]
-    registers += [(write.address, 1) for write in profile.writes.values()]
-    registers += [(write.address, 1) for write in profile.setup]
-    return [*registers, (profile.switches["run"].address, 1)]
+    registers += [(signal.address, signal.size) for signal in profile.writes.values()]
+    registers += [(write.address, write.count) for write in profile.setup if write.read not in BIT_READS]
+    registers += [(switch.address, 1) for switch in profile.switches.values() if not switch.coil]
+    return registers if profile.identity is None else [*registers, (profile.identity.address, 1)]

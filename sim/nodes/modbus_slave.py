@@ -12,9 +12,13 @@ from typing import Final
 
 from drivers.crc16 import crc16, with_crc
 
+READ_COILS: Final = 1
+READ_DISCRETE: Final = 2
 READ_HOLDING: Final = 3
 READ_INPUT: Final = 4
+WRITE_COIL: Final = 5
 WRITE_ONE: Final = 6
+WRITE_COILS: Final = 15
 WRITE_MANY: Final = 16
 
 ILLEGAL_FUNCTION: Final = 1
@@ -31,7 +35,8 @@ within a quarter of a count."""
 
 _MOST_READ: Final = 125
 _MOST_WRITTEN: Final = 123
-"""Registers in one request (Modbus application protocol V1.1b3, 6.3 and 6.12)."""
+_MOST_BITS: Final = 2000
+"""Registers, and bits, in one request (Modbus application protocol V1.1b3, 6.1, 6.3 and 6.12)."""
 _REMEMBERED: Final = 64
 """Number of decoded requests of each kind that are kept."""
 
@@ -82,6 +87,8 @@ class ModbusSlave:
         """Registers kept without supply: a change writes them to memory [A], a limited number of times (``wear``)."""
         self.wear: dict[int, int] = {}
         self.endurance = ENDURANCE
+        self.bits: dict[int, int] = {}
+        """Coils and discrete inputs by address, 0 or 1; a request for any other is refused."""
         self.blocks: dict[tuple[int, int], int] = {}
         """Block numbers by (address, count) of usual read requests: ``sample`` is called for these."""
 
@@ -103,6 +110,13 @@ class ModbusSlave:
 
     def written(self, address: int, value: int, t: float) -> int:
         """Process a write at ``t`` s; return 0, or an exception code for the answer."""
+        return 0
+
+    def wrote(self, address: int, count: int, t: float) -> None:
+        """Act on registers that one request has written at ``t`` s."""
+
+    def coil_written(self, address: int, value: int, t: float) -> int:
+        """Process a write of a coil at ``t`` s; return 0, or an exception code for the answer."""
         return 0
 
     # registers -------------------------------------------------------------------------------------------------
@@ -165,6 +179,17 @@ class ModbusSlave:
         if len(request) < 6:
             return None
         _, _, address, count = _REQUEST.unpack_from(request)
+        if function in (READ_COILS, READ_DISCRETE):
+            return self._read_bits(function, address, count, t) if len(request) == 6 else None
+        if function == WRITE_COIL:
+            if count not in (0, 0xFF00):
+                return self.exception(function, ILLEGAL_VALUE)
+            return self._write_bits(frame, address, (int(count > 0),), t) if len(request) == 6 else None
+        if function == WRITE_COILS:
+            if len(request) < 7 or len(request) != 7 + request[6] or request[6] != (count + 7) // 8:
+                return self.exception(function, ILLEGAL_VALUE)
+            bits = int.from_bytes(request[7:], "little")
+            return self._write_bits(frame, address, tuple([bits >> place & 1 for place in range(count)]), t)
         if function == WRITE_ONE:
             return self._new_write(frame, address, (count,), t) if len(request) == 6 else None
         if function == WRITE_MANY:
@@ -177,6 +202,24 @@ class ModbusSlave:
         if len(request) != 6:
             return None
         return self._new_read(frame, function, address, count, t)
+
+    def _read_bits(self, function: int, address: int, count: int, t: float) -> bytes:
+        if not 1 <= count <= _MOST_BITS:
+            return self.exception(function, ILLEGAL_VALUE)
+        if any(place not in self.bits for place in range(address, address + count)):
+            return self.exception(function, ILLEGAL_ADDRESS)
+        self.refresh(t)
+        bits = sum(self.bits[address + place] << place for place in range(count))
+        data = bits.to_bytes((count + 7) // 8, "little")
+        return with_crc(bytes((self.unit_id, function, len(data))) + data)
+
+    def _write_bits(self, frame: bytes, address: int, values: tuple[int, ...], t: float) -> bytes:
+        for place, value in enumerate(values, address):
+            code = ILLEGAL_ADDRESS if place not in self.bits else self.coil_written(place, value, t)
+            if code:
+                return self.exception(frame[1], code)
+            self.bits[place] = value
+        return with_crc(frame[:6])
 
     def _new_read(self, frame: bytes, function: int, address: int, count: int, t: float) -> bytes:
         if not 1 <= count <= _MOST_READ:
@@ -225,6 +268,7 @@ class ModbusSlave:
             if code:
                 return self.exception(reply[1], code)
             self.put(place, value.to_bytes(2, "big"))
+        self.wrote(address, len(values), t)
         return reply
 
 

@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from math import floor, inf, isfinite
 from typing import Final, Protocol
 
-from drivers.profiles.model import LIMITS, DeviceProfile, Signal
+from drivers.profiles.model import DeviceProfile
+from drivers.profiles.numbers import BIT_READS, LIMITS, on_wire
+from drivers.profiles.registers import RegisterBlock, Signal
 from sim.nodes.modbus_slave import ILLEGAL_ADDRESS, ILLEGAL_VALUE, PATTERN, ModbusSlave
 
 Quantity = Callable[[], float]
@@ -41,6 +43,26 @@ class PlantQuantity:
         return float(getattr(self.plant, self.name))
 
 
+class _Shown:
+    """One block of a profile, as the slave fills it."""
+
+    def __init__(self, block: RegisterBlock, limits: Sequence[float]) -> None:
+        self.block = block
+        self.of_bits: bool = block.function in BIT_READS
+        names = [signal.name for signal in block.signals]
+        self.status_place: int = names.index("status") if "status" in names else -1
+        self.rows = tuple(
+            (signal.scale, signal.offset, signal.type != "f32", signal.type in ("bit", "u8"), limit,
+             1 << signal.sign_bit if signal.sign_bit is not None else 0, *LIMITS[signal.type])
+            for signal, limit in zip(block.signals, limits, strict=True)
+        )  # fmt: skip
+        """For each signal: scale, offset, whether counts are whole, and never dithered, greatest counts, bit of the
+        sign, ends of type."""
+        self.data: bytes = bytes(block.size)
+        self.condition = 0
+        """Status bits that its last values set."""
+
+
 class SensorSlave(ModbusSlave):
     """A sensor with the channels of a profile, sampled whenever its registers are read.
 
@@ -50,8 +72,8 @@ class SensorSlave(ModbusSlave):
     """
 
     __slots__ = (
-        "_block", "_invalid", "_limits", "_overload", "_parameters", "_quantities", "_read_only", "_rows", "_shown",
-        "_signals", "_status_place", "dither", "frozen", "status_bits",
+        "_block", "_invalid", "_limits", "_overload", "_parameters", "_quantities", "_read_only", "_shown", "_signals",
+        "dither", "frozen", "status_bits",
     )  # fmt: skip
 
     def __init__(
@@ -60,17 +82,18 @@ class SensorSlave(ModbusSlave):
         """Place the registers as in ``profile``; the ``quantities`` by channel are called at each read."""
         profile.expect_sensor()
         block = profile.blocks[0]
-        read = [(one.address, one.count) for one in profile.blocks]
+        read = [(one.address, one.count) for one in profile.blocks if one.function not in BIT_READS]
         if profile.identity is not None:
             read.append((profile.identity.address, 1))
-        written = [(signal.address, signal.size) for signal in profile.writes.values()]
-        written += [(write.address, len(write.words)) for write in profile.setup]
+        written = [(signal.address, signal.size) for signal in profile.writes.values() if signal.type != "bit"]
+        written += [(write.address, write.count) for write in profile.setup if write.read not in BIT_READS]
         super().__init__(unit_id, profile.timing.turnaround_s, [*read, *written], profile.functions)
         if profile.identity is not None:
             self.put(profile.identity.address, profile.identity.value.to_bytes(2, "big"))
+        self._add_bits(profile)
         for write in profile.setup:
-            if not write.writes:  # the real device takes a while; this one has already finished
-                self.put(write.address, b"".join(word.to_bytes(2, "big") for word in write.words))
+            if not write.writes and write.read not in BIT_READS:
+                self.put(write.address, on_wire(write.words))  # the real device takes a while; this one has finished
         self._read_only = {address for start, count in read for address in range(start, start + count)}
         self._parameters = {signal.address: signal for signal in profile.writes.values() if signal.size == 1}
         self.dither = 0
@@ -80,21 +103,28 @@ class SensorSlave(ModbusSlave):
         self._signals = block.signals
         self._quantities = {
             signal.name: quantities.get(signal.name, min(max(READS_ZERO, signal.least), signal.greatest))
-            for signal in block.signals
+            for one in profile.blocks
+            for signal in one.signals
         }
         self._invalid = profile.invalid_bits & -profile.invalid_bits
         self._overload = profile.bit("overload")
-        self._limits = tuple(_most_counts(signal) if profile.kind == "load_cell" else inf for signal in block.signals)
-        names = [signal.name for signal in block.signals]
-        self._status_place = names.index("status") if "status" in names else -1
-        self._rows = tuple(
-            (signal.scale, signal.offset, signal.type != "f32", limit,
-             1 << signal.sign_bit if signal.sign_bit is not None else 0, *LIMITS[signal.type])
-            for signal, limit in zip(block.signals, self._limits, strict=True)
-        )
-        """For each signal: scale, offset, whether counts are whole, greatest counts, bit of the sign, ends of type."""
-        self._shown = bytes(2 * block.count)
-        self.blocks = {(block.address, block.count): 0}
+        most = _most_counts if profile.kind == "load_cell" else _no_limit
+        self._shown = tuple(_Shown(one, [most(signal) for signal in one.signals]) for one in profile.blocks)
+        self._limits = tuple(most(signal) for signal in block.signals)
+        self.blocks = {
+            (one.block.address, one.block.count): number for number, one in enumerate(self._shown) if not one.of_bits
+        }
+
+    def _add_bits(self, profile: DeviceProfile) -> None:
+        """Place coils and discrete inputs, those of a wait as it ends."""
+        for one in profile.blocks:
+            if one.function in BIT_READS:
+                self.bits.update(dict.fromkeys(range(one.address, one.address + one.count), 0))
+        self.bits.update({signal.address: 0 for signal in profile.writes.values() if signal.type == "bit"})
+        for write in profile.setup:
+            if write.read in BIT_READS:
+                held = 0 if write.writes else write.words[0]
+                self.bits.update({write.address + place: held >> place & 1 for place in range(write.count)})
 
     def show(self, channel: str, source: Quantity | float) -> Quantity | float:
         """Replace the source of a channel of the first read; return the previous source."""
@@ -102,27 +132,34 @@ class SensorSlave(ModbusSlave):
         self._quantities[channel] = source
         return before
 
-    def measure(self, t: float) -> list[float]:
-        """Return the values of the first read's signals at ``t`` s, in their units; any value for the status."""
-        return [
-            quantity if isinstance(quantity, float | int) else quantity() for quantity in self._quantities.values()
-        ]
+    def measure(self, t: float, block: RegisterBlock) -> list[float]:
+        """Return the values of a read's signals at ``t`` s, in their units; any value for the status."""
+        found = [self._quantities[signal.name] for signal in block.signals]
+        return [quantity if isinstance(quantity, float | int) else quantity() for quantity in found]
 
     def refresh(self, t: float) -> None:
         """Sample at ``t`` s."""
-        self.put(self._block.address, self.sample(0, t))
+        for number, one in enumerate(self._shown):
+            data, block = self.sample(number, t), one.block
+            if one.of_bits:
+                held = int.from_bytes(data, "little")
+                for place in range(block.count):
+                    self.bits[block.address + place] = held >> place & 1
+            else:
+                self.put(block.address, data)
 
     def sample(self, block: int, t: float) -> bytes:
-        """Sample at ``t`` s and return all registers of the first read."""
-        return self._shown if self.frozen else self._encode(self.measure(t))
+        """Sample at ``t`` s and return all registers of a read."""
+        one = self._shown[block]
+        return one.data if self.frozen else self._encode(one, self.measure(t, one.block))
 
-    def _encode(self, values: Sequence[float]) -> bytes:
-        """Return the first read with these values, one for each signal, rounded by the next phase of the dither."""
+    def _encode(self, one: _Shown, values: Sequence[float]) -> bytes:
+        """Return a read with these values, one for each signal, rounded by the next phase of the dither."""
         self.dither = phase = (self.dither + 1) & 3
-        step, status = PATTERN[phase], self.status_bits
+        step, status = PATTERN[phase], 0
         counts: list[object] = []
-        for (scale, offset, whole, limit, sign, least, most), value in zip(self._rows, values, strict=True):
-            if len(counts) == self._status_place:
+        for (scale, offset, whole, flag, limit, sign, least, most), value in zip(one.rows, values, strict=True):
+            if len(counts) == one.status_place:
                 counts.append(0)
                 continue
             if not isfinite(value):
@@ -130,7 +167,7 @@ class SensorSlave(ModbusSlave):
                 value = 0.0
             count: float = (value - offset) / scale
             if whole:
-                count = float(floor(count + step))
+                count = float(floor(count + (0.5 if flag else step)))
             if not -limit < count < limit:
                 status |= self._overload
                 count = min(max(count, -limit), limit)
@@ -142,10 +179,18 @@ class SensorSlave(ModbusSlave):
                 counts.append(least if number < least else most if number > most else number)
             else:
                 counts.append(count)
-        if self._status_place >= 0:
-            counts[self._status_place] = status
-        self._shown = data = self._block.pack(*counts)
+        one.condition = status
+        if one.status_place >= 0:
+            for other in self._shown:
+                status |= other.condition
+            counts[one.status_place] = status | self.status_bits
+        one.data = data = one.block.pack(*counts)
         return data
+
+    def coil_written(self, address: int, value: int, t: float) -> int:
+        """Accept coils that are not read as inputs."""
+        shown = any(one.of_bits and 0 <= address - one.block.address < one.block.count for one in self._shown)
+        return ILLEGAL_ADDRESS if shown else 0
 
     def written(self, address: int, value: int, t: float) -> int:
         """Accept a parameter inside the device's range; measured values cannot be written."""
@@ -187,14 +232,16 @@ class CellSlave(SensorSlave):
         self._scales = tuple(signal.scale for signal in self._signals)
         self._pack = self._block.pack
 
-    def measure(self, t: float) -> list[float]:
-        """Return each channel's force at ``t`` s, 0 for a channel without one."""
+    def measure(self, t: float, block: RegisterBlock) -> list[float]:
+        """Return each channel's force at ``t`` s, 0 for a channel without one; further reads hold no force."""
+        if block is not self._block:
+            return [0.0] * len(block.signals)
         forces = self.source.forces_measured(t)
         return [forces[place] if place >= 0 else 0.0 for place in self._places]
 
     def sample(self, block: int, t: float) -> bytes:
         """Sample at ``t`` s; the usual case, four channels within range asked for in every scan, takes a short path."""
-        if not self._plain or self.frozen:
+        if not self._plain or self.frozen or block:
             return super().sample(block, t)
         x, y, z, m = forces = self.source.forces_measured(t)
         phase = (self.dither + 1) & 3
@@ -203,9 +250,9 @@ class CellSlave(SensorSlave):
         lx, ly, lz, lm, _ = self._limits
         cx, cy, cz, cm = floor(x / sx + step), floor(y / sy + step), floor(z / sz + step), floor(m / sm + step)
         if not (-lx < cx < lx and -ly < cy < ly and -lz < cz < lz and -lm < cm < lm):
-            return self._encode((*forces, 0.0))
+            return self._encode(self._shown[0], (*forces, 0.0))
         self.dither = phase
-        self._shown = data = self._pack(cx, cy, cz, cm, self.status_bits)
+        self._shown[0].data = data = self._pack(cx, cy, cz, cm, self.status_bits)
         return data
 
 
@@ -228,7 +275,6 @@ class IrSlave(SensorSlave):
         self._order = profile.order
         self.source = source
         self.sensor_c = sensor_c
-        self._of_itself = tuple(signal.name == "sensor" for signal in self._signals)
         self.power(True)
 
     def power(self, on: bool) -> None:
@@ -236,7 +282,7 @@ class IrSlave(SensorSlave):
         self.powered = on
         if on and self._emissivity is not None:
             words = self._emissivity.words(1.0, self._order)
-            self.put(self._emissivity.address, b"".join(word.to_bytes(2, "big") for word in words))
+            self.put(self._emissivity.address, on_wire(words))
 
     @property
     def emissivity(self) -> float:
@@ -244,13 +290,18 @@ class IrSlave(SensorSlave):
         register = self._emissivity
         if register is None:
             return 1.0
-        words = (self.get(register.address + place).to_bytes(2, "big") for place in range(register.size))
-        return register.value(b"".join(words), self._order)
+        words = [self.get(register.address + place) for place in range(register.size)]
+        return register.value(on_wire(words), self._order)
 
-    def measure(self, t: float) -> list[float]:
+    def measure(self, t: float, block: RegisterBlock) -> list[float]:
         """Return the surface's temperature at ``t`` s on every channel except that of the device's own temperature."""
         surface_c = self.source.surface_measured_c(t)
-        return [self.sensor_c if of_itself else surface_c for of_itself in self._of_itself]
+        return [self.sensor_c if signal.name == "sensor" else surface_c for signal in block.signals]
+
+
+def _no_limit(signal: Signal) -> float:
+    """Return that the counts have no limit but their type's."""
+    return inf
 
 
 def _most_counts(signal: Signal) -> float:

@@ -8,7 +8,8 @@ from math import isfinite, nan
 from statistics import median
 
 from drivers.modbus.request import REPLIES
-from drivers.profiles.model import ORDERS, RegisterBlock, Signal
+from drivers.profiles.numbers import ORDERS
+from drivers.profiles.registers import RegisterBlock, Signal
 from tester.doctor.bus_watch import UnitWatch
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning

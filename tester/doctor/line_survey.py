@@ -63,10 +63,12 @@ class UnitSurvey:
         if profile.identity is not None:
             yield "device type", RegisterQuestion(unit_id, profile.identity.function, profile.identity.address, 1)
         for write in profile.setup:
-            yield write.name, RegisterQuestion(unit_id, reads, write.address, len(write.words))
+            if not write.mask:  # a wait for some bits of a status, which is read besides
+                function = reads if write.read == 3 else write.read
+                yield write.name, RegisterQuestion(unit_id, function, write.address, write.count)
         for name, signal in profile.writes.items():
             if name not in ("setpoint", "lease"):
-                yield name, RegisterQuestion(unit_id, reads, signal.address, signal.size)
+                yield name, RegisterQuestion(unit_id, 1 if signal.type == "bit" else reads, signal.address, signal.size)
 
 
 @dataclass(slots=True)

@@ -29,7 +29,7 @@ from pymodbus.server import ModbusTcpServer
 from pyModbusTCP.server import ModbusServer
 
 from drivers.profiles import ProfileError, read_profile
-from drivers.profiles.model import LIMITS, MOST_F32
+from drivers.profiles.numbers import LIMITS, MOST_F32
 from drivers.sensor import Sensor
 from drivers.transports.tcp_line import open_tcp_line
 from tester.base import clock

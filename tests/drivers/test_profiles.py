@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from drivers.profiles import ProfileError, load_profile, profile_names
-from drivers.profiles.model import Number, NumberOrder, RegisterBlock, Signal
+from drivers.profiles.numbers import Number, NumberOrder
+from drivers.profiles.registers import RegisterBlock, Signal
 
 SMALL = """
 kind = "load_cell"
@@ -61,7 +62,7 @@ def test_a_block_spans_its_signals_in_order_of_address(tmp_path: Path) -> None:
         ('kind = "load_cell"', 'kind = "scales"', "kind: must be one of load_cell"),
         ('title = "a cell"', "", "title: is missing"),
         ('title = "a cell"', 'title = "a cell"\ncolour = "red"', "colour: is not a key"),
-        ('type = "i32"', 'type = "i33"', "signals: fz: type: must be one of u16, i16"),
+        ('type = "i32"', 'type = "i33"', "signals: fz: type: must be one of bit, u8, u16, i16"),
         ("address = 7", "address = 70000", "signals: fz: address: must be a whole number 0..65535, not 70000"),
         ("address = 7", "address = 3", "fz overlaps|status overlaps"),
         ("address = 7", 'address = "unknown"', "signals: fz: address: is not known to us"),

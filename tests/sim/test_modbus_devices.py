@@ -9,7 +9,8 @@ import pytest
 
 from drivers.crc16 import with_crc
 from drivers.profiles import ProfileError, load_profile
-from sim.nodes.controller_slave import JACKET_CYCLE_S, ControllerSlave
+from sim.nodes.control_loop import JACKET_CYCLE_S
+from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.modbus_slave import PATTERN, ModbusSlave
 from sim.nodes.sensor_slave import CellSlave, IrSlave
 from tests.drivers.modbus_rig import Quantities

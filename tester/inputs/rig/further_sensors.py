@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivers.canopen.node_config import NodeChannel
 from drivers.profiles import ProfileError
-from drivers.profiles.model import Signal
+from drivers.profiles.registers import Signal
 from tester.base.config_reader import SUFFIXES
 from tester.base.quantities import FURTHER, Channel, Figure, Quantities, Screen
 from tester.base.source import Location

@@ -12,7 +12,7 @@ from random import Random
 
 from sim.faults.sensors import spoiled
 from sim.machines.wheel_on_belt.faults.heat import STICKS_EVERY_S
-from sim.nodes.controller_slave import CONTROLLED, JACKET_CYCLE_S, JACKET_HOTTEST_C, Pid
+from sim.nodes.control_loop import CONTROLLED, JACKET_CYCLE_S, JACKET_HOTTEST_C, Pid
 from sim.noise import NormalStream
 from sim.physics.thermal import CALM_STEP_S, ThermalModel
 from sim.sensors import TemperatureSensor

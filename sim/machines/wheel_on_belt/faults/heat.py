@@ -9,7 +9,7 @@ from sim.faults.modbus import line_of, slave_of
 from sim.faults.scene import Effect, Scene, switched
 from sim.faults.sensors import SensorFault
 from sim.machines.wheel_on_belt.rig import WheelRig
-from sim.nodes.controller_slave import JACKET_HOTTEST_C
+from sim.nodes.control_loop import JACKET_HOTTEST_C
 from sim.wires.modbus_wire import Impairment
 
 HALF_DEG: Final = 20.0
