@@ -57,7 +57,14 @@ def test_the_torque_transducer_saturates_at_98_percent_of_its_range() -> None:
 
 @pytest.mark.parametrize(
     ("profile", "shows"),
-    [("hygrometer_sht20", {"ambient_c": 23.4, "humidity_percent": 45.6}), ("torque_dat_400", {"torque_nm": -7.89})],
+    [
+        ("hygrometer_sht20", {"ambient_c": 23.4, "humidity_percent": 45.6}),
+        ("torque_dat_400", {"torque_nm": -7.89}),
+        ("moxa_e1240", {"input_0": 4.0, "input_1": 20.0, "input_2": 12.5, "input_3": -1.0}),
+        ("flintec_dad141", {"force": -123.5}),
+        ("seneca_z_sg", {"force": 250.25}),
+        ("raytek_mi3", {"surface": 85.3, "sensor": 31.0}),
+    ],
 )
 def test_the_simulated_one_answers_on_the_wire(profile: str, shows: dict[str, float]) -> None:
     data = load_profile(profile)
@@ -65,6 +72,6 @@ def test_the_simulated_one_answers_on_the_wire(profile: str, shows: dict[str, fl
     sensor = Sensor(data, 1, made.link)
     made.run(3.0)
     assert sensor.valid
-    step = max(data.signal(name).scale for name in sensor.channels)
+    step = max(1e-4 if data.signal(name).type == "f32" else data.signal(name).scale for name in sensor.channels)
     assert sensor.values == pytest.approx(list(shows.values()), abs=step)
     assert sensor.station.counters.timeouts == 0
