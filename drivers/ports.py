@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from functools import partial
-from typing import Protocol, TypeVar, runtime_checkable
+from typing import Literal, Protocol, TypeVar, runtime_checkable
 
 CanFrame = tuple[float, int, bytes]
 """(arrival time in s, CAN identifier, data of 0..8 bytes)."""
@@ -109,6 +109,54 @@ class FrameByFrame(ABC):
         for watcher in self.watchers:
             for t, can_id, data in frames:
                 watcher(t, can_id, data, False)
+
+
+Parity = Literal["N", "E", "O"]
+LineFraming = Literal["rtu", "ascii", "socket"]
+"""Modbus RTU or ASCII on a serial line, or Modbus TCP. ASCII becomes RTU at the port (drivers.transports)."""
+Rts = Literal["", "high", "low"]
+"""Level of the RTS line while a port sends; "" = not used."""
+
+
+def byte_bits(framing: LineFraming, parity: Parity, stop_bits: int = 1) -> int:
+    """Return the bits of a frame's byte on a serial line: in ASCII two characters of 10 (Modbus over serial line V1.02,
+    2.5.2).
+    """
+    return 20 if framing == "ascii" else 9 + (parity != "N") + stop_bits
+
+
+class LineSettings(Protocol):
+    """Where a line is, and how its characters are sent."""
+
+    @property
+    def port(self) -> str:
+        """A serial port, or ``host:port``."""
+        ...
+
+    @property
+    def framing(self) -> LineFraming:
+        """Modbus RTU, ASCII or TCP."""
+        ...
+
+    @property
+    def baud(self) -> int:
+        """Speed, bit/s."""
+        ...
+
+    @property
+    def parity(self) -> Parity:
+        """None, even or odd."""
+        ...
+
+    @property
+    def stop_bits(self) -> Literal[1, 2]:
+        """Stop bits of a character."""
+        ...
+
+    @property
+    def rts(self) -> Rts:
+        """Level of RTS while sending; "" = not used."""
+        ...
 
 
 class LinePort(Protocol):

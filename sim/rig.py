@@ -38,6 +38,8 @@ class LineSpec:
     parity: Literal["N", "E", "O"] = "N"
     held_s: float = 0.0
     """Time for which the computer's adapter holds received bytes back, s."""
+    byte_bits: int = 0
+    """Bits of a frame's byte on the line; 0 = as the parity makes it, with 1 stop bit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +198,7 @@ def lines_of(spec: RigSpec, devices: Mapping[str, ModbusSlave]) -> dict[str, Mod
             line.parity,
             [slave for key, slave in devices.items() if spec.devices[key].line == name],
             line.held_s,
+            line.byte_bits,
         )
         for name, line in spec.lines.items()
     }

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
-from typing import Literal
 
 from drivers.modbus import codec
 from drivers.modbus.request import Request, Station
 from drivers.modbus.schedule import SLACK_S
-
-Parity = Literal["N", "E", "O"]
+from drivers.ports import LineFraming, Parity, byte_bits
 
 RTU_MARGIN_S = 0.003
 """Added to an RTU time-out for adapters and operating systems that deliver late [A]."""
@@ -21,12 +19,12 @@ SOCKET_MARGIN_S = 0.05
 class LineType:
     """Makes requests. ``gap_s`` is the silence in s that ends a frame, 0 on TCP; ``socket``: a TCP connection."""
 
-    def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
-        """Take the framing; ``baud`` in bit/s and ``parity`` matter on RTU only."""
-        self.framing: codec.Framing = framing
+    def __init__(self, framing: LineFraming, baud: int, parity: Parity, stop_bits: int = 1) -> None:
+        """Take the framing; ``baud`` in bit/s, ``parity`` and ``stop_bits`` matter on a serial line only."""
+        self.framing: codec.Framing = "socket" if framing == "socket" else "rtu"
         self.socket = framing == "socket"
         self._requests: list[Request] = []
-        bits = 10 if parity == "N" else 11
+        bits = byte_bits(framing, parity, stop_bits)
         self._character_s = 0.0 if self.socket else bits / baud
         self.gap_s = 0.0 if self.socket else silent_gap_s(bits, baud)
 

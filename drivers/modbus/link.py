@@ -13,10 +13,10 @@ from typing import Final
 from drivers.crc16 import crc16
 from drivers.modbus import codec
 from drivers.modbus.answers import AnswerKind, ReplySoFar, SerialEar, numbered, tcp_answer
-from drivers.modbus.line import LineType, Parity
+from drivers.modbus.line import LineType
 from drivers.modbus.request import Owner, Request, Station
 from drivers.modbus.schedule import PROBE_S, Schedule
-from drivers.ports import BusLost, LinePort, RenewablePort
+from drivers.ports import BusLost, LineFraming, LinePort, Parity, RenewablePort
 from drivers.profiles.model import Timing
 
 MISSES_TO_LOSE: Final = 3
@@ -38,9 +38,11 @@ class ModbusLink(LineType):
     Before ``wants_s`` a ``service`` does nothing: the caller may skip it.
     """
 
-    def __init__(self, framing: codec.Framing = "rtu", baud: int = 115200, parity: Parity = "N") -> None:
-        """Create an idle master; ``baud`` in bit/s and ``parity`` matter on RTU only."""
-        super().__init__(framing, baud, parity)
+    def __init__(
+        self, framing: LineFraming = "rtu", baud: int = 115200, parity: Parity = "N", stop_bits: int = 1
+    ) -> None:
+        """Create an idle master; ``baud`` in bit/s, ``parity`` and ``stop_bits`` matter on a serial line only."""
+        super().__init__(framing, baud, parity, stop_bits)
         self._schedule = Schedule()
         self.stations: list[Station] = []
         self._active: Request | None = None

@@ -11,8 +11,8 @@ from math import inf
 from typing import Final
 
 from drivers.modbus import codec
-from drivers.modbus.line import Parity, silent_gap_s
-from drivers.ports import LinePort
+from drivers.modbus.line import silent_gap_s
+from drivers.ports import LineFraming, LinePort, Parity, byte_bits
 
 SETTLE_S: Final = 0.005
 """Silence kept after bytes that were no answer, s: the rest of them may still come [A]."""
@@ -69,11 +69,11 @@ class LineAnswer:
 class LineScan:
     """Asks one question after the other: ``ask``, then ``feed`` and ``service`` until ``answer`` is set."""
 
-    def __init__(self, framing: codec.Framing, baud: int, parity: Parity) -> None:
-        """Take the line; ``baud`` in bit/s and ``parity`` matter on RTU only."""
-        self.framing: codec.Framing = framing
-        bits = 10 if parity == "N" else 11
-        rtu = framing == "rtu"
+    def __init__(self, framing: LineFraming, baud: int, parity: Parity, stop_bits: int = 1) -> None:
+        """Take the line; ``baud`` in bit/s, ``parity`` and ``stop_bits`` matter on a serial line only."""
+        rtu = framing != "socket"
+        self.framing: codec.Framing = "rtu" if rtu else "socket"
+        bits = byte_bits(framing, parity, stop_bits)
         self._character_s = bits / baud if rtu else 0.0
         self._gap_s = silent_gap_s(bits, baud) if rtu else 0.0
         self._question: RegisterQuestion | None = None

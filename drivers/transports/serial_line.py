@@ -1,4 +1,4 @@
-"""A serial port as a line that carries Modbus RTU."""
+"""A serial port as a line that carries Modbus RTU or ASCII."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from drivers.ports import BusLost, WatchedLine
+from drivers.ports import BusLost, Rts, WatchedLine
+from drivers.transports.ascii_frames import AsciiFrames, as_ascii
 
 if TYPE_CHECKING:
     from serial import Serial
@@ -21,19 +22,25 @@ class SerialLine(WatchedLine):
     """
 
     def __init__(
-        self, serial: Serial, low_latency: bool | None = None, latency_timer_s: float | None = None
+        self,
+        serial: Serial,
+        low_latency: bool | None = None,
+        latency_timer_s: float | None = None,
+        *,
+        in_ascii: bool = False,
     ) -> None:
-        """Take an open port without time-outs; see ``open_serial_line``."""
+        """Take an open port without time-outs; ``in_ascii``: Modbus ASCII on the wire; see ``open_serial_line``."""
         super().__init__()
         self.low_latency = low_latency
         self.latency_timer_s = latency_timer_s
         self.remedy = remedy_of(str(serial.name or ""))
         self._serial = serial
         self._unsent = b""
+        self._received = AsciiFrames() if in_ascii else None
 
     def write(self, data: bytes, now: float) -> None:
         """Send bytes; those that the operating system refuses now are sent with the next call. Raises BusLost."""
-        self._unsent += data
+        self._unsent += data if self._received is None else as_ascii(data)
         self._send()
         if self.watchers:
             self.tell(now, data, True)
@@ -58,6 +65,8 @@ class SerialLine(WatchedLine):
             data = self._serial.read(waiting) if waiting else b""
         except (SerialException, OSError) as error:
             raise BusLost(f"serial port {self._serial.name}: {error}") from error
+        if self._received is not None:
+            data = self._received.feed(data)
         if not data:
             return []
         if self.watchers:
@@ -69,23 +78,36 @@ class SerialLine(WatchedLine):
         self._serial.close()
 
 
-def open_serial_line(port: str, baud: int, parity: Literal["N", "E", "O"] = "N") -> SerialLine:
-    """Open a serial port for Modbus RTU: ``baud`` in bit/s, 8 data bits, 1 stop bit; no other program can open it.
+def open_serial_line(
+    port: str,
+    baud: int,
+    parity: Literal["N", "E", "O"] = "N",
+    stop_bits: Literal[1, 2] = 1,
+    *,
+    in_ascii: bool = False,
+    rts: Rts = "",
+) -> SerialLine:
+    """Open a serial port for Modbus: ``baud`` in bit/s, 8 data bits, 7 in ASCII; no other program can open it.
 
+    ``rts``: level of the RTS line while the port sends, for an RS-485 adapter whose direction it switches.
     USB adapters are asked for low latency: by default many deliver in batches of 16 ms. Raises
     BusLost when the port cannot be opened.
     """
     from serial import Serial, SerialException
+    from serial.rs485 import RS485Settings
 
     try:
         serial = Serial(
-            port, baud, bytesize=8, parity=parity, stopbits=1, timeout=0.0, write_timeout=0.0, exclusive=True
-        )
+            port, baud, bytesize=7 if in_ascii else 8, parity=parity, stopbits=stop_bits, timeout=0.0,
+            write_timeout=0.0, exclusive=True,
+        )  # fmt: skip
+        if rts:
+            serial.rs485_mode = RS485Settings(rts_level_for_tx=rts == "high", rts_level_for_rx=rts == "low")
         serial.reset_input_buffer()
     except (SerialException, OSError, ValueError, *_settings_errors()) as error:
         raise BusLost(f"serial port {port}: {error}") from error
     granted = _ask_for_low_latency(serial) if sys.platform == "linux" else None
-    return SerialLine(serial, granted, latency_timer_s(port))
+    return SerialLine(serial, granted, latency_timer_s(port), in_ascii=in_ascii)
 
 
 def latency_timer_s(port: str, root: Path = Path("/sys/class/tty")) -> float | None:

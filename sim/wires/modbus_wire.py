@@ -82,15 +82,17 @@ class ModbusWire:
         parity: Literal["N", "E", "O"] = "N",
         slaves: Iterable[ModbusSlave] = (),
         held_s: float = 0.0,
+        byte_bits: int = 0,
     ) -> None:
-        """Create a quiet line at ``baud`` bit/s with 8 data bits and 1 stop bit, and put ``slaves`` on it.
+        """Create a quiet line at ``baud`` bit/s and put ``slaves`` on it; a byte takes ``byte_bits``, or by default 8
+        data bits, the parity's and 1 stop bit.
 
         ``held_s``: the adapter delivers everything this long after its last character, s. A real latency timer takes
         0 to its whole time by chance: this is the worst case.
         """
         self._held_s = held_s
         self.baud = baud
-        self.character_s: float = (10 if parity == "N" else 11) / baud
+        self.character_s: float = (byte_bits or (10 if parity == "N" else 11)) / baud
         # Silence that ends a frame: 3.5 characters up to 19200 bit/s, 1.75 ms above (Modbus over serial line V1.02).
         self.gap_s = 3.5 * self.character_s if baud <= 19200 else 0.00175
         self._busy_s = -inf

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
-from drivers.modbus.line import Parity
 from drivers.modbus.register_scan import LineAnswer, LineScan, RegisterQuestion
-from drivers.ports import BusLost, LinePort
+from drivers.ports import BusLost, LinePort, Parity
 from drivers.profiles.model import DeviceProfile
 from tester.doctor.open_wires import Wires
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from drivers.ports import CanPort, LinePort
 from drivers.transports.can_bus import PythonCanPort, open_can
-from drivers.transports.serial_line import SerialLine, open_serial_line
-from drivers.transports.tcp_line import TcpLine, open_tcp_line
+from drivers.transports.open_line import open_line
+from drivers.transports.serial_line import SerialLine
+from drivers.transports.tcp_line import TcpLine
 from sim.rig import SimRig
 from sim.wires.mistuned import MistunedCan, MistunedLine
 from tester.base.clock import Pace
@@ -54,11 +55,7 @@ class HardwareWires:
         before = self._lines.pop(name, None)
         if before is not None:
             before.close()
-        if config.framing == "socket":
-            host, _, port = config.port.rpartition(":")
-            line: SerialLine | TcpLine = open_tcp_line(host, int(port))
-        else:
-            line = open_serial_line(config.port, config.baud, config.parity)
+        line = open_line(config)
         self._lines[name] = line
         return line
 

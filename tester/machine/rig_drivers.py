@@ -30,7 +30,9 @@ class RigDrivers:
         self.nodes = [SensorNode(config) for config in rig.can.nodes.values()]
         for node in (*self.drives.values(), *self.nodes):
             self.master.add(node)
-        self.links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
+        self.links = {
+            name: ModbusLink(line.framing, line.baud, line.parity, line.stop_bits) for name, line in rig.lines.items()
+        }
         self.devices: dict[str, Device] = {}
 
     def sensor(self, name: str, channels: tuple[str, ...] = ()) -> Sensor | None:

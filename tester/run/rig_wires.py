@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from drivers.ports import LinePort
 from drivers.transports.can_bus import open_can
-from drivers.transports.serial_line import SerialLine, open_serial_line
-from drivers.transports.tcp_line import TcpLine, open_tcp_line
+from drivers.transports.open_line import open_line
 from tester.base.clock import UrgentPace
 from tester.base.processes import RealTimePriority
-from tester.inputs.rig import LineConfig, Rig
+from tester.inputs.rig import Rig
 from tester.machine.rig_ports import Ports
 from tester.machine.run_parts import NoAttendant
 from tester.run.bus_log import BusLog
@@ -60,17 +59,10 @@ def hardware_ports(rig: Rig, log: BusLog | None) -> Ports:
         opened.callback(bus.close)
         lines: dict[str, LinePort] = {}
         for name, config in rig.lines.items():
-            line = _line(config)
+            line = open_line(config)
             opened.callback(line.close)
             lines[name] = line
         if log is not None:
             log.watch(bus, lines)
         opened.callback(RealTimePriority().close)
         return Ports(bus, lines, pace, opened.pop_all())
-
-
-def _line(config: LineConfig) -> TcpLine | SerialLine:
-    if config.framing == "socket":
-        host, _, port = config.port.rpartition(":")
-        return open_tcp_line(host, int(port))
-    return open_serial_line(config.port, config.baud, config.parity)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from drivers.ports import byte_bits
 from sim import machines
 from sim.nodes.sensor_slave import UnknownQuantityError
 from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
@@ -13,7 +14,7 @@ from sim.wires.can_wire import CanWire
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.plan import Plan
-from tester.inputs.rig import DeviceConfig, Rig
+from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.further_sensors import further_sensors
 from tester.inputs.rig.profiles import profile_of
 from tester.machine.rig_ports import Ports
@@ -54,11 +55,16 @@ def spec_of(rig: Rig) -> RigSpec:
     return RigSpec(
         bitrate=rig.can.bitrate,
         axes=rig.drives(),
-        lines={name: LineSpec(line.baud, line.parity, held_s) for name, line in rig.lines.items()},
+        lines={name: _line(line, held_s) for name, line in rig.lines.items()},
         devices={name: _device(config) for name, config in rig.devices.items()},
         nodes=tuple(rig.can.nodes.values()),
         further=tuple(further_sensors(rig)),
     )
+
+
+def _line(config: LineConfig, held_s: float) -> LineSpec:
+    bits = byte_bits(config.framing, config.parity, config.stop_bits)
+    return LineSpec(config.baud, config.parity, held_s, bits)
 
 
 def _device(config: DeviceConfig) -> DeviceSpec:

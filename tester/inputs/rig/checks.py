@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from drivers.drive_settings import plan
 from drivers.profiles import ProfileError
@@ -271,7 +272,7 @@ def other_settings(rig: Rig) -> list[str]:
     """
     differing: list[str] = []
     for key, line in rig.lines.items():
-        if line.framing != "rtu":
+        if line.framing == "socket":
             continue
         on_line = [(name, device) for name, device in rig.devices.items() if device.line == key]
         for name, device in on_line:
@@ -279,9 +280,10 @@ def other_settings(rig: Rig) -> list[str]:
                 due = profile_of(device.profile).line
             except ProfileError:
                 continue  # reported elsewhere
-            if (due.baud, due.parity) != (line.baud, line.parity):
+            meant = replace(line, baud=due.baud, parity=due.parity, stop_bits=due.stop_bits)
+            if meant != line:
                 differing.append(
-                    f"lines.{key} has {line.baud} baud, parity {line.parity}; {name} by its profile {device.profile}"
-                    f" {due.baud} baud, parity {due.parity}: set one as the other (`tester doctor` finds what answers)"
+                    f"lines.{key} has {line.settings}; {name} by its profile {device.profile} {meant.settings}: set one"
+                    " as the other (`tester doctor` finds what answers)"
                 )
     return differing

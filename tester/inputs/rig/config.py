@@ -81,7 +81,15 @@ class LineConfig:
     port: Annotated[str, _ANSWER]
     baud: Annotated[int, _ANSWER]
     parity: Annotated[Literal["N", "E", "O"], _ANSWER]
-    framing: Annotated[Literal["rtu", "socket"], _ANSWER]
+    framing: Annotated[Literal["rtu", "ascii", "socket"], _ANSWER]
+    stop_bits: Annotated[Literal[1, 2], _ANSWER] = field(default=1, metadata=LEFT_OUT)
+    rts: Annotated[Literal["", "high", "low"], _ANSWER] = field(default="", metadata=LEFT_OUT)
+    """Level of the RTS line while the port sends, for an adapter whose direction it switches; "" = not used."""
+
+    @property
+    def settings(self) -> str:
+        """Return the settings of the characters, for people."""
+        return f"{self.baud} baud, parity {self.parity}" + (", 2 stop bits" if self.stop_bits == 2 else "")
 
 
 HEAT_OFF: Final = {

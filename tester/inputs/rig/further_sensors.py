@@ -133,7 +133,9 @@ def skew_problem(rig: Rig, channels: tuple[str, ...], most_skew_s: float) -> Ite
     from drivers.joined_cell import JoinedCell  # only such a rig pays for the wire's library
     from drivers.modbus import ModbusLink
 
-    links = {name: ModbusLink(line.framing, line.baud, line.parity) for name, line in rig.lines.items()}
+    links = {
+        name: ModbusLink(line.framing, line.baud, line.parity, line.stop_bits) for name, line in rig.lines.items()
+    }
     try:
         cell = JoinedCell(list(transmitters_of(rig, links).values()), channels, most_skew_s)
     except (ProfileError, ValueError, KeyError):

@@ -9,6 +9,7 @@ from select import select
 
 import pytest
 
+from drivers.crc16 import with_crc
 from drivers.ports import BusLost
 from drivers.transports.serial_line import SerialLine, latency_timer_s, open_serial_line, remedy_of
 
@@ -49,6 +50,31 @@ def test_what_arrives_is_stamped_with_the_time_of_asking(ends: tuple[SerialLine,
     os.write(master, b"\x0d\x0a\x11\x13\x00\xff")
     assert select([slave], [], [], PATIENCE_S)[0]
     assert line.read(12.5) == [(12.5, b"\x0d\x0a\x11\x13\x00\xff")]
+
+
+def test_in_ascii_the_wire_has_text_and_the_caller_frames() -> None:
+    master, slave = os.openpty()
+    tty.setraw(slave)
+    line = open_serial_line(os.ttyname(slave), 9600, in_ascii=True)
+    request = with_crc(bytes.fromhex("010300640002"))
+    line.write(request, 0.0)
+    assert select([master], [], [], PATIENCE_S)[0]
+    assert os.read(master, 100) == b":01030064000296\r\n"
+    os.write(master, b":01030064")
+    assert select([slave], [], [], PATIENCE_S)[0] and line.read(1.0) == []
+    os.write(master, b"000296\r\n")
+    assert select([slave], [], [], PATIENCE_S)[0] and line.read(2.0) == [(2.0, request)]
+    line.close()
+    os.close(master)
+    os.close(slave)
+
+
+def test_a_port_that_cannot_switch_a_direction_is_refused_by_name() -> None:
+    master, slave = os.openpty()
+    with pytest.raises(BusLost, match=f"serial port {os.ttyname(slave)}: .*RS485"):
+        open_serial_line(os.ttyname(slave), 9600, rts="high")
+    os.close(master)
+    os.close(slave)
 
 
 def test_reading_nothing_does_not_block(ends: tuple[SerialLine, int, int]) -> None:

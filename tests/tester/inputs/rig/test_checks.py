@@ -51,3 +51,9 @@ def test_a_start_of_a_real_rig_says_it_and_is_not_refused(tmp_path: Path) -> Non
     told = warnings_before(rig, date(2026, 1, 1))
     assert [text.split(" has ")[0] for text in told] == ["warning: lines.heat"] * 2
     assert warnings_before(load_rig(overrides=E5CC), date(2026, 1, 1)) == []
+
+
+def test_stop_bits_are_settings_too() -> None:
+    assert any("heat has 38400 baud, parity N, 2 stop bits; jacket" in text
+               for text in other_settings(load_rig(overrides=("lines.heat.stop_bits=2",))))  # fmt: skip
+    assert load_rig(overrides=("lines.heat.rts=high",)).lines["heat"].rts == "high"
