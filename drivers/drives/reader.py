@@ -53,6 +53,11 @@ def drive_profile_names() -> list[str]:
     return list(_PACKAGED)
 
 
+def makers_profiles(vendor_id: int) -> list[str]:
+    """Return the names of the packaged profiles of a maker, by its vendor id in 0x1018:01."""
+    return [name for name in _PACKAGED if vendor_id and _from_file(name).vendor_id == vendor_id]
+
+
 def look_up_with(found: LookUp) -> None:
     """Call ``found`` for every name that is neither a packaged profile nor a path."""
     global _look_up

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.cli.options import json_option, print_json, rig_option, seed_option, set_option
-
-if TYPE_CHECKING:
-    from tester.doctor.probe_table import TableEntry
 
 
 @click.command("doctor")
@@ -30,7 +26,7 @@ def doctor(
     rig_name: str, overrides: tuple[str, ...], seed: int, seconds: float, out: str, quick: bool, bundle: str | None,
     as_json: bool,
 ) -> int:  # fmt: skip
-    """Look at a rig and report what is wrong and what to do; exit code 1 if there is a fault.
+    """Look at a rig and report what is wrong and what to do, faults first; exit code 1 if a run would not arm.
 
     It moves nothing, enables no drive and writes nothing to a device: it reads objects and registers, and listens to
     the CAN bus. It is refused while a run or the service uses the rig.
@@ -43,20 +39,18 @@ def doctor(
     from tester.kinds import load_rig, packaged_keys
 
     rig = load_rig(rig_name, overrides, "a look at the rig, not a run")
-    entries: list[TableEntry] = []
     with rig_alone(rig, "tester doctor", seed) as wires:
         examination = Examination(
             rig, Computer(), wires, Path(out), seconds, packaged_keys(rig_name, overrides), everybody=not quick,
             say=lambda text: click.echo(f"... {text}", err=True),
         )  # fmt: skip
-        for entry in examined(examination):
-            entries.append(entry)
-            if not as_json:
-                click.echo(str(entry.finding))
-                if entry.finding.todo:
-                    click.echo(f"        {entry.finding.todo}")
+        entries = sorted(examined(examination), key=lambda entry: entry.finding.severity, reverse=True)
         if bundle is not None:
             written_bundle(Path(bundle), examination, entries)
+    for entry in () if as_json else entries:
+        click.echo(str(entry.finding))
+        if entry.finding.todo:
+            click.echo(f"        {entry.finding.todo}")
     severities = [entry.finding.severity for entry in entries]
     if as_json:
         print_json({"rig": rig.name, "findings": [entry.as_data for entry in entries]})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field
 from math import inf
 
@@ -17,6 +18,8 @@ PATIENCE_S = 0.15
 
 STEP_S = 0.001
 """Period for reading the lines, s."""
+KEPT = 2000
+"""Greatest number of readings that are kept of a device: 20 s of one that is read 100 times a second."""
 
 
 @dataclass(slots=True)
@@ -34,8 +37,8 @@ class UnitWatch:
     """Duration of each exchange: from the request's first byte to the answer's last, s."""
     oldest_s: float = 0.0
     """Greatest age of a reading at the time when the next arrived, s."""
-    values: list[bytes] = field(default_factory=list[bytes])
-    """Registers of the first block, from the newest readings."""
+    values: deque[tuple[float, bytes]] = field(default_factory=lambda: deque[tuple[float, bytes]](maxlen=KEPT))
+    """Arrival (s) and registers of the newest readings of the first block."""
     last_s: float = -inf
 
     @property
@@ -60,9 +63,6 @@ class RigWatch:
     lines_lost: dict[str, str] = field(default_factory=dict[str, str])
     late_s: list[float] = field(default_factory=list[float])
     """Lateness of each scan, s; empty in simulated time."""
-
-
-_KEPT_VALUES = 200
 
 
 class _Line:
@@ -114,8 +114,7 @@ class _Line:
             if unit.last_s > -inf:
                 unit.oldest_s = max(unit.oldest_s, answer.at_s - unit.last_s)
             unit.last_s = answer.at_s
-            unit.values.append(answer.data)
-            del unit.values[:-_KEPT_VALUES]
+            unit.values.append((answer.at_s, answer.data))
         elif answer.exception:
             unit.exceptions += 1
         elif answer.noise:

@@ -1,22 +1,14 @@
-"""Probes of the CAN bus and of its nodes."""
+"""Probes of the CAN bus, of its traffic, and of the nodes that are no drives."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import pairwise
 
-from drivers import cia402
-from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
-from drivers.canopen.dictionary import describe
-from drivers.canopen.messages import state_name
-from drivers.cia402 import State
-from drivers.drive_settings import RATED_TORQUE_SHARE
 from sim.wires.can_traffic import frame_bits
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, note, ok, warning
-from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN
-from tester.run.set_up import mapped, written
 
 LOAD_MOST = 0.6
 """Greatest acceptable load of the bus: above it, frames arrive after their scan, share [A]."""
@@ -71,143 +63,6 @@ def load(e: Examination) -> Iterator[Finding]:
     text = f"load {100 * now:.1f} % now, up to {100 * run:.0f} % while a run is sliding"
     remedy = "a higher bit rate, a lower scan.sliding, or nodes taken off the bus"
     yield warning(BUS, text, remedy) if run > LOAD_MOST else ok(BUS, text)
-
-
-def axes(e: Examination) -> Iterator[Finding]:
-    """Compare every drive with its axis in the rig file."""
-    if not e.can.present:
-        return
-    configs = e.rig.drives()
-    serials = {config.serial_number: name for name, config in configs.items() if config.serial_number}
-    for name, config in configs.items():
-        if config.node_id not in e.can.present:
-            yield _not_there(e, name, config)
-            continue
-        yield from _identity(e, name, config, serials)
-        if config.node_id in e.can.surplus:
-            times = e.can.surplus[config.node_id]
-            yield fault(
-                name, f"node {config.node_id} answered {times} question more than once: two nodes have one node number",
-                "unplug one drive after the other and see which still answers; give one drive another number",
-            )  # fmt: skip
-        yield from _drive_state(e, name, config)
-        yield from _objects(e, name, config)
-
-
-def _not_there(e: Examination, name: str, config: AxisConfig) -> Finding:
-    known = {other.node_id for other in (*e.rig.drives().values(), *e.rig.can.nodes.values())}
-    for node in sorted({*e.can.present} - known):
-        serial = e.can.number(node, (o.IDENTITY, 4))
-        same = serial == config.serial_number if config.serial_number else _same_type(e, node, config)
-        if same:
-            return fault(
-                name, f"nothing answers at node {config.node_id}; node {node}, not in the rig file, is such a drive",
-                f"set the drive's node number to {config.node_id}, or axes.{name}.node_id to {node}",
-            )  # fmt: skip
-    state = e.can.traffic.states.get(config.node_id)
-    if state is not None:
-        return fault(
-            name, f"node {config.node_id} sends heartbeats ({state_name(state)}) and answers no SDO request",
-            "switch the drive off and on",
-        )  # fmt: skip
-    return fault(name, f"nothing answers at node {config.node_id}", NODE_WIRING)
-
-
-def _same_type(e: Examination, node: int, config: AxisConfig) -> bool:
-    """Return whether a node is a drive of the axis' manufacturer and product, as far as the rig file states them."""
-    if (e.can.number(node, (o.DEVICE_TYPE, 0)) or 0) & 0xFFFF != o.DEVICE_PROFILE:
-        return False
-    identity = ((1, config.vendor_id), (2, config.product_code))
-    return all(not expected or e.can.number(node, (o.IDENTITY, sub)) == expected for sub, expected in identity)
-
-
-def _identity(e: Examination, name: str, config: AxisConfig, serials: Mapping[int, str]) -> Iterator[Finding]:
-    node, can = config.node_id, e.can
-    vendor, product, revision, serial = (can.number(node, (o.IDENTITY, sub)) or 0 for sub in (1, 2, 3, 4))
-    who = " ".join(
-        text for text in (can.text(node, (o.DEVICE_NAME, 0)), can.text(node, (o.HARDWARE_VERSION, 0)),
-                          can.text(node, (o.SOFTWARE_VERSION, 0))) if text
-    )  # fmt: skip
-    seen = f"node {node}: {who or 'no name'}, vendor 0x{vendor:08X}, product 0x{product:08X}, revision 0x{revision:08X}"
-    device_type = can.number(node, (o.DEVICE_TYPE, 0)) or 0
-    if device_type & 0xFFFF != o.DEVICE_PROFILE:
-        yield fault(name, f"{seen}: device type 0x{device_type:08X} is no CiA 402 drive", "look at axes' node numbers")
-        return
-    other = serials.get(serial)
-    if other is not None and other != name:
-        yield fault(
-            name, f"node {node} has the serial number {serial}, which the rig file gives to {other}: swapped drives",
-            f"exchange the node numbers of the drives of {name} and {other}, or their places in the rig file",
-        )  # fmt: skip
-        return
-    wrong = [
-        f"{describe(o.IDENTITY, sub)} is 0x{actual:08X}, the rig file has 0x{expected:08X}"
-        for sub, actual, expected in ((1, vendor, config.vendor_id), (2, product, config.product_code),
-                                     (4, serial, config.serial_number)) if expected and actual != expected
-    ]  # fmt: skip
-    if wrong:
-        yield fault(
-            name, f"{seen}: {'; '.join(wrong)}: another drive than the rig file's",
-            "the right drive at this node number, or its own identity and profile in the rig file",
-        )  # fmt: skip
-    else:
-        yield ok(name, f"{seen}, serial number {serial}")
-
-
-def _drive_state(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
-    can, node = e.can, config.node_id
-    statusword = can.number(node, (o.STATUSWORD, 0))
-    if statusword is not None:
-        state = cia402.decode(statusword)
-        code = can.number(node, (o.ERROR_CODE, 0)) or 0
-        if state in (State.FAULT, State.FAULT_REACTION):
-            yield fault(name, f"the drive is in fault: {o.emergency_text(code)}", "look this code up in its manual")
-        elif state is State.OPERATION_ENABLED:
-            yield fault(name, "the drive is enabled, and no run is under way", "end whatever enabled it")
-        if config.drive.remote and not statusword & cia402.REMOTE:
-            yield fault(
-                name, f"in local mode: it does not obey the bus (statusword 0x{statusword:04X}, bit 9 = 0)",
-                "its key switch, its panel, or the maker's set-up tool",
-            )  # fmt: skip
-    inputs = can.number(node, (o.DIGITAL_INPUTS, 0)) if config.digital_io else None
-    if inputs is not None:
-        io, shown = config.io, config.io.from_drive(inputs)
-        word = f"0x60FD = 0x{inputs & 0xFFFFFFFF:08X}"
-        for mask, what, closed, bit in (
-            (INPUT_SAFETY_CHAIN, "safety chain", "healthy", io.safety_chain), (INPUT_GUARD, "guard", "closed", io.guard)
-        ):  # fmt: skip
-            if shown & mask:
-                yield ok(name, f"{what} {closed} (bit {bit}, {word}): look whether it is")
-                continue
-            yield warning(
-                name, f"{what} open (bit {bit} = 0, {word})",
-                f"if the {what} is {closed} as you read this, the input's polarity or its wire is wrong: 1 is {closed}",
-            )  # fmt: skip
-
-
-def _objects(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
-    """Check every object that the set-up needs, and compare ratings and process data with the rig file."""
-    answers = e.can.objects.get(config.node_id, {})
-    needed = {**written(config), **mapped(config)}
-    missing = [describe(*key) for key in needed if key in answers and answers[key].missing
-               and key not in config.drive.optional]  # fmt: skip
-    if missing:
-        yield warning(
-            name, f"the drive does not have {len(missing)} of the objects that a set-up writes: {'; '.join(missing)}",
-            "its profile has to name them as missing or optional; compare with the maker's EDS",
-        )  # fmt: skip
-    rated = answers[o.RATED_TORQUE, 0].number if (o.RATED_TORQUE, 0) in answers else None
-    expected = config.rated_torque_counts
-    actual_nm = (rated or 0) * config.drive.units.rated_torque_nm * config.gear
-    if rated and abs(rated - expected) > max(RATED_TORQUE_SHARE * expected, 1.0):
-        yield fault(
-            name, f"0x6076 rated torque is {actual_nm:.4g} N m, the rig file has {config.rated_torque_nm:g} N m",
-            f"every torque would be shown and limited by a factor of {rated / expected:.3g} wrong: correct"
-            f" axes.{name}.rated_torque, or the drive's motor data",
-        )  # fmt: skip
-    other = [key for key, value in mapped(config).items() if key in answers and answers[key].number != value]
-    if other:
-        yield note(name, f"{len(other)} objects of process data differ from the rig file; every connect writes them")
 
 
 def heartbeats(e: Examination) -> Iterator[Finding]:

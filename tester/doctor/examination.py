@@ -57,8 +57,11 @@ class Examination:
 
     @cached_property
     def watch(self) -> RigWatch:
-        """The results of watching the rig, which follows the surveys."""
+        """The results of watching the rig, which follows the surveys; empty if nothing has answered."""
         can, lines = not self.can.lost, self.lines
+        units = [unit for line in lines.values() for unit in line.units.values()]
+        if not self.can.present and not self.can.traffic.frames and not any(unit.there for unit in units):
+            return RigWatch()
         self.say(f"watching for {self.seconds:g} s")
         return watched(self.rig, self.wires, lines, self.seconds, can=can)
 

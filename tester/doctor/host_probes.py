@@ -188,7 +188,8 @@ def punctuality(e: Examination) -> Iterator[Finding]:
     """Report how late the computer's scans were during the watch, and which limits would be possible."""
     late = sorted(e.watch.late_s)
     if not late:
-        yield note("scan", "rig time is simulated: how punctual this computer is was not measured")
+        why = "nothing answers" if e.wires.real else "rig time is simulated"
+        yield note("scan", f"{why}: how punctual this computer is was not measured")
         return
     most, often = late[-1], late[min(int(OFTEN * len(late)), len(late) - 1)]
     period_s = 1.0 / e.rig.scan.sliding_hz

@@ -154,7 +154,7 @@ def _values(name: str, unit: UnitSurvey) -> Iterator[Finding]:
             continue
         wrong: list[str] = []
         shown: list[str] = []
-        for signal, value in _decoded(block, answer.data):
+        for signal, value in decoded(block, answer.data):
             if signal.name == "status":
                 yield from _status(name, unit, int(value))
             else:
@@ -168,7 +168,8 @@ def _values(name: str, unit: UnitSurvey) -> Iterator[Finding]:
             yield ok(name, f"unit {unit.config.unit_id}: {', '.join(shown)}: look whether that can be")
 
 
-def _decoded(block: RegisterBlock, data: bytes) -> list[tuple[Signal, float]]:
+def decoded(block: RegisterBlock, data: bytes) -> list[tuple[Signal, float]]:
+    """Return the signals of a block of registers with their values, in their units; NaN if a value is not finite."""
     values = list(zip(block.signals, block.unpack(data), strict=True))
     status = next((int(value) for signal, value in values if signal.name == "status"), 0)
     values_by_signal: list[tuple[Signal, float]] = []
@@ -183,7 +184,7 @@ def _decoded(block: RegisterBlock, data: bytes) -> list[tuple[Signal, float]]:
 
 def _implausible(name: str, unit: UnitSurvey, block: RegisterBlock, data: bytes, wrong: list[str]) -> Iterator[Finding]:
     for order in ORDERS if any(signal.size > 1 for signal in block.signals) else ():
-        turned = _decoded(replace(block, order=order), data)
+        turned = decoded(replace(block, order=order), data)
         if order != block.order and all(
             signal.name == "status" or signal.least <= value <= signal.greatest for signal, value in turned
         ):
@@ -280,18 +281,28 @@ def _reply_time(e: Examination, name: str, unit: UnitSurvey, watch: UnitWatch) -
     if usual_s > timing.reply_max_s + LATE_S:
         late_s, most = usual_s - timing.turnaround_s, f"{1e3 * timing.reply_max_s:g} ms"
         late = f"{text}; {unit.profile.name} takes at most {most}: late by {1e3 * late_s:.0f} ms"
-        least_s, most_s = LATENCY_TIMER_S
-        if e.rig.lines[unit.config.line].framing == "rtu" and least_s <= late_s <= most_s:
+        if _by_timer(e, unit, watch):
             late += ", as by the latency timer of a USB adapter (16 ms)"
-            remedy = "set the adapter's latency timer to 1 ms, or its low-latency flag; or use an adapter without one"
-        else:
-            remedy = "the device's own reply delay, or what is between it and this computer: a gateway, a radio link"
-        yield warning(name, late, remedy)
+        yield warning(name, late, _quicker(e, unit, watch))
     if unit.profile.blocks[0].period_s == 0.0 and rate < READINGS_S:
         yield warning(
             name, f"{text}: less than {READINGS_S:g} readings/s",
-            "a higher baud rate, a line of its own, the adapter's latency timer at 1 ms",
+            f"a higher baud rate, a line of its own; {_quicker(e, unit, watch)}",
         )  # fmt: skip
+
+
+def _by_timer(e: Examination, unit: UnitSurvey, watch: UnitWatch) -> bool:
+    """Return whether the delay of a device's answers is that of a USB serial adapter's latency timer."""
+    least_s, most_s = LATENCY_TIMER_S
+    late_s = median(watch.delays_s) - unit.profile.timing.turnaround_s
+    return e.rig.lines[unit.config.line].framing == "rtu" and least_s <= late_s <= most_s
+
+
+def _quicker(e: Examination, unit: UnitSurvey, watch: UnitWatch) -> str:
+    """Return what makes a device's answers come sooner."""
+    if _by_timer(e, unit, watch):
+        return "set the adapter's latency timer to 1 ms, or its low-latency flag; or use an adapter without one"
+    return "the device's own reply delay, or what is between it and this computer: a gateway, a radio link"
 
 
 def _age(e: Examination, key: str, unit: UnitSurvey, watch: UnitWatch, age_s: float) -> Finding:
@@ -304,7 +315,7 @@ def _age(e: Examination, key: str, unit: UnitSurvey, watch: UnitWatch, age_s: fl
     if age_s > limit_s:
         return fault(
             name, f"{text}; two readings take {1e3 * age_s:.0f} ms, {allowed}: a run refuses the line as too slow",
-            "a quicker adapter, its latency timer at 1 ms, a higher baud rate, a line of its own",
+            f"a higher baud rate, a line of its own; {_quicker(e, unit, watch)}",
         )  # fmt: skip
     if watch.oldest_s > limit_s:
         remedy = "remove the causes of late or lost answers, as above; the limit stays the rig file's"

@@ -19,6 +19,8 @@ SCAN_S = 0.06
 UNITS = range(1, 248)
 """Addresses of devices (Modbus over serial line V1.02, 2.2)."""
 STEP_S = 0.002
+RUN = "run"
+"""Name of the switch that lets a controller control."""
 BAUDS = (115_200, 57_600, 38_400, 19_200, 9_600)
 PARITIES: tuple[Parity, ...] = ("N", "E", "O")
 TRIES = 3
@@ -36,6 +38,15 @@ class UnitSurvey:
     configuration: dict[str, LineAnswer] = field(default_factory=dict[str, LineAnswer])
     """Answers for the registers of identity, set-up and parameters, by name."""
 
+    running: LineAnswer | None = None
+    """Answer for the register that switches a controller on; None for a device without one."""
+
+    @property
+    def switched_on(self) -> bool:
+        """Whether the device is a controller that controls at present."""
+        answer = self.running
+        return answer is not None and answer.ok and answer.data == self.profile.switches[RUN].on.to_bytes(2, "big")
+
     @property
     def there(self) -> bool:
         """Whether the device answered at all."""
@@ -52,13 +63,17 @@ class UnitSurvey:
         unit_id = self.config.unit_id if number is None else number
         return RegisterQuestion(unit_id, asked.function, asked.address, asked.count)
 
+    @property
+    def reads(self) -> int:
+        """The function that reads a register of the device's configuration."""
+        return 3 if 3 in self.profile.functions else 4
+
     def settings(self) -> Iterator[tuple[str, RegisterQuestion]]:
         """Yield name and question of every configuration register: identity, set-up, parameters.
 
         Setpoint and lease are left out, because they are commands.
         """
-        profile, unit_id = self.profile, self.config.unit_id
-        reads = 3 if 3 in profile.functions else 4
+        profile, unit_id, reads = self.profile, self.config.unit_id, self.reads
         if profile.identity is not None:
             yield "device type", RegisterQuestion(unit_id, profile.identity.function, profile.identity.address, 1)
         for write in profile.setup:
@@ -136,6 +151,9 @@ def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) ->
             return
     for name, question in unit.settings():
         unit.configuration[name] = _patiently(scan, port, wires, question)
+    if RUN in unit.profile.switches:
+        question = RegisterQuestion(unit.config.unit_id, unit.reads, unit.profile.switches[RUN].address, 1)
+        unit.running = _patiently(scan, port, wires, question)
 
 
 def _patiently(scan: LineScan, port: LinePort, wires: Wires, question: RegisterQuestion) -> LineAnswer:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 from zipfile import ZIP_DEFLATED, ZipFile
 
-from tester.doctor import can_probes, host_probes, line_probes
+from tester.doctor import can_probes, drive_probes, host_probes, line_probes, rehearsal, steadiness
 from tester.doctor.device_parameters import dumped
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding
@@ -26,7 +26,7 @@ PROBES: Final[tuple[tuple[str, Probe], ...]] = (
     ("adapters", host_probes.latency_timers),
     ("adapters", host_probes.can_adapter),
     ("CAN", can_probes.bus),
-    ("CAN", can_probes.axes),
+    ("CAN", drive_probes.axes),
     ("CAN", can_probes.strangers),
     ("Modbus", line_probes.lines),
     ("Modbus", line_probes.devices),
@@ -37,7 +37,10 @@ PROBES: Final[tuple[tuple[str, Probe], ...]] = (
     ("watch", can_probes.load),
     ("watch", can_probes.errors),
     ("watch", line_probes.ages),
+    ("watch", steadiness.steadiness),
+    ("watch", steadiness.heat),
     ("watch", host_probes.punctuality),
+    ("run", rehearsal.arming),
 )
 
 

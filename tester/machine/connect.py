@@ -105,6 +105,13 @@ class Arming(Generic[DevicesT, RigT]):
             return f"inputs stale: the {io.config.name} drive sends none"
         return ""
 
+    def at_rest(self) -> str:
+        """Return why a rig with the present readings, at rest and not connected, may not be armed; "" if it may.
+
+        Called for each new reading.
+        """
+        return ""
+
     def silent(self) -> str:
         """Return the explanation to show when no drive responds."""
         return f"{CAN_SILENT.name}: {CAN_SILENT.cause}"

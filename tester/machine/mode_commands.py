@@ -36,6 +36,10 @@ class ModeCommands(Generic[StateT, ReadingsT, DemandT, InputsT]):
         """Return the obstacles to arming that no row covers."""
         return []
 
+    def doubts(self, readings: ReadingsT) -> list[str]:
+        """Return what looks wrong in a rig at rest and does not prevent arming."""
+        return []
+
     def detail(self, readings: ReadingsT) -> str:
         """Return the values that help a reader of the trip most."""
         raise NotImplementedError

@@ -34,6 +34,7 @@ KEPT: tuple[Key, ...] = (
     (o.RATED_CURRENT, 0),
     (o.RATED_TORQUE, 0),
     (0x607E, 0),
+    (o.MAX_PROFILE_VELOCITY, 0),
     (0x608F, 1),
     (0x608F, 2),
     (0x6091, 1),

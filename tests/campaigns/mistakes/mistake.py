@@ -1,4 +1,4 @@
-"""A mistake of wiring or scaling, what has to name it, and how it is looked for."""
+"""A mistake on the simulated rig, and what has to name it."""
 
 from __future__ import annotations
 
@@ -14,3 +14,5 @@ class Mistake:
     named_by: str
     """A regular expression that one of the findings has to match."""
     find: Callable[[int], list[str]]
+    disagrees: Callable[[int], str] = lambda seed: ""
+    """Returns how the exit code contradicts a run of the same rig; "" if it agrees, or has no exit code."""

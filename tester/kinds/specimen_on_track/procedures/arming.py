@@ -46,15 +46,18 @@ class TrackUnloaded(Lifting):
         cell = self.devices.cell
         if self.done and not (cell.valid and now - cell.stamp_s <= SILENT_S):
             return "load cell silent: whether the specimen touches is unknown"
-        if not self.raised:
-            return ""
-        force_n, most_n = cell.raw[0], self.rig.arming.unloaded_n
-        if abs(force_n) <= most_n:
-            return ""
-        return (
-            f"the load cell shows {force_n:.1f} N without tare, unloaded it is {most_n:g} N at most (arming.unloaded):"
-            " is the arm down, or its zero wrong?"
-        )
+        return loaded(cell.raw[0], self.rig) if self.raised else ""
+
+
+def loaded(force_n: float, rig: TrackConfig) -> str:
+    """Return "", or the force on a cell that should show none; ``force_n``: without tare."""
+    most_n = rig.arming.unloaded_n
+    if abs(force_n) <= most_n:
+        return ""
+    return (
+        f"the load cell shows {force_n:.1f} N without tare, unloaded it is {most_n:g} N at most (arming.unloaded):"
+        " is the arm down, or its zero wrong?"
+    )
 
 
 class TrackProof(WatchdogProof):
@@ -107,6 +110,10 @@ class TrackArming(Arming[TrackDevices, TrackConfig]):
         """Send nothing."""
         super().__init__(devices, rig)
         self._lifting: TrackUnloaded | None = None
+
+    def at_rest(self) -> str:
+        """Return the force on the cell of an arm that should be raised."""
+        return loaded(self.devices.cell.raw[0], self.rig)
 
     def lift(self) -> TrackUnloaded:
         """Begin to watch the load cell."""

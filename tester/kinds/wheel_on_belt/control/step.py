@@ -53,11 +53,27 @@ class WheelControl(WheelStops):
 
     def unfit(self, readings: Readings) -> list[str]:
         """Detect a misaligned thermometer: it must agree with a cold hub."""
-        r, p = readings, self._parameters
-        cold = abs(r.hub_c - self.rig.ambient_c) <= p[COLD_K]
-        if cold and not abs(r.surface_c - r.hub_c) <= p[START_K]:
+        r = readings
+        if self._cold(r) and self._apart(r):
             return [f"thermometer at {r.surface_c:.1f} degC, hub cold at {r.hub_c:.1f} degC"]
         return []
+
+    def doubts(self, readings: Readings) -> list[str]:
+        """Report a thermometer that is off a hub that is not cold: the wheel may come from a hot run."""
+        r = readings
+        if self._cold(r) or not self._apart(r):
+            return []
+        apart_k = abs(r.surface_c - r.hub_c)
+        return [
+            f"thermometer at {r.surface_c:.1f} degC, hub at {r.hub_c:.1f} degC, {apart_k:.0f} K apart at rest: right"
+            " only soon after a hot run"
+        ]
+
+    def _cold(self, r: Readings) -> bool:
+        return abs(r.hub_c - self.rig.ambient_c) <= self._parameters[COLD_K]
+
+    def _apart(self, r: Readings) -> bool:
+        return not abs(r.surface_c - r.hub_c) <= self._parameters[START_K]
 
     def detail(self, readings: Readings) -> str:
         """Return the values most useful to a reader of the journal."""

@@ -6,10 +6,11 @@ They run unloaded: ``tester.kinds.wheel_on_belt.procedures.lift_check`` ensures 
 from __future__ import annotations
 
 from enum import Enum
+from math import inf
 
 from drivers.canopen import objects as o
 from tester.kinds.wheel_on_belt.image.devices import Devices
-from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
+from tester.kinds.wheel_on_belt.procedures.lift_check import LIFTED_MM, Unloaded, loaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.wheel_rig import EQUAL_DECELERATIONS
 from tester.machine.connect import Arming
@@ -126,6 +127,28 @@ def unequal_decelerations(devices: Devices, radius_m: float) -> str:
 
 class WheelArming(Arming[Devices, RigConfig]):
     """Lifts the press, checks the load cell, and proves that the drives follow, and stop without our heartbeat."""
+
+    def __init__(self, devices: Devices, rig: RigConfig) -> None:
+        """Send nothing."""
+        super().__init__(devices, rig)
+        self._least_n, self._most_n = inf, -inf
+
+    def at_rest(self) -> str:
+        """Return the load on the cell, or its noise where that looks like a touch; a press that is down counts for
+        nothing, because a run lifts it first.
+        """
+        devices, touch_n = self.devices, self.rig.loops.load.touch_load_n
+        if not devices.axes.press.actual <= LIFTED_MM:
+            return ""
+        force_n = devices.cell.raw[2]
+        self._least_n, self._most_n = min(self._least_n, force_n), max(self._most_n, force_n)
+        shown = loaded(devices.cell.raw, self.rig)
+        if shown or not 0.5 * (self._most_n - self._least_n) > touch_n:
+            return shown
+        return (
+            f"the load cell's Fz is noisy, {self._least_n:.1f} to {self._most_n:.1f} N at rest: a press that approaches"
+            f" would take it for a touch, {touch_n:g} N (loops.load.touch_load)"
+        )
 
     def renew(self) -> None:
         """Renew the jacket's lease; it stays in standby."""
