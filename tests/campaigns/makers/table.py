@@ -1,0 +1,70 @@
+"""What a maker's manual says of a device: its registers, and what it does on a fault. No profile is read here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import inf
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from tests.campaigns.makers.slave import MakersSlave
+
+Area = Literal["coil", "discrete", "holding", "input"]
+Type = Literal["bits8", "u16", "i16", "u32", "i32", "f32"]
+SIZES: Mapping[Type, int] = {"bits8": 8, "u16": 1, "i16": 1, "u32": 2, "i32": 2, "f32": 2}
+"""Addresses that a number takes."""
+
+
+@dataclass(frozen=True)
+class Register:
+    """A number in the maker's table."""
+
+    name: str
+    area: Area
+    addresses: tuple[int, ...]
+    """Protocol addresses, from 0; several where the device shows the number in several places."""
+    type: Type
+    least: float = -inf
+    """Range in the maker's unit."""
+    greatest: float = inf
+    access: Literal["r", "w", "rw"] = "r"
+    at_start: float = 0.0
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of the device, as its registers show it: values by register, over those that it measured."""
+
+    name: str
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A maker's table."""
+
+    profile: str
+    source: str
+    functions: frozenset[int]
+    registers: tuple[Register, ...]
+    faults: tuple[State, ...] = ()
+    """States in which no number may be believed."""
+    harmless: tuple[State, ...] = ()
+    """States that look alike, in which numbers are good."""
+    low_word_first: bool = False
+    one_area: bool = False
+    """Whether functions 3 and 4 read the same registers."""
+    protected: int = 2
+    """Exception on a write to a register that is read-only."""
+    out_of_range: int | None = 3
+    """Exception on a write outside the register's range; None: the device answers, and keeps the value it had."""
+    react: Callable[[MakersSlave, str], None] = lambda slave, written: None
+    """What the device does by itself after a register was written, or a measured number has changed."""
+    shown: Mapping[str, tuple[str, float]] = field(default_factory=dict[str, tuple[str, float]])
+    """By channel of the profile: the register with its value, and the number of the channel's units in the maker's."""
+    parameters: Mapping[str, tuple[str, float]] = field(default_factory=dict[str, tuple[str, float]])
+    """The same for what the profile writes."""
+
+    def __getitem__(self, name: str) -> Register:
+        return next(register for register in self.registers if register.name == name)
