@@ -113,6 +113,8 @@ class Sensor(Device):
             value = count * scale + offset
             if not low < value < high:
                 valid = False
+            if number < 0:
+                continue  # it guards a channel
             if count != counts[number]:
                 counts[number] = count
                 self.changed_s = t
@@ -152,6 +154,8 @@ class _SensorRead:
             _row(number, names.index(name), block.signals[names.index(name)], saturated)
             for number, name in enumerate(channels)
             if name in names
+        ) + tuple(
+            _row(-1, place, signal, None) for place, signal in enumerate(block.signals) if signal.guards in channels
         )
         self.plausible = False
         self.stamp_s: float = -inf

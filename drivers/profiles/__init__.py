@@ -130,6 +130,9 @@ def _look_at_reads(
     for name in every:
         if every.count(name) > 1:
             raise top.error("reads", f"{name} is in two of them")
+    for signal in (signal for block in blocks for signal in block.signals if signal.guards):
+        if kind in ("jacket", "chamber") or signal.guards not in every or signal.guards in ("status", signal.name):
+            raise top.error("signals", f"{signal.name} guards {signal.guards!r}, which is no channel of a sensor")
     names = {signal.name for signal in blocks[0].signals}
     if kind == "sensor" and names == {"status"}:
         raise top.error("reads", "the first read must hold a channel")
@@ -164,6 +167,7 @@ def _signals(table: ProfileTable, functions: Collection[int] | None = None) -> d
             greatest=row.number("greatest", float("inf")),
             sign_bit=row.integer("sign_bit", 0, 31) if "sign_bit" in row else None,
             bit=row.integer("bit", 0, 15) if number == "bit" and "bit" in row else 0,
+            guards=row.text("guards", "") if functions is None else "",
             default=row.number("default") if "default" in row else None,
         )
         if functions is not None:

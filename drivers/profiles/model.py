@@ -140,8 +140,15 @@ class DeviceProfile:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels of a sensor: the names in its reads except the status, read by read in order of address."""
-        return tuple(signal.name for block in self.blocks for signal in block.signals if signal.name != "status")
+        """Channels of a sensor: the names in its reads except the status and what guards a channel, read by read in
+        order of address.
+        """
+        return tuple(
+            signal.name
+            for block in self.blocks
+            for signal in block.signals
+            if signal.name != "status" and not signal.guards
+        )
 
     def signal(self, name: str) -> Signal:
         """Return a signal that is read. Raises ProfileError if the device has none of this name."""

@@ -33,6 +33,8 @@ class Signal:
     """Status bit that makes the value negative, if the register holds the magnitude."""
     bit: int = 0
     """Place of a ``bit`` in its register, 0 = the lowest; 0 for a coil or a discrete input."""
+    guards: str = ""
+    """Channel that is invalid while this number is out of its bounds: the number is no channel itself."""
     default: float | None = None
     """For a parameter: value written if the rig file states none; None = the rig file must state one."""
 

@@ -54,6 +54,15 @@ air = { address = 7, type = "bit", bit = 9 }
 signals = ["door", "air"]
 period_ms = 50
 """
+GUARDED = """
+[signals]
+first_ma = { address = 8, type = "i16", scale = 0.1, unit = "mA" }
+second_ma = { address = 9, type = "i16", scale = 0.1, unit = "mA" }
+second_state = { address = 10, type = "u16", least = 0, greatest = 0, guards = "second_ma" }
+[[reads]]
+signals = ["first_ma", "second_ma", "second_state"]
+period_ms = 50
+"""
 ANYWHERE = """
 [signals]
 pv = { address = 360, type = "f32", unit = "degC", least = -50, greatest = 300 }
@@ -119,6 +128,25 @@ def test_bits_of_a_register_are_channels() -> None:
     made.run(0.5)
     assert one.valid and (one.channels, one.values) == (("door", "air"), [0.0, 1.0])
     assert slave.get(7) == 1 << 9
+
+
+def test_a_number_that_guards_a_channel_is_none_and_its_bounds_make_the_channel_invalid() -> None:
+    found = profile(GUARDED)
+    bench = Bench()
+    both = Sensor(found, 1, bench.link)
+    first = Sensor(found, 2, bench.link, channels=("first_ma",))
+    for device in (both, first):
+        device.take(0, bytes.fromhex("0028 0000 0000"), 1.0)
+        assert device.valid
+        device.take(0, bytes.fromhex("0028 0000 0001"), 2.0)
+    assert both.channels == ("first_ma", "second_ma") and both.values == [4.0, 0.0]
+    assert (both.valid, first.valid) == (False, True)
+
+
+@pytest.mark.parametrize("guarded", ["third_ma", "second_state", "status"])
+def test_what_guards_no_channel_is_refused(guarded: str) -> None:
+    with pytest.raises(ProfileError, match=f"second_state guards '{guarded}', which is no channel"):
+        profile(GUARDED.replace('guards = "second_ma"', f'guards = "{guarded}"'))
 
 
 @pytest.mark.parametrize(("writes", "frame"), [("5", "01050003FF00"), ("15", "010F000300010101")])
