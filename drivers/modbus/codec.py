@@ -63,11 +63,11 @@ EXCEPTION_TEXTS = {
     5: "acknowledge",
     6: "device busy",
     7: "negative acknowledge",
-    8: "memory parity error",
+    8: "write-protected, or memory parity error",
     10: "gateway path unavailable",
     11: "gateway target failed to respond",
 }
-"""Exception codes (Modbus application protocol V1.1b3, 7)."""
+"""Exception codes (Modbus application protocol V1.1b3, 7); 8 on a write: write-protected (JUMO)."""
 
 # Without this handler the library would report bad frames on stderr; the link counts them instead.
 logging.getLogger("pymodbus").addHandler(logging.NullHandler())

@@ -22,12 +22,13 @@ from drivers.profiles.model import Timing
 MISSES_TO_LOSE: Final = 3
 """Failed attempts in a row after which a station counts as lost (safety page: 3 misses)."""
 BUSY_S: Final = 0.02
-"""Pause before a request is repeated after a device was busy or failed to answer (exceptions 04 to 08), s."""
+"""Pause before a request is repeated after exceptions 04 to 07, or 08 on a read: a device that is busy or failed, s."""
 POLL_S: Final = 0.002
 """While other requests wait and a reply is overdue, the link asks to be served on a grid of this, s."""
 
 _TINY_S: Final = 1e-9
 _CONFIGURATION: Final = frozenset({1, 2, 3})
+_WRITE_PROTECTED: Final = 8
 _DEVICE_GONE: Final = frozenset({10, 11})
 _GOOD: Final = AnswerKind.GOOD
 
@@ -314,7 +315,7 @@ class ModbusLink(LineType):
         station = request.station
         exceptions = station.counters.exceptions
         exceptions[code] = exceptions.get(code, 0) + 1
-        if code in _CONFIGURATION:
+        if code in _CONFIGURATION or (code == _WRITE_PROTECTED and request.writes):
             self._end(t + self.gap_s)
             self._schedule.disable(request)
             self._schedule.look_again()

@@ -297,6 +297,18 @@ def test_exceptions_1_to_3_are_a_wrong_configuration_and_latch(code: int, text: 
     assert len(bench.frames) == 1
 
 
+def test_exception_8_on_a_write_is_a_wrong_configuration_and_on_a_read_is_asked_again() -> None:
+    bench, request = polling()
+    bench.serve(0.01, (0.0055, refusal(8)))
+    assert request.station.refused is None
+    bench = Bench()
+    write = bench.link.write(bench.station(), 6, 26, (500,))
+    bench.link.enable(write)
+    bench.serve(0.0)
+    bench.serve(0.005, (0.004, refusal(8, function=6)))
+    assert "exception 8 (write-protected" in (write.station.refused or "")
+
+
 @pytest.mark.parametrize("code", [4, 6])
 def test_exceptions_4_and_6_are_asked_again_after_a_pause(code: int) -> None:
     bench, request = polling()
