@@ -1,7 +1,7 @@
-"""Flintec DAD 141.1 load cell amplifier: "Modbus Communication", Rev. 2.3, June 2014, p. 2 to 10. Floats, high word first.
+"""Flintec DAD 141.1 load cell amplifier: "Modbus Communication", Rev. 2.3, June 2014, p. 2 to 10.
 
-Functions 3 and 4 read the same registers. Index 3500 hex shows gross weight, net weight and qualifier together. Its tare
-is a bit command, and the net weight then counts from there.
+Floats have their high word first; functions 3 and 4 read the same registers. Index 3500 hex shows gross weight, net
+weight and qualifier together. The tare is a bit command, and the net weight then counts from there.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ from tests.campaigns.makers.table import Register, State, Table
 
 RESET_ZERO, SET_ZERO, RESET_TARE, SET_TARE = 0x01, 0x02, 0x04, 0x08
 """Bit commands (p. 4)."""
+NEWTONS = 9.80665
+"""Weight of a kilogram, N."""
 TARED = 0x20
 """Qualifier bit "tare set"."""
 
@@ -56,7 +58,9 @@ TABLE = Table(
     harmless=(
         State("no motion", {"qualifier": 0x10}),
         State("above set-points", {"qualifier": 0x700}),
+        State("tared", {"bit commands": SET_TARE}),
     ),
     one_area=True,
     react=react,
+    shown={"force": ("gross", NEWTONS)},
 )

@@ -2,7 +2,7 @@
 
 Functions 3 and 4 read the same words. An invalid measured value is shown by the value itself, as 1e37 to 8e37 (p. 24).
 A write to a protected address is refused by exception 8 (p. 23); a measuring range that is left puts the controller
-into manual mode (0x4B2C).
+into manual mode (0x4B2C). Here it starts in manual mode.
 """
 
 from __future__ import annotations
@@ -23,11 +23,13 @@ def react(slave: MakersSlave, written: str) -> None:
     slave.put("actual value", measured)
     invalid = measured > INVALID
     slave.put("manual by range", invalid)
-    slave.put("manual mode", invalid)
-    slave.put("mode", MANUAL if invalid else AUTOMATIC)
+    if written in ("to manual", "to automatic") and slave.get(written):
+        slave.put("manual mode", written == "to manual")
+    manual = invalid or slave.get("manual mode") != 0.0
+    slave.put("mode", MANUAL if manual else AUTOMATIC)
     deviation = slave.get("setpoint") - measured
     slave.put("deviation", 3e37 if invalid else deviation)
-    slave.put("output level", 0.0 if invalid else min(max(2.0 * deviation, 0.0), 100.0))
+    slave.put("output level", slave.get("manual level") if manual else min(max(2.0 * deviation, 0.0), 100.0))
 
 
 TABLE = Table(
@@ -36,11 +38,11 @@ TABLE = Table(
     functions=frozenset({3, 4, 6, 16}),
     registers=(
         Register("tuning active", "holding", (0x4B2A,), "u16"),
-        Register("manual mode", "holding", (0x4B2B,), "u16"),
+        Register("manual mode", "holding", (0x4B2B,), "u16", at_start=1),
         Register("manual by range", "holding", (0x4B2C,), "u16"),
         Register("cycle alarm", "holding", (0x4B2D,), "u16"),
         Register("output alarm", "holding", (0x4B2E,), "u16"),
-        Register("mode", "holding", (0x4B38,), "u16", at_start=AUTOMATIC),
+        Register("mode", "holding", (0x4B38,), "u16", at_start=MANUAL),
         Register("manual inhibited", "holding", (0x4B39,), "u16"),
         Register("tuning inhibited", "holding", (0x4B3A,), "u16"),
         Register("start tuning", "holding", (0x5350,), "u16", 0, 1, "rw"),
@@ -86,4 +88,7 @@ TABLE = Table(
     one_area=True,
     protected=8,
     react=react,
+    shown={"pv": ("analog input", 1.0), "setpoint": ("setpoint", 1.0), "output": ("output level", 1.0)},
+    parameters={"setpoint": ("setpoint 1", 1.0)},
+    wanted={"mode": AUTOMATIC},
 )

@@ -11,7 +11,8 @@ from tests.campaigns.makers.table import Register, State, Table
 
 CHANNELS = range(8)
 FULL_MA, FULL_COUNTS = 20.0, 0xFFFF
-BURNOUT_MODE = 4
+BURNOUT = 4
+"""Mode "4-20 mA, burnout"."""
 BURNT_OUT, OVER, UNDER = 1, 2, 3
 """Status of a channel; 0 = normal."""
 
@@ -30,10 +31,10 @@ TABLE = Table(
     functions=frozenset({1, 2, 3, 4, 5, 6, 15, 16}),
     registers=(
         *(Register(f"raw {number}", "input", (number,), "u16") for number in CHANNELS),
-        *(Register(f"scaled {number}", "input", (8 + 2 * number,), "f32", 4.0, 20.0, at_start=4.0) for number in CHANNELS),
+        *(Register(f"scaled {number}", "input", (8 + 2 * number,), "f32", 4, FULL_MA, "r", 4.0) for number in CHANNELS),
         *(Register(f"status {number}", "input", (0x3C + number,), "u16") for number in CHANNELS),
-        *(Register(f"mode {number}", "holding", (0x18 + number,), "u16", 0, 4, "rw", BURNOUT_MODE) for number in CHANNELS),
-        *(Register(f"burnout {number}", "holding", (0x28 + 2 * number,), "f32", 0, 4, "rw", 2.0) for number in CHANNELS),
+        *(Register(f"mode {number}", "holding", (0x18 + number,), "u16", 0, 4, "rw", BURNOUT) for number in CHANNELS),
+        *(Register(f"limit {number}", "holding", (0x28 + 2 * number,), "f32", 0, 4, "rw", 2.0) for number in CHANNELS),
     ),
     faults=tuple(
         State(f"{name}, channel {number}", {f"status {number}": status, f"scaled {number}": current_ma})
@@ -46,4 +47,5 @@ TABLE = Table(
     ),
     harmless=(State("an input without a sensor", {"status 6": BURNT_OUT, "scaled 6": 0.0}),),
     react=react,
+    shown={f"input_{number}": (f"scaled {number}", 1.0) for number in range(4)},
 )

@@ -1,7 +1,7 @@
 """Seneca Z-SG strain gauge converter: manual p. 17 to 20. Holding registers, the first one 40001, at offset 0.
 
-A 32-bit number has its most significant word first, as it leaves the factory. The pages found name no register of faults.
-A cell beyond its end scale shows in the weight alone, and a bridge whose wire is broken reads full scale or no number.
+A 32-bit number has its most significant word first, as it leaves the factory. The pages found name no register of
+faults: a cell beyond its end scale shows in the weight alone, and a broken wire as full scale or as no number.
 """
 
 from __future__ import annotations
@@ -9,6 +9,9 @@ from __future__ import annotations
 from math import inf, nan
 
 from tests.campaigns.makers.table import Register, State, Table
+
+NEWTONS = 9.80665
+"""Weight of a kilogram, N."""
 
 TABLE = Table(
     profile="seneca_z_sg",
@@ -26,4 +29,5 @@ TABLE = Table(
         State("far beyond the end scale", {"net": 1e6}),
         State("far below zero", {"net": -1e6}),
     ),
+    shown={"force": ("net", NEWTONS)},
 )

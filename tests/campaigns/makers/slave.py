@@ -7,11 +7,13 @@ import socket
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import RLock
+from threading import RLock, Timer
 
 from modbus_tk import defines, modbus, modbus_tcp
 
+from tester.base import clock
 from tests.campaigns.makers.table import SIZES, Area, Register, State, Table
+from tests.peers.exchange import PATIENCE_S
 
 UNIT = 1
 AREAS: dict[Area, int] = {
@@ -30,7 +32,7 @@ class MakersSlave(modbus.Slave):
     """Holds the registers of a table. Its addresses are those of the table alone; all others raise exception 2."""
 
     def __init__(self, table: Table) -> None:
-        """Begin with the values at which the device starts."""
+        """Power the device up."""
         memory: dict[int, list[object]] = {number: [] for number in AREAS.values()}
         if table.one_area:
             memory[defines.ANALOG_INPUTS] = memory[defines.HOLDING_REGISTERS]
@@ -47,9 +49,19 @@ class MakersSlave(modbus.Slave):
         self._reacting = False
         for area, start, size in _spans(table):
             self.add_block(f"{area} {start}", AREAS[area], start, size)
-        for register in table.registers:
-            self._store(register, register.at_start)
-        self._react("")
+        self.power_up()
+
+    def power_up(self) -> None:
+        """Begin with the values at which the device starts; it forgets what it was told."""
+        with self._lock:
+            self.kept.clear()
+            self.journal.clear()
+            self.raises.clear()
+            self.silent = False
+            for register in self.table.registers:
+                self._store(register, register.at_start)
+            for register in self.table.registers:
+                self._react(register.name)
 
     def get(self, name: str) -> float:
         """Return the value of a register."""
@@ -79,7 +91,7 @@ class MakersSlave(modbus.Slave):
             asked = struct.unpack(">HH", request_pdu[1:5])
             if any(register.access == "w" for register in self._among(*asked)):
                 return bytes((function | 0x80, 2))
-            return super().handle_request(request_pdu)
+            return bytes(super().handle_request(request_pdu))  # type: ignore[arg-type]
         with self._lock:
             return self._write(function, request_pdu)
 
@@ -101,7 +113,7 @@ class MakersSlave(modbus.Slave):
                 if self.table.out_of_range is not None:
                     return bytes((function | 0x80, self.table.out_of_range))
                 return request_pdu[:5]
-        answer: bytes = super().handle_request(request_pdu)
+        answer = bytes(super().handle_request(request_pdu))  # type: ignore[arg-type]
         if answer[0] == function:
             for register in touched:
                 self.journal.append((register.name, self.get(register.name)))
@@ -164,8 +176,8 @@ def _spans(table: Table) -> Iterator[tuple[Area, int, int]]:
         for address in register.addresses
         for place in range(SIZES[register.type])
     }
-    for area, address in sorted(taken):
-        if (area, address - 1) not in taken:
+    for area in AREAS:
+        for address in sorted(place for where, place in taken if where == area and (where, place - 1) not in taken):
             size = 1
             while (area, address + size) in taken:
                 size += 1
@@ -180,7 +192,18 @@ def served(slave: MakersSlave) -> Iterator[int]:
         port = int(free.getsockname()[1])
     server = modbus_tcp.TcpServer(port=port, address="127.0.0.1", databank=_Bank(slave))
     server.start()
+    end_s = clock.monotonic() + PATIENCE_S
+    while not _listens(port):
+        assert clock.monotonic() < end_s, f"no server at port {port}"
+        clock.sleep_until(clock.monotonic() + 0.02)
     try:
         yield port
     finally:
+        Timer(0.02, _listens, [port]).start()  # its thread looks for the end after a request, or a second
         server.stop()
+
+
+def _listens(port: int) -> bool:
+    """Return whether the server's thread has begun to listen."""
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0

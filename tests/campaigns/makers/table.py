@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, isfinite
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
@@ -30,6 +30,11 @@ class Register:
     greatest: float = inf
     access: Literal["r", "w", "rw"] = "r"
     at_start: float = 0.0
+
+    @property
+    def measured(self) -> bool:
+        """Whether the device measures it, within a range that its manual states."""
+        return self.access == "r" and isfinite(self.greatest)
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,8 @@ class Table:
     """By channel of the profile: the register with its value, and the number of the channel's units in the maker's."""
     parameters: Mapping[str, tuple[str, float]] = field(default_factory=dict[str, tuple[str, float]])
     """The same for what the profile writes."""
+    wanted: Mapping[str, float] = field(default_factory=dict[str, float])
+    """Registers that must hold a value so that the numbers mean what the profile says."""
 
     def __getitem__(self, name: str) -> Register:
         return next(register for register in self.registers if register.name == name)

@@ -1,0 +1,132 @@
+"""One of our drivers at a maker's slave: its time is counted, and every answer is waited for."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from select import select
+
+import numpy as np
+
+from drivers.modbus import ModbusLink
+from drivers.sensor import Sensor
+from drivers.temperature_controller import TemperatureController
+from drivers.transports.tcp_line import TcpLine, open_tcp_line
+from tests.campaigns.makers.slave import MakersSlave, served
+from tests.campaigns.makers.table import Table
+from tests.peers.exchange import PATIENCE_S
+
+SCAN_S = 0.01
+"""Time between two services of the link, s."""
+NAMED = (1, 2, 3)
+"""Exceptions that a driver reports by their number: the device is not what the profile says."""
+PASSING = (4, 6)
+"""Exceptions of a device that fails, or is busy, for a time."""
+READS, WRITES = (1, 2, 3, 4), (5, 6, 15, 16)
+Driver = Sensor | TemperatureController
+Build = Callable[[ModbusLink], Driver]
+
+
+@dataclass
+class Tally:
+    """What was tried, and what went wrong."""
+
+    counts: Counter[str] = field(default_factory=Counter[str])
+    wrong: list[str] = field(default_factory=list[str])
+
+    def judge(self, kind: str, right: bool, text: str) -> None:
+        """Count a case of ``kind``; ``text`` says what is wrong."""
+        self.counts[kind] += 1
+        if not right:
+            self.wrong.append(f"{kind}: {text}")
+
+
+class Seat:
+    """A driver on a connection to a slave."""
+
+    def __init__(self, slave: MakersSlave, line: TcpLine, build: Build) -> None:
+        """Build the driver on a link of its own. Raises what its constructor raises."""
+        self.slave, self.line = slave, line
+        self.link = ModbusLink("socket")
+        self.driver = build(self.link)
+        self.now = 0.0
+        self.each: Callable[[], None] = lambda: None
+        """Called at every scan."""
+
+    def run(self, seconds: float) -> None:
+        """Serve the link for a time."""
+        counters, end_s = self.driver.station.counters, self.now + seconds
+        while self.now < end_s:
+            self.each()
+            before = counters.requests
+            self.link.service(self.line, self.now)
+            if counters.requests > before and not self.slave.silent:
+                assert select([self.line], [], [], PATIENCE_S)[0], "the server is silent"
+            self.now += 0.5 * SCAN_S
+            self.link.feed(self.line.read(self.now), self.now)
+            self.now += 0.5 * SCAN_S
+
+
+@dataclass
+class Place:
+    """A table's slave, served on a port for all cases of a campaign."""
+
+    table: Table
+    slave: MakersSlave
+    port: int
+
+    @contextmanager
+    def seat(self, build: Build) -> Iterator[Seat]:
+        """Put a driver to the slave, over a new connection."""
+        line = open_tcp_line("127.0.0.1", self.port, PATIENCE_S)
+        try:
+            yield Seat(self.slave, line, build)
+        finally:
+            line.close()
+
+    def measure(
+        self, source: random.Random, within: Callable[[str], tuple[float, float]], inside: bool = False
+    ) -> None:
+        """Let the device measure numbers drawn over their ranges, the ends among them.
+
+        ``within``: the profile's bounds of a channel in its own unit; half of the draws, or all with ``inside``, are
+        between them.
+        """
+        for channel, (name, factor) in self.table.shown.items():
+            register = self.table[name]
+            if not register.measured:
+                continue
+            least, greatest = register.least, register.greatest
+            if inside or source.random() < 0.5:
+                low, high = within(channel)
+                least, greatest = max(least, low / factor), min(greatest, high / factor)
+            drawn = source.choice([least, greatest, *(source.uniform(least, greatest) for _ in range(6))])
+            self.slave.put(name, float(np.float32(drawn)))
+
+    def truth(self, channel: str) -> tuple[float, float]:
+        """Return what the device shows, in the channel's unit, and one step of its register."""
+        name, factor = self.table.shown[channel]
+        value = self.slave.get(name)
+        step = float(np.spacing(np.float32(abs(value)))) if self.table[name].type == "f32" else 1.0
+        return value * factor, step * factor
+
+
+@contextmanager
+def placed(table: Table) -> Iterator[Place]:
+    """Serve the slave of a table."""
+    slave = MakersSlave(table)
+    with served(slave) as port:
+        yield Place(table, slave, port)
+
+
+def narrowed(table: Table, name: str, greatest: float) -> Table:
+    """Return the table of a device that takes less than its maker's table says in a register."""
+    return replace(
+        table,
+        registers=tuple(
+            replace(register, greatest=greatest) if register.name == name else register for register in table.registers
+        ),
+    )

@@ -1,0 +1,51 @@
+"""The campaign of the makers' tables finds a wrong line in a profile, and none in those that come with the program."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+import drivers.profiles
+from drivers.profiles import load_profile, read_profile
+from tests.campaigns.makers.__main__ import CONTROLLERS, SENSORS
+from tests.campaigns.makers.cases import Cases
+from tests.campaigns.makers.controllers import ControllerCases
+from tests.campaigns.makers.seat import Tally, placed
+
+PROFILES = Path(drivers.profiles.__file__).parent
+TABLES = {table.profile: table for table in (*SENSORS, *CONTROLLERS)}
+MUTANTS = [
+    ("raytek_mi3", "address = 1200", "address = 1190", "emissivity"),
+    ("raytek_mi3", "invalid = [0, 1, 2, 3, 5]", "invalid = [0, 2, 3, 5]", "object out of range"),
+    ("raytek_mi3", "value = 0x49", "value = 0x45", "emissivity source"),
+    ("flintec_dad141", "0x3500", "0x3502", "tared"),
+    ("flintec_dad141", "invalid = [0, 1]", "invalid = [0]", "over range"),
+    ("seneca_z_sg", "greatest = 600.0", "greatest = 1e8", "beyond the end scale"),
+    ("moxa_e1240", 'least = 0, greatest = 0, guards = "input_3"', 'guards = "input_3"', "channel 3"),
+    ("jumo_diratron", "low_first", "high_first", "pv is"),
+    ("jumo_diratron", "standby_c = 0.0", "standby_c = 20.0", "standby"),
+]
+
+
+def wrong(name: str, text: str | None = None) -> list[str]:
+    """Return what is wrong with a profile, or with another text in its place."""
+    profile = load_profile(name) if text is None else read_profile(name, text)
+    tally = Tally()
+    made = ControllerCases if TABLES[name] in CONTROLLERS else Cases
+    with placed(TABLES[name]) as place:
+        made(place, profile, random.Random(3), tally).conduct(rounds=2)
+    return tally.wrong
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_profile_fits_its_makers_table(name: str) -> None:
+    assert not wrong(name)
+
+
+@pytest.mark.parametrize(("name", "right", "mutant", "found"), MUTANTS)
+def test_a_wrong_line_of_a_profile_is_found(name: str, right: str, mutant: str, found: str) -> None:
+    text = (PROFILES / f"{name}.toml").read_text(encoding="utf-8")
+    assert right in text
+    assert any(found in line for line in wrong(name, text.replace(right, mutant)))
