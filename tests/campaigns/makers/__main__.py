@@ -1,6 +1,6 @@
 """`python -m tests.campaigns.makers [--sample] [--seed N]`: do the profiles fit the makers' register tables?
 
-Each device is a slave built from its maker's table alone, by another hand than its profile, and served by modbus_tk.
+Each device is a slave built from its maker's table alone, by another hand than its profile; modbus_tk serves it.
 Numbers drawn over the whole range of every channel must be read within one step of the register. Each write must arrive
 as the table wants it. What the table forbids must be refused by name: values out of range, exceptions 1 to 3; while a
 device fails or is busy (4, 6) nothing is believed. No number is believed in any fault of the table, nor of a device

@@ -46,6 +46,7 @@ TABLE = Table(
         )
     ),
     harmless=(State("an input without a sensor", {"status 6": BURNT_OUT, "scaled 6": 0.0}),),
+    framing="socket",
     react=react,
     shown={f"input_{number}": (f"scaled {number}", 1.0) for number in range(4)},
 )

@@ -12,10 +12,11 @@ from select import select
 import numpy as np
 
 from drivers.modbus import ModbusLink
+from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from drivers.temperature_controller import TemperatureController
 from drivers.transports.tcp_line import TcpLine, open_tcp_line
-from tests.campaigns.makers.slave import MakersSlave, served
+from tests.campaigns.makers.slave import MakersSlave, SerialEnd, served
 from tests.campaigns.makers.table import Table
 from tests.peers.exchange import PATIENCE_S
 
@@ -47,11 +48,10 @@ class Tally:
 class Seat:
     """A driver on a connection to a slave."""
 
-    def __init__(self, slave: MakersSlave, line: TcpLine, build: Build) -> None:
-        """Build the driver on a link of its own. Raises what its constructor raises."""
-        self.slave, self.line = slave, line
-        self.link = ModbusLink("socket")
-        self.driver = build(self.link)
+    def __init__(self, slave: MakersSlave, line: TcpLine | SerialEnd, build: Build, link: ModbusLink) -> None:
+        """Build the driver on its link. Raises what its constructor raises."""
+        self.slave, self.line, self.link = slave, line, link
+        self.driver = build(link)
         self.now = 0.0
         self.each: Callable[[], None] = lambda: None
         """Called at every scan."""
@@ -63,7 +63,7 @@ class Seat:
             self.each()
             before = counters.requests
             self.link.service(self.line, self.now)
-            if counters.requests > before and not self.slave.silent:
+            if counters.requests > before and not self.slave.silent and isinstance(self.line, TcpLine):
                 assert select([self.line], [], [], PATIENCE_S)[0], "the server is silent"
             self.now += 0.5 * SCAN_S
             self.link.feed(self.line.read(self.now), self.now)
@@ -72,18 +72,21 @@ class Seat:
 
 @dataclass
 class Place:
-    """A table's slave, served on a port for all cases of a campaign."""
+    """A table's slave, with all that a campaign's cases need."""
 
     table: Table
     slave: MakersSlave
     port: int
+    """Of TCP; 0 = it is at a serial line."""
 
     @contextmanager
     def seat(self, build: Build) -> Iterator[Seat]:
         """Put a driver to the slave, over a new connection."""
-        line = open_tcp_line("127.0.0.1", self.port, PATIENCE_S)
+        line = open_tcp_line("127.0.0.1", self.port, PATIENCE_S) if self.port else SerialEnd(self.slave)
+        settings = load_profile(self.table.profile).line
+        link = ModbusLink(self.table.framing, settings.baud, settings.parity, settings.stop_bits)
         try:
-            yield Seat(self.slave, line, build)
+            yield Seat(self.slave, line, build, link)
         finally:
             line.close()
 
@@ -116,8 +119,11 @@ class Place:
 
 @contextmanager
 def placed(table: Table) -> Iterator[Place]:
-    """Serve the slave of a table."""
+    """Make the slave of a table, and serve it if it speaks Modbus TCP."""
     slave = MakersSlave(table)
+    if table.framing == "rtu":
+        yield Place(table, slave, 0)
+        return
     with served(slave) as port:
         yield Place(table, slave, port)
 

@@ -1,4 +1,4 @@
-"""A slave that answers as a maker's table says, served by modbus_tk on a TCP port."""
+"""A slave that answers as a maker's table says: modbus_tk's, at the end of a serial line or on a TCP port."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import RLock, Timer
 
-from modbus_tk import defines, modbus, modbus_tcp
+from modbus_tk import defines, modbus, modbus_rtu, modbus_tcp
 
+from drivers.ports import WatchedLine
 from tester.base import clock
 from tests.campaigns.makers.table import SIZES, Area, Register, State, Table
 from tests.peers.exchange import PATIENCE_S
@@ -168,6 +169,27 @@ class _Bank(modbus.Databank):
         return self.slave
 
 
+class SerialEnd(WatchedLine):
+    """A serial line without noise, with a slave at its end; modbus_tk's RTU frames."""
+
+    def __init__(self, slave: MakersSlave) -> None:
+        """Take the slave."""
+        super().__init__()
+        self._bank, self._answers = _Bank(slave), b""
+
+    def write(self, data: bytes, now: float) -> None:
+        """Send a request: the slave answers at once."""
+        self._answers = bytes(self._bank.handle_request(modbus_rtu.RtuQuery(), data) or b"")  # type: ignore[arg-type]
+
+    def read(self, now: float) -> list[tuple[float, bytes]]:
+        """Return the answer."""
+        answer, self._answers = self._answers, b""
+        return [(now, answer)] if answer else []
+
+    def close(self) -> None:
+        """Do nothing: it has no descriptor."""
+
+
 def _spans(table: Table) -> Iterator[tuple[Area, int, int]]:
     """Yield the runs of addresses that the table names: area, start, size."""
     taken = {
@@ -184,10 +206,12 @@ def _spans(table: Table) -> Iterator[tuple[Area, int, int]]:
             yield area, address, size
 
 
+logging.getLogger("modbus_tk").setLevel(logging.CRITICAL + 1)  # it reports each request that a silent slave leaves
+
+
 @contextmanager
 def served(slave: MakersSlave) -> Iterator[int]:
     """Serve a slave; yields its TCP port."""
-    logging.getLogger("modbus_tk").setLevel(logging.CRITICAL + 1)  # it reports each request that a silent slave leaves
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = int(free.getsockname()[1])
     server = modbus_tcp.TcpServer(port=port, address="127.0.0.1", databank=_Bank(slave))

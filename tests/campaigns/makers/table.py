@@ -57,6 +57,7 @@ class Table:
     """States in which no number may be believed."""
     harmless: tuple[State, ...] = ()
     """States that look alike, in which numbers are good."""
+    framing: Literal["rtu", "socket"] = "rtu"
     low_word_first: bool = False
     one_area: bool = False
     """Whether functions 3 and 4 read the same registers."""
