@@ -11,6 +11,8 @@ from drivers.temperature_controller import TemperatureController
 from tests.campaigns.makers.cases import SET_UP_S, Cases
 from tests.campaigns.makers.seat import Driver, Seat, narrowed, placed
 
+STOPPED = "stopped"
+"""A controller that can be stopped has this number, 1 while it is."""
 STALE_S = 1.0
 """Age above which a controller's reading is not believed, s."""
 
@@ -50,7 +52,11 @@ class ControllerCases(Cases):
             for on, text in ((True, "commanded"), (False, "standby"), (True, "commanded again")):
                 self._command(seat, value * factor, on)
                 self._settle(seat)
-                self._arrived(register_name, value if on else register.least, text)
+                if STOPPED in self.place.slave.kept:
+                    stopped = self.place.slave.get(STOPPED)
+                    self._judge("write", stopped == (not on), f"{text}: stopped {stopped:g}")
+                if on or STOPPED not in self.place.slave.kept:
+                    self._arrived(register_name, value if on else register.least, text)
                 self._compare(seat, "write", text)
             self.place.slave.silent = True
             seat.run(SET_UP_S)
@@ -60,8 +66,9 @@ class ControllerCases(Cases):
 
     def _arrived(self, register_name: str, value: float, text: str) -> None:
         held = self.place.slave.get(register_name)
-        right = abs(held - value) <= 1e-6 * abs(self.place.table[register_name].greatest)
-        self._judge("write", right, f"{text}: {register_name} {value!r} arrived as {held!r}")
+        register = self.place.table[register_name]
+        rounding = 1e-6 * abs(register.greatest) + (0.0 if register.type == "f32" else 0.5)
+        self._judge("write", abs(held - value) <= rounding, f"{text}: {register_name} {value!r} arrived as {held!r}")
 
     def _refuse_value(self, name: str, register_name: str, factor: float) -> None:
         """Command beyond the maker's range, what is no number, and what this very device does not take."""

@@ -67,6 +67,8 @@ class MakersSlave(modbus.Slave):
     def get(self, name: str) -> float:
         """Return the value of a register."""
         register = self.table[name]
+        if register.area == "inside":
+            return self.kept[name]
         size = SIZES[register.type]
         block, offset = self._get_block_and_offset(AREAS[register.area], register.addresses[0], size)
         return self._number(register, list(block[offset : offset + size]))
@@ -101,7 +103,20 @@ class MakersSlave(modbus.Slave):
         address, count, data = struct.unpack(">H", request_pdu[1:3])[0], 1, request_pdu[3:]
         if function == WRITES_MANY:
             count, data = struct.unpack(">H", request_pdu[3:5])[0], request_pdu[6:]
+        if function == WRITES_ONE and address in self.table.commands:
+            before = self.kept.get("command", 0.0)
+            self.kept["command"] = struct.unpack(">H", data)[0]
+            code = self.table.forbids(self, "command")
+            if code:
+                self.kept["command"] = before
+                return bytes((function | 0x80, code))
+            self._react("command")
+            return request_pdu
         touched = self._among(address, count)
+        for register in touched:
+            code = self.table.forbids(self, register.name)
+            if code:
+                return bytes((function | 0x80, code))
         if any(register.access == "r" for register in touched):
             return bytes((function | 0x80, self.table.protected))
         for register in touched:
@@ -137,6 +152,9 @@ class MakersSlave(modbus.Slave):
             self._reacting = False
 
     def _store(self, register: Register, value: float) -> None:
+        if register.area == "inside":
+            self.kept[register.name] = value
+            return
         if register.type == "bits8":
             words = [int(value) >> bit & 1 for bit in range(8)]
         else:

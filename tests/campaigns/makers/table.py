@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from tests.campaigns.makers.slave import MakersSlave
 
-Area = Literal["coil", "discrete", "holding", "input"]
+Area = Literal["coil", "discrete", "holding", "input", "inside"]
+"""Tables of Modbus; ``inside``: a number of the device that no register shows as it is."""
 Type = Literal["bits8", "u16", "i16", "u32", "i32", "f32"]
 SIZES: Mapping[Type, int] = {"bits8": 8, "u16": 1, "i16": 1, "u32": 2, "i32": 2, "f32": 2}
 """Addresses that a number takes."""
@@ -65,6 +66,10 @@ class Table:
     """Exception on a write to a register that is read-only."""
     out_of_range: int | None = 3
     """Exception on a write outside the register's range; None: the device answers, and keeps the value it had."""
+    commands: tuple[int, ...] = ()
+    """Addresses at which function 6 writes the number ``command``, whatever they show when they are read."""
+    forbids: Callable[[MakersSlave, str], int] = lambda slave, written: 0
+    """Exception on a write to a register, or a command, in the device's present state; 0 = none."""
     react: Callable[[MakersSlave, str], None] = lambda slave, written: None
     """What the device does by itself after a register was written, or a measured number has changed."""
     shown: Mapping[str, tuple[str, float]] = field(default_factory=dict[str, tuple[str, float]])
