@@ -125,12 +125,16 @@ class TemperatureController(Device):
     def _set_up(self, lease_s: float) -> None:
         """Add standby, the profile's own writes and the lease (s, if there is one) to the set-up."""
         profile, switch = self.profile, self._switch
+        for write in profile.setup:
+            if write.first:
+                self.add_setup(write)
         if switch is not None:
             self.add_write("standby", switch.address, (switch.off,), False, switch.coil)
         else:
             self.add_write("setpoint without heat", self._register.address, self._no_heat, read_back=True)
         for write in profile.setup:
-            self.add_setup(write)
+            if not write.first:
+                self.add_setup(write)
         if self.has_lease:
             lease = profile.writes["lease"]
             self.add_write("off-line time", lease.address, lease.words(lease_s, profile.order), read_back=True)

@@ -44,6 +44,8 @@ class SetupWrite:
     """Function that reads it back."""
     mask: int = 0
     """Bits of the value that count when it is read back; 0 = all."""
+    first: bool = False
+    """Whether a controller needs it before it can be put into standby, which otherwise comes first."""
 
     @property
     def count(self) -> int:

@@ -225,6 +225,15 @@ def test_a_controller_has_a_switch_or_a_setpoint_without_heat(top: str) -> None:
         TemperatureController("jacket", profile(ANYWHERE + switch, "jacket", top), 1, ModbusLink())
 
 
+def test_a_step_that_standby_needs_comes_before_it() -> None:
+    writing = '[[setup]]\nname = "writing"\naddress = 5\nvalue = 7\nread_back = false\nfirst = true\n'
+    made, jacket, _, _ = controller("", "[switches]\nrun = { address = 9, on = 1, off = 0 }\n" + writing)
+    made.run(0.5)
+    assert jacket.ready
+    writes = [data for _, data in made.log.requests("01") if data[1] == 6]
+    assert writes[:2] == [with_crc(bytes.fromhex("010600050007")), with_crc(bytes.fromhex("010600090000"))]
+
+
 def test_a_switch_may_be_a_coil() -> None:
     made, jacket, slave, _ = controller("", "[switches]\nrun = { address = 9, on = 1, off = 0, coil = true }\n")
     made.run(0.5)

@@ -285,7 +285,7 @@ def test_omron_run_and_stop_are_operation_commands() -> None:
     for number in range(1, 5):
         answer(bench, {0x2000: (850, 0, 900, 0, 425)}, 0.03 * number)
     heads = [frame[:6].hex() for frame in bench.frames]
-    assert heads[:3] == ["010600000101", "010600000001", "010600000401"]
+    assert heads[:3] == ["010600000001", "010600000101", "010600000401"]
     assert "010600000100" in heads
 
 
