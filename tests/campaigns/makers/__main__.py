@@ -16,13 +16,33 @@ from collections.abc import Iterator
 
 from drivers.profiles import load_profile
 from tests.campaigns.acceptance.figure import Figure, at_least, equal
-from tests.campaigns.makers import flintec_dad141, jumo_diratron, moxa_e1240, raytek_mi3, seneca_z_sg
+from tests.campaigns.makers import (
+    calex_pyrominibus,
+    calex_pyrousb,
+    flintec_dad141,
+    hygrometer_sht20,
+    jumo_diratron,
+    laumas_tlb,
+    moxa_e1240,
+    omron_e5cc,
+    raytek_mi3,
+    seneca_z_sg,
+)
 from tests.campaigns.makers.cases import Cases
 from tests.campaigns.makers.controllers import ControllerCases
 from tests.campaigns.makers.seat import Tally, placed
 
-SENSORS = (raytek_mi3.TABLE, flintec_dad141.TABLE, seneca_z_sg.TABLE, moxa_e1240.TABLE)
-CONTROLLERS = (jumo_diratron.TABLE,)
+SENSORS = (
+    raytek_mi3.TABLE,
+    flintec_dad141.TABLE,
+    seneca_z_sg.TABLE,
+    moxa_e1240.TABLE,
+    calex_pyrominibus.TABLE,
+    calex_pyrousb.TABLE,
+    hygrometer_sht20.TABLE,
+    laumas_tlb.TABLE,
+)
+CONTROLLERS = (jumo_diratron.TABLE, omron_e5cc.TABLE)
 ROUNDS, SAMPLE_ROUNDS = 200, 10
 """Readings, and writes of each parameter, by device."""
 MOST_PRINTED = 40

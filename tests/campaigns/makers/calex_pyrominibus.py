@@ -1,19 +1,11 @@
 """Calex PyroMiniBus thermometer (PMB21): operator's manual p. 7. Temperatures are in tenths of degC, signed.
 
-Emissivity is in 1/10000, at 0x07 kept without power, at 0x17 not; the sensor uses the one that was written last.
+Emissivity is in 1/10000, at 0x07 kept without power, at 0x17 not.
 """
 
 from __future__ import annotations
 
-from tests.campaigns.makers.slave import MakersSlave
 from tests.campaigns.makers.table import Register, State, Table
-
-
-def react(slave: MakersSlave, written: str) -> None:
-    """Use the emissivity that was written last."""
-    if written in ("emissivity", "emissivity, volatile"):
-        slave.put("emissivity in use", slave.get(written))
-
 
 TABLE = Table(
     profile="calex_pyrominibus",
@@ -39,7 +31,6 @@ TABLE = Table(
         Register("status", "holding", (0x11,), "u16"),
         Register("reflected, volatile", "holding", (0x16,), "i16", access="rw", at_start=230),
         Register("emissivity, volatile", "holding", (0x17,), "u16", 2000, 10000, "rw", 7000),
-        Register("emissivity in use", "inside", (), "u16", 2000, 10000, "rw"),
     ),
     faults=tuple(
         State(name, {"status": 1 << bit})
@@ -48,5 +39,6 @@ TABLE = Table(
         )
     ),
     one_area=True,
-    react=react,
+    shown={"surface": ("filtered", 0.1), "unfiltered": ("unfiltered", 0.1), "sensor": ("sensor temperature", 0.1)},
+    parameters={"emissivity": ("emissivity, volatile", 1e-4)},
 )

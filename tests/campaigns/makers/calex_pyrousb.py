@@ -1,12 +1,11 @@
 """Calex PyroUSB thermometer (PUA8): manual p. 11 and 12. Temperatures are in tenths of degC, signed.
 
-Emissivity is in 1/10000, at 0x08 kept without power, at 0x18 not; the sensor uses the one that was written last.
+Emissivity is in 1/10000, at 0x08 kept without power, at 0x18 not.
 """
 
 from __future__ import annotations
 
 from tests.campaigns.makers.calex_pyrominibus import TABLE as PYROMINIBUS
-from tests.campaigns.makers.calex_pyrominibus import react
 from tests.campaigns.makers.table import Register, Table
 
 TABLE = Table(
@@ -37,9 +36,9 @@ TABLE = Table(
         Register("status", "holding", (0x15,), "u16"),
         Register("reflected, volatile", "holding", (0x17,), "i16", access="rw", at_start=230),
         Register("emissivity, volatile", "holding", (0x18,), "u16", 1000, 10000, "rw", 7000),
-        Register("emissivity in use", "inside", (), "u16", 1000, 10000, "rw"),
     ),
     faults=PYROMINIBUS.faults,
     one_area=True,
-    react=react,
+    shown={"surface": ("filtered", 0.1), "unfiltered": ("unfiltered", 0.1), "sensor": ("sensor temperature", 0.1)},
+    parameters={"emissivity": ("emissivity, volatile", 1e-4)},
 )

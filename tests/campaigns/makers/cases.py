@@ -110,6 +110,11 @@ class Cases:
         """Write a parameter that is drawn over the maker's range."""
         register, factor = self.place.table[self.place.table.parameters[name][0]], self.place.table.parameters[name][1]
         value = self.source.choice([register.least, register.greatest, *self._drawn(register.least, register.greatest)])
+        refusals = [self._refusal(name, asked * factor) for asked in (register.least, register.greatest, value)]
+        for refusal in filter(None, refusals):
+            self._judge("write", False, f"a {name} of the maker's is refused: {refusal}")
+        if refusals[-1]:
+            return
         with self._seat({name: value * factor}) as seat:
             held = self.place.slave.get(register.name)
             rounding = 1e-6 * abs(register.greatest) + (0.0 if register.type == "f32" else 0.5)
@@ -135,8 +140,9 @@ class Cases:
         width = register.greatest - register.least
         drawn = self.source.uniform(LEAST_BEYOND, 1.0)
         for beyond in (LEAST_BEYOND * width, drawn * width):
-            self._refuse_beyond(name, (register.least - beyond) * factor)
-            self._refuse_beyond(name, (register.greatest + beyond) * factor)
+            for value in ((register.least - beyond) * factor, (register.greatest + beyond) * factor):
+                refusal = self._refusal(name, value)
+                self._judge("refuse", name in refusal, f"{name} {value:g}: {refusal or 'accepted'}")
         with placed(narrowed(self.place.table, register_name, register.least + 0.5 * width)) as narrow:
             narrow.slave.power_up()
             value = (register.least + self.source.uniform(0.6, 1.0) * width) * factor
@@ -146,15 +152,13 @@ class Cases:
                 right = not self._believed(seat) and (name in told or "exception 3" in told)
                 self._judge("refuse", right, f"{name} {value:g}, which the device does not take: {told!r}")
 
-    def _refuse_beyond(self, name: str, value: float) -> None:
-        """Ask for a value that the maker forbids."""
-        text = "accepted"
+    def _refusal(self, name: str, value: float) -> str:
+        """Return why the driver refuses a value, "" if it takes it."""
         try:
-            with self._seat({name: value}, ready=False):
-                pass
+            self._driver(ModbusLink(), {name: value})
         except ValueError as error:
-            text = str(error)
-        self._judge("refuse", name in text, f"{name} {value:g}: {text}")
+            return str(error)
+        return ""
 
     def _exception(self, code: int, functions: tuple[int, ...]) -> None:
         """Let the device raise an exception on reads, or on writes, from its first answer on, and then answer."""
@@ -193,12 +197,12 @@ class Cases:
         """Let the device fall silent, and come back with other numbers."""
         with self._seat() as seat:
             self.place.slave.silent = True
-            seat.run(LOSS_S)
+            seat.run(LOSS_S + 4.0 * self.period_s)
             self._judge("fault", not self._believed(seat), "silent, and its numbers are believed")
             self._judge("fault", seat.driver.is_lost, "silent, and not lost")
             self.place.measure(self.source, self._bounds, inside=True)
             self.place.slave.silent = False
-            seat.run(SET_UP_S + LOSS_S)
+            seat.run(SET_UP_S + LOSS_S + 4.0 * self.period_s)
             self._compare(seat, "fault", "silent, and back")
 
 

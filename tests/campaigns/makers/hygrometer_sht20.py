@@ -20,4 +20,5 @@ TABLE = Table(
         Register("humidity correction", "holding", (0x0104,), "i16", -100, 100, "rw"),
     ),
     faults=(State("more than 100 % of humidity", {"humidity": 1300}), State("far too hot", {"temperature": 30000})),
+    shown={"ambient_c": ("temperature", 0.1), "humidity_percent": ("humidity", 0.1)},
 )

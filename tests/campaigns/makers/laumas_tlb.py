@@ -10,6 +10,8 @@ from tests.campaigns.makers.slave import MakersSlave
 from tests.campaigns.makers.table import Register, State, Table
 
 GROSS_NEGATIVE, NET_NEGATIVE = 1 << 7, 1 << 8
+COUNT_N = 0.01 * 9.80665
+"""Weight of a count, N: two decimals of a kilogram."""
 TARE = 1234
 """Net weight is less than gross by this here, counts."""
 
@@ -48,7 +50,7 @@ TABLE = Table(
         *(
             State(name, {"status": 1 << bit})
             for bit, name in enumerate(
-                ("cell error", "converter malfunction", "nine divisions too many", "110 % of full scale", "beyond 999999")
+                ("cell error", "converter malfunction", "nine divisions too many", "110 % of full scale", "off scale")
             )
         ),
         State("full scale, weight at its end", {"status": 1 << 3, "weight": 12000}),
@@ -59,4 +61,5 @@ TABLE = Table(
         State("near zero", {"status": 1 << 12, "weight": 0}),
     ),
     react=react,
+    shown={"force": ("weight", COUNT_N)},
 )

@@ -84,5 +84,7 @@ TABLE = Table(
     commands=(0x0000, 0xFFFF),
     forbids=forbids,
     react=react,
+    shown={"pv": ("PV", 0.1), "setpoint": ("internal set point", 0.1), "output": ("MV", 0.1)},
+    parameters={"setpoint": ("set point", 0.1)},
     wanted={"writing": 1, "manual": 0},
 )

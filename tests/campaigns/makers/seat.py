@@ -110,10 +110,10 @@ class Place:
             self.slave.put(name, float(np.float32(drawn)))
 
     def truth(self, channel: str) -> tuple[float, float]:
-        """Return what the device shows, in the channel's unit, and one step of its register."""
+        """Return what the device shows, in the channel's unit, and a step of an f32, or half a count."""
         name, factor = self.table.shown[channel]
         value = self.slave.get(name)
-        step = float(np.spacing(np.float32(abs(value)))) if self.table[name].type == "f32" else 1.0
+        step = float(np.spacing(np.float32(abs(value)))) if self.table[name].type == "f32" else 0.5
         return value * factor, step * factor
 
 

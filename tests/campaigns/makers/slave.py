@@ -153,7 +153,7 @@ class MakersSlave(modbus.Slave):
 
     def _store(self, register: Register, value: float) -> None:
         if register.area == "inside":
-            self.kept[register.name] = value
+            self.kept[register.name] = value if register.type == "f32" else int(value)
             return
         if register.type == "bits8":
             words = [int(value) >> bit & 1 for bit in range(8)]

@@ -24,6 +24,11 @@ MUTANTS = [
     ("flintec_dad141", "invalid = [0, 1]", "invalid = [0]", "over range"),
     ("seneca_z_sg", "greatest = 600.0", "greatest = 1e8", "beyond the end scale"),
     ("moxa_e1240", 'least = 0, greatest = 0, guards = "input_3"', 'guards = "input_3"', "channel 3"),
+    ("calex_pyrominibus", "invalid = [0, 1, 2, 3, 4]", "invalid = [0, 1, 2, 3]", "object too hot"),
+    ("calex_pyrousb", "least = 0.1, greatest = 1.0", "least = 0.2, greatest = 1.0", "is refused"),
+    ("hygrometer_sht20", "greatest = 100.0", "greatest = 200.0", "of humidity"),
+    ("laumas_tlb", "sign_bit = 7", "sign_bit = 8", "force is"),
+    ("omron_e5cc", "first = true", "first = false", "not ready"),
     ("jumo_diratron", "low_first", "high_first", "pv is"),
     ("jumo_diratron", "standby_c = 0.0", "standby_c = 20.0", "standby"),
 ]
