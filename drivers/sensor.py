@@ -14,6 +14,8 @@ STALE_PERIODS: Final = 3.0
 """Number of poll periods without a reading before the last one is stale [A]."""
 STALE_LEAST_S: Final = 0.5
 """Least age at which a reading is stale, s, however often the sensor is asked [A]."""
+STALE_INPUTS_S: Final = 0.25
+"""The same for a sensor with digital inputs, s [A]: as that of the drive with the safety inputs."""
 _NO_PARAMETERS: Final[dict[str, float]] = {}
 
 
@@ -50,7 +52,9 @@ class Sensor(Device):
         self._in_one = len(self._reads) == 1
         self._invalid_bits = profile.invalid_bits
         self._poll = self._polls[0]
-        self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * max(block.period_s for block in profile.blocks))
+        inputs = any(profile.signal(name).type == "bit" for name in self.channels if profile.has(name))
+        least_s = STALE_INPUTS_S if inputs else STALE_LEAST_S
+        self.stale_s: float = max(least_s, STALE_PERIODS * max(block.period_s for block in profile.blocks))
         """Age above which a reading is stale, s."""
         size = len(self.channels)
         self.counts: list[float] = [0.0] * size

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 from math import floor, inf
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
@@ -35,11 +35,10 @@ class LineSpec:
     """One Modbus line: the data that its wire times depend on."""
 
     baud: int
-    parity: Literal["N", "E", "O"] = "N"
+    byte_bits: int = 10
+    """Bits of a frame's byte on the line: 8 data bits, no parity, 1 stop bit."""
     held_s: float = 0.0
     """Time for which the computer's adapter holds received bytes back, s."""
-    byte_bits: int = 0
-    """Bits of a frame's byte on the line; 0 = as the parity makes it, with 1 stop bit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,10 +194,9 @@ def lines_of(spec: RigSpec, devices: Mapping[str, ModbusSlave]) -> dict[str, Mod
     return {
         name: ModbusWire(
             line.baud,
-            line.parity,
-            [slave for key, slave in devices.items() if spec.devices[key].line == name],
-            line.held_s,
-            line.byte_bits,
+            slaves=[slave for key, slave in devices.items() if spec.devices[key].line == name],
+            held_s=line.held_s,
+            byte_bits=line.byte_bits,
         )
         for name, line in spec.lines.items()
     }

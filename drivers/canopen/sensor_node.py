@@ -32,7 +32,9 @@ STALE_PERIODS: Final = 3.0
 """Number of frames that may be missing before the last one is stale [A]."""
 STALE_LEAST_S: Final = 0.5
 """Least age at which a frame is stale, s [A]."""
-CODES: Final = {"u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
+STALE_INPUTS_S: Final = 0.25
+"""The same for a node with digital inputs, s [A]: as that of the drive with the safety inputs."""
+CODES: Final = {"bit": "B", "u8": "B", "i8": "b", "u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
 
 
 class SensorNode(CanNode):
@@ -43,10 +45,12 @@ class SensorNode(CanNode):
         super().__init__(config.name, config.node_id, config.heartbeat_s)
         self.config = config
         self._fields = [
-            (struct.Struct("<" + CODES[one.type]), one.byte, one.scale) for one in config.channels.values()
+            (struct.Struct("<" + CODES[one.type]).unpack_from, one.byte, one.scale, one.place)
+            for one in config.channels.values()
         ]
         self._least_bytes = max((one.byte + SIZES[one.type] for one in config.channels.values()), default=0)
-        self.stale_s: float = max(STALE_LEAST_S, STALE_PERIODS * config.period_s)
+        inputs = any(one.type == "bit" for one in config.channels.values())
+        self.stale_s: float = max(STALE_INPUTS_S if inputs else STALE_LEAST_S, STALE_PERIODS * config.period_s)
         """Age above which a frame is stale, s."""
         self.values: list[float] = [nan] * len(config.channels)
 
@@ -61,8 +65,11 @@ class SensorNode(CanNode):
         if len(data) < self._least_bytes:
             self.malformed += 1
             return
-        for number, (layout, byte, scale) in enumerate(self._fields):
-            count: float = layout.unpack_from(data, byte)[0]
+        for number, (unpack_from, byte, scale, bit) in enumerate(self._fields):
+            if bit >= 0:
+                self.values[number] = float(data[byte] >> bit & 1)
+                continue
+            count: float = unpack_from(data, byte)[0]
             self.values[number] = count * scale
         self.tpdo1_data = data
         self.stamp_s = t

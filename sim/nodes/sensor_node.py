@@ -43,6 +43,9 @@ class SimulatedSensorNode(CanopenDevice):
         data = bytearray(8)
         for name, channel in self.config.channels.items():
             count = values.get(name, channel.simulated) / channel.scale
+            if channel.type == "bit":
+                data[channel.byte] |= int(count > 0.5) << channel.bit
+                continue
             layout = struct.Struct("<" + CODES[channel.type])
             layout.pack_into(data, channel.byte, count if channel.type == "f32" else round(count))
         self._frame.data = bytes(data)

@@ -7,7 +7,7 @@ Nothing moves before every device has answered. Until the kind has shown that no
 from __future__ import annotations
 
 from enum import Enum
-from math import inf
+from math import inf, nan
 from typing import Any, Generic, TypeVar
 
 from drivers.cia402 import Goal, State
@@ -16,6 +16,7 @@ from tester.inputs.rig import Rig
 from tester.machine import line_speed
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, DeviceList
 from tester.machine.proof import WatchdogProof
+from tester.machine.safety_inputs import InputStates
 from tester.machine.wires import CAN_SILENT, STALE_INPUTS_S
 
 CONNECT_S = 0.01
@@ -86,6 +87,7 @@ class Arming(Generic[DevicesT, RigT]):
         self.devices = devices
         self.rig = rig
         self._stale_s = rig.values()[STALE_INPUTS_S]
+        self._inputs = InputStates(rig)
 
     def reported(self) -> bool:
         """Return whether every device and the safety inputs have reported."""
@@ -103,6 +105,10 @@ class Arming(Generic[DevicesT, RigT]):
             return "guard open"
         if not now - max(io.inputs_stamp_s, configured_s) <= self._stale_s:
             return f"inputs stale: the {io.config.name} drive sends none"
+        if self._inputs.size:
+            channels = [nan] * self._inputs.size
+            self.devices.fill_channels(channels, now)
+            return ", ".join(name for name, closed in self._inputs.closed(channels).items() if not closed)
         return ""
 
     def at_rest(self) -> str:

@@ -9,6 +9,7 @@ from tester.base.screen import Check, Gate, SoakView
 from tester.inputs.rig import Rig
 from tester.machine.engine import Engine
 from tester.machine.line_speed import age_limit
+from tester.machine.safety_inputs import InputStates
 from tester.machine.state import Mode
 from tester.machine.wires import STALE_CAN_S
 
@@ -40,6 +41,7 @@ class RunPanel:
         self.engine = engine
         self._stale_can_s = engine.ctx.rig.values()[STALE_CAN_S]
         self._limits = engine.ctx.rig.stale_limits()
+        self._inputs = InputStates(engine.ctx.rig)
 
     def news(self) -> dict[str, News]:
         """Return the news of the devices that the table of channels names.
@@ -77,6 +79,10 @@ class RunPanel:
         return (
             Check("safety chain", r.safety_chain, "closed" if r.safety_chain else "open"),
             Check("guard closed", r.guard_closed, "" if r.guard_closed else "the guard is open"),
+            *(
+                Check(name, closed, "closed" if closed else "open, or not known")
+                for name, closed in self._inputs.closed(r.channels).items()
+            ),
         )
 
     def mounted(self) -> tuple[int, str]:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from drivers.canopen.node_config import NodeConfig
 from drivers.ports import byte_bits
 from sim import machines
 from sim.nodes.sensor_slave import UnknownQuantityError
@@ -17,6 +19,7 @@ from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
 from tester.inputs.rig.further_sensors import further_sensors
 from tester.inputs.rig.profiles import profile_of
+from tester.inputs.rig.safety_input import CLOSED
 from tester.machine.rig_ports import Ports
 from tester.run.bus_log import BusLog
 from tester.run.kind_lookup import run_parts
@@ -52,25 +55,37 @@ def simulated_ports(
 def spec_of(rig: Rig) -> RigSpec:
     """Return the wiring that a rig file describes."""
     held_s: float = getattr(rig.plant, "latency_timer", 0.0)  # a kind may lack it
+    closed = frozenset(one.channel for one in rig.safety_inputs.values())
     return RigSpec(
         bitrate=rig.can.bitrate,
         axes=rig.drives(),
         lines={name: _line(line, held_s) for name, line in rig.lines.items()},
-        devices={name: _device(config) for name, config in rig.devices.items()},
-        nodes=tuple(rig.can.nodes.values()),
+        devices={name: _device(config, closed) for name, config in rig.devices.items()},
+        nodes=tuple(_node(node, closed) for node in rig.can.nodes.values()),
         further=tuple(further_sensors(rig)),
     )
 
 
 def _line(config: LineConfig, held_s: float) -> LineSpec:
-    bits = byte_bits(config.framing, config.parity, config.stop_bits)
-    return LineSpec(config.baud, config.parity, held_s, bits)
+    return LineSpec(config.baud, byte_bits(config.framing, config.parity, config.stop_bits), held_s)
 
 
-def _device(config: DeviceConfig) -> DeviceSpec:
+def _device(config: DeviceConfig, closed: Container[str]) -> DeviceSpec:
+    """Return a device's wiring; ``closed``: channels of safety inputs, which show a closed contact unless stated."""
+    profile = profile_of(config.profile)
+    shows = {name: CLOSED for name in profile.channels if config.channels.get(name, name) in closed}
     return DeviceSpec(
-        profile_of(config.profile), config.line, config.unit_id, config.simulated, config.part_of, config.channels
+        profile, config.line, config.unit_id, {**shows, **config.simulated}, config.part_of, config.channels
     )
+
+
+def _node(node: NodeConfig, closed: Container[str]) -> NodeConfig:
+    """Return a node whose safety inputs are closed."""
+    channels = {
+        name: replace(channel, simulated=CLOSED) if name in closed else channel
+        for name, channel in node.channels.items()
+    }
+    return replace(node, channels=channels)
 
 
 Truth = Callable[[Mapping[str, float]], Mapping[str, float]]

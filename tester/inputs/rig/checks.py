@@ -12,7 +12,7 @@ from drivers.profiles import ProfileError
 from drivers.profiles.model import DeviceProfile
 from tester.base.source import Location, Problem, Tree
 from tester.inputs.rig.config import DeviceConfig, OwnDevice, Rig
-from tester.inputs.rig.further_sensors import further_sensors, parts_of
+from tester.inputs.rig.further_sensors import further_channels, further_sensors, parts_of
 from tester.inputs.rig.profiles import profile_of
 
 MAX_BUS_LOAD = 0.5
@@ -35,12 +35,28 @@ def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
     faults = [*unread, *_packaged(rig), *_nodes(rig), *_bus_load(rig), *_lines(rig), *_simulation(rig)]
     faults += [*_profiles(rig, profiles), *_channels(rig, sensors, profiles), *_own(rig, parts, profiles)]
     faults += [*_drives(rig), *rig.problems()]
+    faults += _safety_inputs(rig) if not unread else ()
     return [tree.problem(location, message) for location, message in faults]
 
 
 def _packaged(rig: Rig) -> _Found:
     if rig.like and rig.like not in rig.packaged:
         yield ("like",), f"{rig.like} is no packaged rig of the kind {rig.kind} (expected {', '.join(rig.packaged)})"
+
+
+def _safety_inputs(rig: Rig) -> _Found:
+    """Yield safety inputs that nothing measures, and names that cannot be an interlock's."""
+    measured = {channel.name: channel for channel in further_channels(rig)}
+    for name, one in rig.safety_inputs.items():
+        channel = measured.get(one.channel)
+        if channel is None:
+            bits = ", ".join(known for known, other in measured.items() if (other.low, other.high) == (0.0, 1.0))
+            expected = f"expected a channel of type bit: {bits or 'no device or node has one'}"
+            yield ("safety_inputs", name, "channel"), f"no such channel ({expected})"
+        elif (channel.low, channel.high) != (0.0, 1.0):
+            yield ("safety_inputs", name, "channel"), f"{one.channel} is no contact (expected type bit)"
+        if not re.fullmatch("[a-z][a-z0-9_]*", name):
+            yield ("safety_inputs", name), "expected small letters, digits and _"
 
 
 def _nodes(rig: Rig) -> _Found:

@@ -19,6 +19,7 @@ from tester.base.quantities import Quantities
 from tester.base.source import Location
 from tester.inputs.rig.key_classes import HIGHER, LOWER, Bounded, Free, Held, Inside, class_of
 from tester.inputs.rig.parameter import SECTION, Parameter, Values
+from tester.inputs.rig.safety_input import SafetyInput
 from tester.inputs.rig.section_classes import CONSUMER_HEARTBEAT, DRIVE_HEARTBEAT, NODE
 
 if TYPE_CHECKING:
@@ -238,6 +239,7 @@ class Rig:
     can: CanConfig
     lines: Mapping[str, LineConfig] = field(default_factory=dict[str, LineConfig])
     devices: Mapping[str, DeviceConfig] = field(default_factory=dict[str, DeviceConfig])
+    safety_inputs: Mapping[str, SafetyInput] = field(default_factory=dict[str, SafetyInput], metadata=LEFT_OUT)
 
     @classmethod
     def of(cls: type[OneRig], rig: Rig) -> OneRig:

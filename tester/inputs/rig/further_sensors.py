@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 DECIMALS: Final = 3
 """Most decimals of a further channel on screens."""
 COUNTS: Final = {
-    "u8": (0.0, 255.0), "i8": (-128.0, 127.0), "u16": (0.0, 65535.0), "i16": (-32768.0, 32767.0),
+    "bit": (0.0, 1.0), "u8": (0.0, 255.0), "i8": (-128.0, 127.0), "u16": (0.0, 65535.0), "i16": (-32768.0, 32767.0),
     "u32": (0.0, 2.0**32), "i32": (-(2.0**31), 2.0**31), "f32": (-100.0, 100.0),
 }  # fmt: skip
 """Ends of the bar, in counts, where a profile states no range: those of the type, for a float arbitrary [A]."""

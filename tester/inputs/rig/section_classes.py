@@ -51,7 +51,7 @@ _NODE: Final = Held("the node that answers with this identity (0x1018); it measu
 NODE: Final[Mapping[str, Classes]] = {
     **dict.fromkeys(("name", "node_id", "period", "vendor_id", "product_code", "heartbeat"), _NODE),
     "channels": {
-        **dict.fromkeys(("byte", "type", "scale", "unit"), _NODE),
+        **dict.fromkeys(("byte", "type", "bit", "scale", "unit"), _NODE),
         "simulated": Free("a real node measures"),
     },
 }

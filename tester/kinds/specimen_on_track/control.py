@@ -15,6 +15,7 @@ from tester.kinds.specimen_on_track.interlocks.stops import HOLD_AT_MOST_S, STOP
 from tester.kinds.specimen_on_track.process import TrackDemand, TrackReadings, TrackSetpoints
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.mode_commands import bounded
+from tester.machine.safety_inputs import table_on
 from tester.machine.standstill import StandstillControl
 from tester.machine.state import ControlState
 
@@ -43,7 +44,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         view.setpoints = state.setpoints
         view.limits = _limits(rig)
         view.track = WayMonitor(rig.axes.track.acceleration * rig.metres)
-        super().__init__(rig, state, view, rig.table, (TrackDemand(), TrackDemand()), HOLD_AT_MOST_S)
+        super().__init__(rig, state, view, table_on(rig, rig.table), (TrackDemand(), TrackDemand()), HOLD_AT_MOST_S)
         p = view.parameters
         self.rig = rig
         self.bound_m_s = min(rig.limits.track_speed_m_s, most_m_s)

@@ -23,6 +23,7 @@ from tester.machine.proof import WatchdogProof
 from tester.machine.result_keeping import StoredResults
 from tester.machine.run import Run, run_of
 from tester.machine.run_parts import KindRun, Part, RunSetup
+from tester.machine.safety_inputs import table_on
 
 
 class PlainArming(Arming[PlainDevices, PlainRig]):
@@ -66,7 +67,7 @@ class PlainRuns(KindRun):
         devices = PlainDevices(own, setup.ports)
         readings = self.readings(own)
         readings.channels = [nan] * len(quantities.further)
-        control = PlainControl(own, self.table, readings)
+        control = PlainControl(own, table_on(own, self.table), readings)
         ctx = self.context(own, readings, setup.prompts, setup.recorder, setup.attendant, quantities, devices.own)
         results = StoredResults[PlainContext](setup.recorder, point=setup.point)
         procedures = PlainProcedures(self.part, results, self.speeds)

@@ -16,6 +16,7 @@ from tester.kinds.wheel_on_belt.interlocks.operation import COLD_K, HOLD_AT_MOST
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.drive_rows import ACK_WAIT_S
 from tester.machine.mode_commands import bounded, may_move
+from tester.machine.safety_inputs import table_on
 
 CEILING_STEP_S: Final = 1.0
 """Resolution of the times at which setpoints were left, s."""
@@ -35,8 +36,9 @@ class WheelControl(WheelStops):
         view = InterlockInputs(state=state, rig=rig)
         p = view.parameters
         super().__init__(
-            state, view, rig.table, Demand(), Demand(), hold_at_most_s=p[HOLD_AT_MOST_S], ack_wait_s=p[ACK_WAIT_S]
-        )
+            state, view, table_on(rig, rig.table), Demand(), Demand(),
+            hold_at_most_s=p[HOLD_AT_MOST_S], ack_wait_s=p[ACK_WAIT_S],
+        )  # fmt: skip
         self.rig = rig
         self.loss_ratios = loss_ratios(rig)
         self.bounds = rig_bounds(rig) if recipe is None else rig_bounds(rig).within(recipe)

@@ -1,0 +1,151 @@
+"""Safety inputs that a rig file names: on Modbus and on a CiA 401 node, in every mode of both kinds of rig."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from itertools import product
+from math import nan
+from typing import Any, Final
+
+import pytest
+
+from tester.base.source import InvalidSource
+from tester.kinds import load_rig, load_rig_text
+from tester.machine.safety_inputs import InputStates
+from tester.machine.state import Mode
+from tests.tester.kinds.specimen_on_track.bench import TrackBench
+from tests.tester.kinds.wheel_on_belt.bench import QUIET, Simulation
+
+NODE: Final = (
+    "can.nodes.inputs={node_id: 21, period: 50 ms, channels: {limiter_closed: {byte: 0, type: bit, bit: 1, scale: 1,"
+    " unit: ''}, air_closed: {byte: 0, type: bit, bit: 6, scale: 1, unit: ''}}}"
+)
+INPUTS: Final = {
+    "light_curtain": "{channel: di_0}",
+    "second_door": "{channel: di_1, open_at_rest: true}",
+    "limiter": "{channel: limiter_closed}",
+    "air": "{channel: air_closed, reaction: controlled}",
+    "water": "{channel: di_4, reaction: controlled}",
+}
+FAST = {Mode.FAST_STOP, Mode.LATCHED}
+CONTROLLED = {Mode.STOPPING, Mode.COOLDOWN, Mode.LATCHED}
+"""Modes after the scan of a trip: a rig that stands has stopped at once."""
+WORKING = (Mode.RUN, Mode.HOLD)
+RESTING = (Mode.IDLE, Mode.ARMED, Mode.LATCHED)
+CASES = list(product(INPUTS, (0.0, nan, 2.0)))
+
+
+def overrides(line: str) -> tuple[str, ...]:
+    device = "devices.io={profile: moxa_e1214, line: LINE, unit_id: 9}".replace("LINE", line)
+    return (device, NODE, *(f"safety_inputs.{name}={text}" for name, text in INPUTS.items()))
+
+
+def wheel() -> Simulation:
+    return Simulation(overrides=(*QUIET, *overrides("heat")))
+
+
+def track() -> TrackBench:
+    return TrackBench("grosch", overrides=overrides("heat"))
+
+
+@pytest.fixture(scope="module", params=["wheel", "track"])
+def running(request: pytest.FixtureRequest) -> Any:
+    """A run that has begun, of either kind."""
+    bench: Any = wheel() if request.param == "wheel" else track()
+    return bench.until(lambda one: one.run.engine.control.state.mode is Mode.RUN, 300.0)
+
+
+def opened(bench: Any, name: str, value: float, mode: Mode, *, driven: bool = True) -> Any:
+    """Return a copy of the control after one scan in ``mode`` in which an input reads ``value``."""
+    engine = deepcopy(bench.run.engine)
+    control, ctx = engine.control, engine.ctx
+    place = {channel: i for i, channel in enumerate(control.view.further_places)}
+    channel = INPUTS[name].split()[1].strip(",}")
+    ctx.readings.channels[place[channel]] = value
+    ctx.demand.enabled = driven
+    if mode is Mode.HOLD:
+        assert control.request_hold(ctx.demand, ctx.readings.now_s, "test") == ""
+    control.state.mode = mode
+    control.state.setpoints.enable = driven
+    if mode in (Mode.STOPPING, Mode.FAST_STOP, Mode.COOLDOWN, Mode.EMERGENCY):
+        control.state.stop.began_s = ctx.readings.now_s
+    control.step(ctx.demand, ctx.readings, 0.01)
+    return control
+
+
+def title(name: str) -> str:
+    return name.replace("_", " ")
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+def test_an_input_that_is_not_closed_trips_in_every_mode_but_at_rest_by_its_name(running: Any, mode: Mode) -> None:
+    for name, value in CASES:
+        control = opened(running, name, value, mode)
+        held = control.table.names_of(control.state.held)
+        assert title(name) in held, (name, value)
+        if mode in RESTING:
+            continue  # nothing is left to stop: it only keeps the rig from being armed
+        assert control.state.trip is not None and title(name) in {
+            control.state.trip.name, *control.table.names_of(control.state.tripped)
+        }  # fmt: skip
+        if mode in WORKING:
+            assert control.state.mode in (CONTROLLED if "controlled" in INPUTS[name] else FAST), (name, value)
+
+
+@pytest.mark.parametrize("mode", RESTING)
+def test_only_a_door_may_be_open_while_the_drives_have_no_power(running: Any, mode: Mode) -> None:
+    for name in INPUTS:
+        control = opened(running, name, 0.0, mode, driven=False)
+        assert (title(name) in control.table.names_of(control.state.held)) is (name != "second_door")
+
+
+def test_all_closed_holds_no_row_and_every_input_is_on_the_list(running: Any) -> None:
+    engine = running.run.engine
+    assert engine.control.state.trip is None
+    states = InputStates(engine.ctx.rig).closed(engine.ctx.readings.channels)
+    assert states == {title(name): True for name in INPUTS}
+    assert InputStates(engine.ctx.rig).closed([]) == {title(name): False for name in INPUTS}
+
+
+@pytest.mark.parametrize("name", INPUTS)
+@pytest.mark.parametrize("kind", ["wheel", "track"])
+def test_the_rig_is_not_armed_while_one_is_open(kind: str, name: str) -> None:
+    channel = INPUTS[name].split()[1].strip(",}")
+    bench: Any = wheel() if kind == "wheel" else track()
+    if channel.startswith("di_"):
+        bench.world.sensors["io"].show(channel, 0.0)
+    else:
+        bench.world.nodes[0].show({"limiter_closed": 1.0, "air_closed": 1.0, channel: 0.0})
+    while not bench.run.finished and bench.now < 300.0:
+        bench.tick()
+    assert f"not armed: {title(name)}" in bench.run.reason + bench.run.connector.failure
+
+
+def test_a_module_that_falls_silent_trips_by_the_name_of_its_inputs() -> None:
+    bench = track().until(lambda one: one.run.engine.control.state.mode is Mode.RUN, 300.0)
+    bench.world.nodes[0].power(False)
+    at = bench.now
+    bench.until(lambda one: one.run.engine.control.state.trip is not None, at + 1.0)
+    assert bench.run.engine.control.state.trip.name == "limiter" and bench.now - at < 0.5
+
+
+def test_the_file_reads_back_as_the_same() -> None:
+    rig = load_rig("sim", overrides("heat"))
+    assert load_rig_text(rig.text) == rig
+    assert "safety_inputs" not in load_rig("sim").text
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("safety_inputs.water={channel: nowhere}", "no such channel (expected a channel of type bit: di_0, di_1"),
+        ("safety_inputs.water={channel: rh}", "rh is no contact (expected type bit)"),
+        ("safety_inputs.water={channel: di_0, reaction: warn}", "fast"),
+        ("safety_inputs.Water={channel: di_0}", "expected small letters, digits and _"),
+    ],
+)
+def test_a_mistake_is_refused(override: str, message: str) -> None:
+    rh = "can.nodes.climate={node_id: 20, channels: {rh: {byte: 0, type: u16, scale: 1, unit: ''}}}"
+    with pytest.raises(InvalidSource) as refused:
+        load_rig("sim", (*overrides("heat"), rh, override))
+    assert message in str(refused.value)
