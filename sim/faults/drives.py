@@ -201,3 +201,22 @@ class ModeRefused(_OnAxis):
     def end(self, scene: Scene, now: float) -> None:
         """Accept the modes that the drive has."""
         self.drive(scene).store.guards[o.MODE] = self._guard
+
+
+class BrakesWeakly(_OnAxis):
+    """The drive brakes with a share of its decelerations: its brake resistor is open, or its current is limited."""
+
+    every_step = True
+
+    def __init__(self, axis: str, percent: float) -> None:
+        """Take the share of every deceleration that is left, percent."""
+        super().__init__(axis)
+        self.share = max(0.01 * percent, 1e-3)
+
+    def renew(self, scene: Scene, now: float) -> None:
+        """Weaken the deceleration of the last command, once."""
+        axis = self.drive(scene).axis
+        if isinstance(axis, VelocityAxis) and axis.deceleration != self._weak:
+            axis.deceleration = self._weak = self.share * axis.deceleration
+
+    _weak = 0.0

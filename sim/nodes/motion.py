@@ -51,6 +51,7 @@ class VelocityAxis:
         self.low = low
         self.high = high
         self.blocked = False
+        self.yielded = 0.0
         self.settled = True
         self.still = True
         self._bounded = low > -inf or high < inf
@@ -75,6 +76,14 @@ class VelocityAxis:
         self.settled = False
         self.still = False
 
+    def give_way(self, by: float) -> None:
+        """Be off the loop's speed by ``by`` (unit/s) against the motor: the drive is at its limit; 0: follow again."""
+        if not self.blocked:
+            self.value += self.yielded - by
+            self.yielded = by
+        self.settled = False
+        self.still = False
+
     def stall(self, position: float) -> None:
         """Stand at ``position``, short of the demand: the drive of the axis is at its limit."""
         self.position = position
@@ -94,7 +103,8 @@ class VelocityAxis:
     def _ramp(self, dt: float) -> None:
         """Follow the demand from corner to corner of its ramp for ``dt`` seconds, the value lagging behind it."""
         target, demand, lag = self.target, self.demand, self.lag_s
-        value, position = self.value, self.position
+        yielded = self.yielded
+        value, position = self.value + yielded, self.position - yielded * dt
         while dt > 0.0:
             if demand == target:
                 slope, span, end = 0.0, dt, target
@@ -117,10 +127,12 @@ class VelocityAxis:
             dt -= span
         self.demand = demand
         if self.blocked:
-            value = 0.0
+            value = self.yielded = 0.0
         else:
             self.position = position
-        if demand == target and -SETTLED <= value - target <= SETTLED:
+        if yielded:
+            value -= self.yielded
+        elif demand == target and -SETTLED <= value - target <= SETTLED:
             value = target
             self.settled = True
             self.still = target == 0.0

@@ -87,6 +87,8 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         """Mask of the closed gates; 0 if this scan counts."""
         self.progress = Progress()
         self.mounted = MountedSpecimen()
+        self.counted_on: list[str] = []
+        """Lines about hardware that the run counts on, for its record; a real rig's run prints them."""
 
     def before_reading(self) -> None:
         """Write to the image what the devices need before they fill it."""

@@ -144,7 +144,7 @@ class Run:
         engine.devices.fill(ctx.readings, now)
         devices: DeviceList = engine.devices
         measured = (line_speed.described(devices),) if devices.real_lines() else ()
-        for line in (self.connector.shown, *engine.devices.without(), *measured, *ctx.known()):
+        for line in (self.connector.shown, *engine.devices.without(), *measured, *ctx.known(), *ctx.counted_on):
             ctx.journal.event(now, "arming", line)
         self._started = True
         refused = engine.control.start(ctx.readings)

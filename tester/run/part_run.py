@@ -96,6 +96,8 @@ class RunNotes:
             if difference:
                 engine.ctx.journal.event(now_s, "arming", difference, "warning")
                 self.say(f"warning: {difference}")
+            for line in () if engine.ctx.rig.simulated else engine.ctx.counted_on:
+                self.say(line)
         wall_s = clock.monotonic()
         if wall_s >= self.state_due_s:
             self.state_due_s = wall_s + STATE_EVERY_S

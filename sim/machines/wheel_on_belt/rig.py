@@ -1,7 +1,7 @@
 """The rig of a wheel on a belt: the motion and the load of each drive.
 
-The press goes no deeper than the torque limit of its drive (0x6072) allows; wheel and belt have enough torque
-for any friction.
+The press goes no deeper than the torque limit of its drive (0x6072) allows; wheel and belt give way to friction that
+needs more torque than theirs.
 """
 
 from __future__ import annotations
@@ -31,6 +31,9 @@ PRESS_TRAVEL_MM: Final = 30.0
 """Travel of the press from fully lifted, mm [A]: beyond the hub of a fully worn wheel."""
 PRESS_SPRING_MM_S: Final = -20.0
 """Speed of an unpowered press that the spring retracts, mm/s [A]."""
+WHEEL_KG_M2: Final = 0.02
+BELT_KG_M2: Final = 0.05
+"""Inertia of the wheel with its motor, and of rollers, belt and motor at the drive roller's shaft [A]."""
 FORCES: Final = ("fx", "fy", "fz")
 """Forces to measure, each by a transmitter of the load cell; one transmitter may measure all."""
 _NO_ANGLES: Final = frozenset({"wheel_speed", "slip_velocity", "load", "temperature"})
@@ -74,7 +77,7 @@ class WheelRig(SimRig):
         """Share by which the belt is slower than its drive roller: beyond elastic creep the roller slips under it."""
         self._limit_nm = self._pushed_n = self._held_n = 0.0
         self._pressed_mm = 0.0
-        self._stalled = False
+        self._stalled = self._yields = False
         self.swapped = False
         """Whether the drives of wheel and belt are swapped: each moves the other's part."""
         self.turned: set[str] = set()
@@ -144,7 +147,33 @@ class WheelRig(SimRig):
             sideslip_deg,
             self.heat_flowing_w,
         )
+        if plant.force_z_n > 0.0 or self._yields:
+            radius_m, belt_nm = 0.0005 * plant.diameter_mm, -plant.belt_force_n * self._roller_m
+            wheel = self._give_way(self._wheel, plant.drive_torque_nm, WHEEL_KG_M2, radius_m, 1.0, elapsed)
+            belt = self._give_way(self._belt, belt_nm, BELT_KG_M2, self._roller_m, self._roller_m, elapsed)
+            self._yields = wheel or belt
         self._show(wheel_axis.value, belt_axis.value)
+
+    def _give_way(self, drive: Cia402Slave, load_nm: float, inertia: float, arm_m: float, per_rad: float, dt: float
+                  ) -> bool:  # fmt: skip
+        """Let wheel or belt be slower than its loop wants, where ``load_nm`` is more than its drive's torque limit;
+        return whether it is.
+
+        ``arm_m``: from the shaft to the contact; ``per_rad``: the axis's speed at 1 rad/s. What friction takes falls
+        with the slip, within a step too.
+        """
+        axis, limit_nm = drive.axis, drive.torque_limit_nm
+        size_nm = -load_nm if load_nm < 0.0 else load_nm
+        if not isinstance(axis, VelocityAxis) or (axis.yielded == 0.0 and size_nm <= limit_nm) or dt <= 0.0:
+            return False
+        slip_rad_s = self.plant.slip_m_s / arm_m
+        falls = size_nm / slip_rad_s if slip_rad_s > 1e-6 else 0.0
+        rad_s = (size_nm - limit_nm) / (inertia / dt + falls)
+        by = axis.yielded + per_rad * (-rad_s if load_nm < 0.0 else rad_s)
+        if axis.yielded * by < 0.0 or not drive.energised:
+            by = 0.0
+        axis.give_way(by)
+        return by != 0.0
 
     @property
     def wheel_rad_s(self) -> float:

@@ -22,6 +22,7 @@ from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.recipe.references import AT
 from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD
 from tester.kinds.wheel_on_belt.rig.wheel_rig import RIPPLE_N
+from tester.kinds.wheel_on_belt.stopped_contact import POWER_SCATTER, Contact, contact, remedy, unheld
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -36,8 +37,10 @@ OVERHEAT_K = 3.0
 """Greatest excess of the rubber over its band [A]: a burst ends only once the press has lifted, and the thermometer
 lags (gates.ir_lag) and has a bias. On the simulated rig the excess is 1.2 K, and the bias 1 K.
 """
-POWER_SCATTER = 0.15
-"""Greatest excess of friction over the model's, a share [A]: two standard deviations of wheel, condition and repeat."""
+
+
+def _power_w(one: Contact) -> float:
+    return one.power_w
 
 
 def least_load_n(rig: RigConfig) -> float:
@@ -197,6 +200,7 @@ class _Limits:
             for wheel, load in product(self._entries((*at, "wheel_speed"), "m/s"), self._entries((*at, "load"), "N")):
                 motion = Motion(wheel.value, belt.value, 0.0, abs(wheel.value - belt.value))
                 yield from self._powers([load], [motion], [self.ambient_c])
+                yield from self._stopped(load, max(wheel.value, belt.value), self.ambient_c)
         for load in self._entries((*at, "load"), "N"):
             yield from self._too_heavy(load)
             yield from self._too_light(load)
@@ -234,6 +238,23 @@ class _Limits:
             for off_k in (-band_k, 0.0, band_k)
         ]
         yield from self._powers(loads, motions, temperatures)
+        both = self._both(at)
+        belts = [2.0 * motion.wheel - motion.belt if both else motion.belt for motion in motions]
+        fastest = max((*belts, *(motion.wheel for motion in motions)), default=0.0)
+        hottest = max(temperatures, default=self.ambient_c)
+        for load in loads:
+            yield from self._stopped(load, fastest, hottest)
+
+    def _stopped(self, load: PlacedValue, speed_m_s: float, hottest_c: float) -> Iterator[Problem]:
+        """Yield a problem for a load that the program alone does not keep below harm once wheel or belt stands."""
+        rig = self.rig
+        if rig.arming.standstill_relay or load.value <= 0.0 or speed_m_s <= 0.0:
+            return
+        contacts = [contact(rig, name, load.value, speed_m_s, hottest_c) for name in self.compounds]
+        worst = max(contacts, key=_power_w, default=None)
+        why = unheld(rig, worst) if worst is not None else ""
+        if worst is not None and why:
+            yield self.tree.problem(load.at, f"load: {why} (expected {remedy(rig, worst)})")
 
     def _band_k(self, at: Location) -> float:
         bands = self._entries((*at, "temperature_band"), "K") or self._entries(("measure", "temperature_band"), "K")

@@ -23,6 +23,7 @@ from tester.kinds.wheel_on_belt.procedures.steps import DEFAULT_LOAD_N, DEFAULT_
 from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Heat, PreGrind, WheelCondition, WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
+from tester.kinds.wheel_on_belt.stopped_contact import counted_on
 from tester.machine.run import Run, run_of
 from tester.machine.run_parts import RunSetup
 from tester.store.resumable import ResumePoint
@@ -105,6 +106,7 @@ def build_run(
         cell_old_s=rig.interlocks.stale_cell_s,
     )
     ctx = Context(rig, readings, setup.prompts, setup.recorder, setup.attendant, cell, control.view, quantities)
+    ctx.counted_on = counted_on(rig, plan)
     results = WheelResults(setup.recorder, combining_of(plan.metadata))
     serving = procedures(plan, results, hardware=not rig.simulated)
     if point is not None:

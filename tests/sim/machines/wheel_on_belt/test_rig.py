@@ -144,6 +144,24 @@ def test_a_belt_that_is_held_back_beyond_creep_takes_the_pull_of_its_roller(slip
     assert world.axes["belt"].torque_nm == pytest.approx((43.92 if held else friction_nm) + 0.4, abs=0.01)
 
 
+@pytest.mark.parametrize("name", ["wheel", "belt"])
+def test_a_drive_gives_way_to_friction_beyond_its_torque_and_follows_again(name: str) -> None:
+    world = Simulation(overrides=["sim.noise=0"]).until(lambda one: one.world.plant.slip_m_s > 0.295).world
+    drive = world.axes[name]
+
+    def after(per_mille: int) -> float:
+        drive.store.values[(MAX_TORQUE, 0)] = per_mille
+        for _ in range(12):
+            world.advance(world.now_s + 0.002)
+        return world.plant.slip_m_s
+
+    needed = round(1000.0 * abs(drive.torque_nm) / drive.config.rated_torque_nm)
+    asked = after(3000)
+    given_way = after(round(0.8 * needed))
+    assert given_way < 0.95 * asked
+    assert after(3000) > 1.02 * given_way
+
+
 def sliding(simulation: Simulation) -> bool:
     plant = simulation.world.plant
     return plant.force_z_n > 150.0 and plant.slip_m_s > 0.19
