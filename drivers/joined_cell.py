@@ -12,6 +12,7 @@ from operator import attrgetter
 from typing import Final, TypeAlias
 
 from drivers.modbus import ModbusLink
+from drivers.modbus.link import POLL_S
 from drivers.profiles.model import DeviceProfile
 from drivers.sensor import Sensor
 
@@ -129,6 +130,16 @@ class JoinedCell:
             rounds.append(sum(times) - min(times))
         between_s = PERIOD_S if len(rounds) > 1 else 0.0
         return max(rounds) + between_s
+
+    @property
+    def measured_skew_s(self) -> float:
+        """Skew at the measured reply times, s: each exchange is followed by a silence and by a look at the line."""
+        rounds: list[float] = []
+        for link in self.links:
+            stations = [one.station for one in self.transmitters if one.link is link]
+            turns = [link.exchange_s(station) + link.gap_s + POLL_S for station in stations]
+            rounds.append(sum(turns) - min(turns))
+        return max(rounds) + (PERIOD_S if len(rounds) > 1 else 0.0)
 
     def set_tare(self, values: tuple[float, ...]) -> None:
         """Subtract ``values``, one a channel, from every reading from now on. Raises ValueError for another number."""

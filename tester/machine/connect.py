@@ -11,6 +11,7 @@ from math import inf, nan
 from typing import Any, Generic, TypeVar
 
 from drivers.cia402 import Goal, State
+from drivers.joined_cell import Transmitter
 from drivers.ports import BusLost
 from tester.inputs.rig import Rig
 from tester.machine import line_speed
@@ -23,6 +24,7 @@ CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
 TIMEOUT_S = 90.0
 """Time limit for the connection; the homing of a slow axis takes most of it [A]."""
+_TINY_S = 1e-9
 RAMP_S = 0.5
 """Time for every axis to stop after a failure: the ramp takes 25 ms from creep speed, 0.2 s from homing speed [A]."""
 RELEASE_S = 3.0
@@ -150,6 +152,9 @@ class Connector:
         self._lifting: Lifting | None = None
         self._proof: WatchdogProof | None = None
         self._configured_s = -inf
+        self._joined = any(isinstance(device.driver, Transmitter) for device in devices.modbus)
+        self._scan_s = -inf
+        """Time of the next scan, s."""
         self._started_s: float | None = None
         self._released_s: float | None = None
 
@@ -180,14 +185,21 @@ class Connector:
             self._release(now)
         else:
             self._advance(now, now - self._started_s)
+        between = self._joined and now < self._scan_s - _TINY_S
+        prompt_s = inf
         if self.stage is Stage.LISTEN or self.stage is Stage.FAILED:
             devices.transmit_lines(now)  # stay silent on the CAN bus until the listening has succeeded
         else:
-            devices.transmit(now, scan=self.stage in _SCANNING)
+            prompt_s = devices.transmit(now, scan=self.stage in _SCANNING and not between)
         if devices.lost and not devices.can_alive:
             raise BusLost(devices.lost)
         measuring = not self.finished and devices.real_lines() and not line_speed.measured(devices)
-        return now + (line_speed.FINE_S if measuring else CONNECT_S)
+        if measuring:
+            return now + line_speed.FINE_S
+        if not between:
+            self._scan_s = now + CONNECT_S
+        # Between two scans only the parts of a load cell are read: as close together as the line allows, as in a run.
+        return min(self._scan_s, max(prompt_s, now + line_speed.FINE_S)) if self._joined else self._scan_s
 
     def abort(self, why: str) -> None:
         """Give up: stop everything that moves, and release configured drives."""

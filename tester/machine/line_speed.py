@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from drivers.joined_cell import Transmitter
+from drivers.modbus import ModbusLink
 from drivers.modbus.request import REPLIES
 from drivers.sensor import Sensor
 from tester.machine.devices import DeviceList
@@ -43,6 +45,9 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
 
     ``limits``: for each device's name, the key in the rig file and the greatest age of its reading, s.
     """
+    apart = _too_far_apart(devices)
+    if apart:
+        return apart
     for device in devices.modbus:
         key, limit_s = age_limit(device, limits)
         if limit_s is None:
@@ -52,14 +57,34 @@ def too_slow(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> st
         others_s = sum(link.exchange_s(other) for other in link.stations if other is not station)
         age_s = needed_s(device.driver.profile.blocks[0].period_s, exchange_s, others_s)
         if not age_s <= limit_s:
-            port = next(port for port, other in devices.lines if other is link)
             return (
                 f"{device.title}: line {device.line} is too slow for {key}, {_ms(limit_s)}:"
                 f" a reply takes {_ms(exchange_s)},"
                 f" {_ms(station.reply.greatest_s)} of them beyond the wire, and two readings {_ms(age_s)}."
-                f" To do: {getattr(port, 'remedy', '') or 'a quicker adapter'}"
+                f" To do: {_remedy(devices, link)}"
             )
     return ""
+
+
+def _too_far_apart(devices: DeviceList) -> str:
+    """Return why the transmitters of a load cell are read too far apart, and the remedy; "" if they are not."""
+    parts = [device for device in devices.modbus if isinstance(device.driver, Transmitter)]
+    cell = next((one.driver.cell for one in parts if isinstance(one.driver, Transmitter)), None)
+    if cell is None or cell.measured_skew_s <= cell.most_skew_s:
+        return ""
+    slowest = max(parts, key=lambda one: one.driver.link.exchange_s(one.driver.station))
+    link, station = slowest.driver.link, slowest.driver.station
+    return (
+        f"load cell: line {slowest.line} is too slow for interlocks.cell_skew, {_ms(cell.most_skew_s)}: its"
+        f" transmitters are read {_ms(cell.measured_skew_s)} apart, and a reply of {slowest.title} takes"
+        f" {_ms(link.exchange_s(station))}, {_ms(station.reply.greatest_s)} of them beyond the wire (its own time, the"
+        f" adapter's latency timer). To do: {_remedy(devices, link)}; or a line for each transmitter"
+    )
+
+
+def _remedy(devices: DeviceList, link: ModbusLink) -> str:
+    port = next(port for port, other in devices.lines if other is link)
+    return getattr(port, "remedy", "") or "a quicker adapter"
 
 
 def allow_late(devices: DeviceList, limits: Mapping[str, tuple[str, float]]) -> None:

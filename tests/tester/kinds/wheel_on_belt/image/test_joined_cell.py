@@ -261,3 +261,29 @@ def test_the_skew_leaves_the_ratio_of_means_alone_and_moves_the_momentary_one(sk
     ratios = [normal_n(t) / later for t, later in zip(times, normal, strict=True)]
     mean = sum(ratios) / len(ratios)
     assert (sum((one - mean) ** 2 for one in ratios) / len(ratios)) ** 0.5 == pytest.approx(momentary, abs=0.0005)
+
+
+# an ordinary adapter ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("held", ["0 s", "1 ms", "3 ms", "5 ms"])
+def test_three_transmitters_on_one_line_run_with_an_ordinary_adapter(held: str) -> None:
+    run = Simulation(BRIEF, config=joined(THREE_LAUMAS, (*QUIET, f"sim.latency_timer={held}"))).until(in_contact, 200.0)
+    cell = joined_cell(run)
+    before = cell.apart
+    end = run.now + 5.0
+    run.until(lambda one: one.now > end)
+    assert cell.valid and cell.apart == before and cell.skew_s <= cell.measured_skew_s + 1e-9
+
+
+@pytest.mark.parametrize(("held", "apart"), [("8 ms", 34.3), ("16 ms", 50.3)])
+def test_one_that_holds_replies_too_long_is_refused_with_skew_and_timer(held: str, apart: float) -> None:
+    run = Simulation(BRIEF, config=joined(THREE_LAUMAS, (*QUIET, f"sim.latency_timer={held}"))).to_the_end(100.0)
+    failure = run.run.connector.failure
+    assert "line load_cell is too slow for interlocks.cell_skew, 30.0 ms" in failure
+    assert f"read {apart} ms apart" in failure and "the adapter's latency timer" in failure
+
+
+def joined_cell(run: Simulation) -> JoinedCell:
+    """Return the cell of a run."""
+    return next(one.driver.cell for one in run.run.engine.devices.modbus if hasattr(one.driver, "cell"))
