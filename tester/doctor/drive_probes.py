@@ -221,7 +221,7 @@ def _scale(e: Examination, name: str, config: AxisConfig) -> Iterator[Finding]:
     if not turn or encoder <= 1 or not turns:
         return
     counts = encoder / turns * (motor / shaft if motor != shaft else config.gear)
-    if not gear_ratio(turn / counts, COUNTED):
+    if gear_ratio(turn / counts, COUNTED) is None:
         yield warning(
             name, f"0x608F and 0x6091 make {counts:.6g} counts a turn of the shaft, position_increments {turn:.6g}:"
             f" no gear explains a factor of {turn / counts:.4g}", f"axes.{name}.position_increments, or the drive's",

@@ -16,6 +16,8 @@ DONE, NOT_YET = "yes", "no"
 """The exact words that answer a run's question; after the second the question keeps waiting."""
 GO: Final = "go"
 """The word that starts a motion."""
+BACK: Final = "back"
+"""The word that takes the previous answer back."""
 
 
 class Asks(Enum):
@@ -40,10 +42,14 @@ class Question:
     asks: Asks
     choices: tuple[str, ...] = ()
     unit: str = ""
+    back: bool = False
+    """Whether BACK is a valid answer, too."""
 
     def refusal(self, answer: str) -> str:
         """Return why a text is not a valid answer; "" if it is valid."""
         text = answer.strip()
+        if self.back and text == BACK:
+            return ""
         if self.asks is Asks.CHOICE:
             return "" if text in self.choices else f"expected one of: {', '.join(self.choices)}"
         if self.asks is Asks.KEY:
@@ -69,6 +75,10 @@ class Question:
     @property
     def hint(self) -> str:
         """The valid answers, in words."""
+        return f"{self._hint}; {BACK}: the answer before" if self.back else self._hint
+
+    @property
+    def _hint(self) -> str:
         if self.asks is Asks.CHOICE:
             return " / ".join(self.choices)
         if self.asks is Asks.KEY:

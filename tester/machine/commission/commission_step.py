@@ -18,6 +18,13 @@ from tester.machine.rig_ports import Ports
 class StepRefused(Exception):  # noqa: N818 - a finding for a person
     """A step does not pass. The text gives the finding and the remedy, for people and for the record."""
 
+    again: object = None
+    """The stage from which to measure again (tester.machine.commission.stages); None: the last one."""
+
+
+class StepLeft(StepRefused):
+    """A person leaves a step."""
+
 
 Until = Callable[[float], bool]
 """A condition to wait for: called once a tick with rig time, s."""
@@ -46,14 +53,14 @@ def line(key: str, text: str) -> Generator[Waits, str, str]:
 def press(key: str, text: str, guarded: Callable[[], bool] = lambda: True) -> Dialogue:
     """Ask for the word that starts a motion; ask again while ``guarded`` reports that guard or safety chain is open.
 
-    Raises StepRefused if the answer is "no".
+    Raises StepLeft if the answer is "no".
     """
     asked = text
     while (yield Question(key, asked, Asks.KEY)) == GO:
         if guarded():
             return
         asked = f"the guard or the safety chain is open: close it, and again; {text}"
-    raise StepRefused(f"left by the person at: {asked}")
+    raise StepLeft(f"left by the person at: {asked}")
 
 
 def wait(seconds: float) -> Dialogue:

@@ -19,7 +19,7 @@ from textual.widgets.option_list import Option
 from tester.base import clock, keys
 from tester.base.trouble import in_words
 from tester.machine.commission.record import RecordError
-from tester.machine.prompts import Asks, Question
+from tester.machine.prompts import BACK, Asks, Question
 from tester.tui.dialogs.dialog import Dialog, TextDialog
 from tester.tui.formatting import clean
 from tester.tui.guide.guide import Guide, GuideView
@@ -263,7 +263,8 @@ def completed(question: Question, typed: str) -> str:
     text = typed.strip()
     if question.asks is not Asks.CHOICE or not text or text in question.choices:
         return text
-    matching = [choice for choice in question.choices if choice.startswith(text)]
+    words = (*question.choices, BACK) if question.back else question.choices
+    matching = [choice for choice in words if choice.startswith(text)]
     return matching[0] if len(matching) == 1 else text
 
 

@@ -30,7 +30,7 @@ LEAST = 20
 """So many kinds of mistakes are to be named."""
 LISTED_SHARE = 0.9
 """Least share of another hand's list that is to be named."""
-SOURCES = ("by_doctor", "by_commissioning")
+SOURCES = ("by_doctor", "by_answers", "by_commissioning")
 """Modules of this package that bring ``MISTAKES`` and ``clean``, quick ones first."""
 CLEAN_SEEDS = 10
 
@@ -105,7 +105,7 @@ def main() -> int:
     parser.add_argument("--list", type=Path, help="another list of mistakes for the doctor")
     parser.add_argument("names", nargs="*", help="only mistakes whose names hold one of these words")
     given = parser.parse_args()
-    modules = sources(SOURCES[:1]) if given.sample else sources()
+    modules = sources(SOURCES[:2]) if given.sample else sources()
     seeds, clean_seeds = (1, 5) if given.sample else (given.seeds, CLEAN_SEEDS)
     missed, total = 0, 0
     measured = listed(given.list, seeds) if given.list else figures(modules, seeds, clean_seeds, given.names)

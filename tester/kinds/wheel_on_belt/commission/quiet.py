@@ -77,6 +77,8 @@ class JogMove:
     moved: float = 0.0
     """Distance that the drive itself reports."""
     over: bool = False
+    read: bool = False
+    """The way was read while the axis was held: a spring that takes it back changes nothing."""
 
 
 class Moving(Lifting):
@@ -105,6 +107,9 @@ class Jogging(Moving):
         self.devices = devices
         self.rig = rig
         self.jog: JogMove | None = None
+        self._earlier = self._marked = 0.0
+        """Way from the mark to the begin of the present jog, and the position at the mark: of velocity and position
+        feedback."""
         self._drives: dict[str, ServoDrive] = {drive.config.name: drive for drive in devices.drives}
         self._phase = ""
         self._since_s = 0.0
@@ -120,10 +125,27 @@ class Jogging(Moving):
 
     def begin(self, axis: str, way: float, speed: float, *, holds: bool = False) -> JogMove:
         """Begin a jog."""
+        self._earlier = self.moved
         self.jog = JogMove(axis, way, speed, holds)
         self._enter("enable", inf)
         self._rest = tuple(self.devices.cell.raw)
         return self.jog
+
+    @property
+    def moved(self) -> float:
+        """Way in all since the mark, as the drive reports it, in the axis's unit; as it was read, once it was."""
+        jog = self.jog
+        if jog is None:
+            return 0.0
+        drive = self._drives[jog.axis]
+        if jog.read or drive.config.feedback != "position":
+            return self._earlier + jog.moved
+        return drive.actual - self._marked
+
+    def mark(self, axis: str) -> None:
+        """Count an axis' way from here: where it stands at first, or where the person sets the instrument to zero."""
+        self._earlier = -(self.jog.moved if self.jog is not None else 0.0)
+        self._marked = self._drives[axis].actual
 
     def drive(self, axis: str) -> ServoDrive:
         """Return an axis's drive."""
@@ -133,7 +155,9 @@ class Jogging(Moving):
         """Switch off an axis that was holding; return its finished jog once it is off."""
         jog = self.jog
         if jog is not None and jog.over and jog.holds:
+            self._earlier, jog.moved = 0.0, self.moved
             jog.holds = jog.over = False
+            jog.read = True
             self._enter("still", -inf)
         return jog
 
@@ -160,7 +184,8 @@ class Jogging(Moving):
         if drive.state is not State.OPERATION_ENABLED and self._phase != "off":
             self.failure = f"the {jog.axis} drive left operation while it was jogged"
             return
-        jog.moved = drive.actual - self._from if by_position else jog.moved + drive.actual * dt
+        if not jog.read:
+            jog.moved = drive.actual - self._from if by_position else jog.moved + drive.actual * dt
         if self._phase == "move":
             if self._arrived(drive, jog) or elapsed >= PRESS_S:
                 self._halt(drive)

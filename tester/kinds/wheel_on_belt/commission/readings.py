@@ -11,6 +11,7 @@ from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.jog import JoggedAxis
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.machine.commission.commission_step import Dialogue, Notes, StepReading, StepRefused, choose
+from tester.machine.commission.stages import in_stages
 
 STATES: Final = {
     State.OPERATION_ENABLED: "has power", State.QUICK_STOP_ACTIVE: "quick stop", State.FAULT_REACTION: "fault",
@@ -32,7 +33,7 @@ def of_bus(seat: JogSeat) -> Sequence[StepReading]:
 
 
 def of_axis(axis: JoggedAxis) -> Callable[[JogSeat], Sequence[StepReading]]:
-    """Return the readings of one axis: its position, its motion since the key press, whether it has power."""
+    """Return the readings of one axis: its position, its way in all since the mark, whether it has power."""
 
     def readings(seat: JogSeat) -> Sequence[StepReading]:
         if axis.name not in seat.believed.axes.driven():
@@ -40,13 +41,13 @@ def of_axis(axis: JoggedAxis) -> Callable[[JogSeat], Sequence[StepReading]]:
         drive, jog = seat.jogging.drive(axis.name), seat.jogging.jog
         config = drive.config
         by_position = config.feedback == "position"
-        moved = axis.shown(jog.moved) if jog is not None and jog.axis == axis.name else nan
+        moved = axis.shown(seat.jogging.moved) if jog is not None and jog.axis == axis.name else nan
         guard = "closed" if seat.guarded() else "open"
         return (
             StepReading(f"{axis.name} {'at' if by_position else 'speed'}", axis.shown(drive.actual),
                         axis.unit if by_position else f"{axis.unit}/s", 2,
                         STATES.get(drive.state, "no power")),
-            StepReading("since the key", moved, axis.unit, 2),
+            StepReading("moved in all", moved, axis.unit, 2),
             StepReading("guard, safety chain", nan, "", 0, guard),
             *of_cell(seat),
         )  # fmt: skip
@@ -105,8 +106,12 @@ def identify(seat: JogSeat, notes: Notes) -> Dialogue:
             f"  serial numbers that the rig file does not state (axes.*.serial_number): {', '.join(unnumbered)};"
             " with them, two drives of one make that are swapped are found at every connect"
         )
+    notes.values = identities
+    notes.text = f"{len(identities)} devices found and recognised"
+    yield from in_stages(notes, _recognised)
+
+
+def _recognised() -> Dialogue:
     answer = yield from choose("identify", "are these the devices of this rig?", "yes", "no")
     if answer != "yes":
         raise StepRefused("the person at the rig does not recognise these devices: check adapters, node and unit ids")
-    notes.values = identities
-    notes.text = f"{len(identities)} devices found and recognised"

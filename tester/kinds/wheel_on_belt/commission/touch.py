@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Generator
+from functools import partial
 from typing import Any, Final
 
 from sim.physics.friction import KNOWN
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact, Friction
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
-from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, choose, line, measure
+from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, choose, line
+from tester.machine.commission.stages import in_stages, measured_twice
 from tester.machine.motions import Power, Sequence, Settle
 
 ANGLE_DEG: Final = 0.5
 """Greatest deviation of a homed axis from straight [A]: the misalignment in the budget."""
+SHARE_MOST: Final = 1.2
+"""Greatest factor by which a wheel's diameter may differ from the rig file's; beyond it none is advised [A]."""
 DIAMETER_MM: Final = 0.5
 """Greatest deviation of a new wheel's diameter from the rig file's [A]: three times a caliper's resolution on rubber.
 """
@@ -36,10 +40,13 @@ RATIO_SHARE: Final = 0.005
 def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
     """Check positioned axes after homing: a person measures whether their zero is straight."""
     angles: dict[str, Any] = {}
-    for name in seat.run.engine.devices.axes.positioned:
+
+    def angle(name: str) -> Dialogue:
         at = seat.ctx.readings.positions[name]
         text = f"{name}: it was homed and is at {at:.2f} deg; what does an inclinometer show?"
-        read = yield from measure(f"angle {name}", text, "deg")
+        read = yield from measured_twice(
+            f"angle {name}", text, "deg", lambda typed: "" if abs(typed - at) <= ANGLE_DEG else "that is not straight"
+        )
         off = read - at
         angles[name] = {"shown_deg": at, "read_deg": read}
         if not abs(off) <= ANGLE_DEG:
@@ -48,20 +55,39 @@ def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
                 f"home of the {name} axis: straight is {off:+.2f} deg off. In the rig file:"
                 f" axes.{name}.home_offset: {config.home_offset - off:.2f} (now {config.home_offset:g})"
             )
-    notes.values = angles
-    notes.text = "homed; " + ", ".join(f"{name} {angle['read_deg']:+.2f} deg" for name, angle in angles.items())
+        notes.values = angles
+        notes.text = "homed; " + ", ".join(f"{one} {found['read_deg']:+.2f} deg" for one, found in angles.items())
+
+    yield from in_stages(notes, *(partial(angle, name) for name in seat.run.engine.devices.axes.positioned))
 
 
 def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
     """Measure the wheel, touch it at a small load, check that friction reverses, and tare the cell."""
-    believed = seat.rig.geometry.wheel_diameter_mm
-    read = yield from measure("diameter", f"what does a caliper show of the new wheel (believed {believed:g})?", "mm")
-    if not abs(read - believed) <= DIAMETER_MM:
-        raise StepRefused(
-            f"wheel diameter: {read:g} mm measured, the rig file has {believed:g} mm."
-            f" In the rig file: geometry.wheel_diameter: {read:g} mm"
+    believed, values = seat.rig.geometry.wheel_diameter_mm, dict[str, Any]()
+
+    def diameter() -> Dialogue:
+        text = f"what does a caliper show of the new wheel (believed {believed:g})?"
+        read = yield from measured_twice(
+            "diameter", text, "mm", lambda typed: "" if abs(typed - believed) <= DIAMETER_MM else "not the rig file's"
         )
-    compound = yield from _compound(notes)
+        values["diameter_mm"] = read
+        share = read / believed
+        if not 1.0 / SHARE_MOST <= share <= SHARE_MOST:
+            raise StepRefused(f"wheel diameter: {read:g} mm cannot be, the rig file has {believed:g} mm: its unit?")
+        if not abs(read - believed) <= DIAMETER_MM:
+            raise StepRefused(
+                f"wheel diameter: {read:g} mm measured, the rig file has {believed:g} mm."
+                f" In the rig file: geometry.wheel_diameter: {read:g} mm"
+            )
+
+    def compound() -> Dialogue:
+        values["compound"] = yield from _compound(notes)
+
+    yield from in_stages(notes, diameter, compound, lambda: _touched(seat, notes, values))
+
+
+def _touched(seat: ArmedSeat, notes: Notes, values: dict[str, Any]) -> Dialogue:
+    """Touch the wheel and take the cell's zero; raises StepRefused."""
     yield from seat.do(FirstContact())
     reference: list[float] = []
     tare = _tare(reference)
@@ -70,9 +96,11 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
         raise StepRefused(f"tare: {tare.failed}")
     press_mm = seat.ctx.contact.contact_mm
     yield from seat.do(Sequence(Turn(0.0, 0.0), Power(False)))
-    notes.values = {"compound": compound, "diameter_mm": read, "touched_mm": press_mm, "zero": reference}
+    notes.values = {**values, "touched_mm": press_mm, "zero": reference}
     zero = ", ".join(f"{force:.2f}" for force in reference[:3])
-    notes.text = f"wheel of {compound}, {read:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
+    notes.text = (
+        f"wheel of {values['compound']}, {values['diameter_mm']:g} mm, touched at {press_mm:.2f} mm; zero {zero} N"
+    )
 
 
 def _compound(notes: Notes) -> Generator[Waits, str, str]:

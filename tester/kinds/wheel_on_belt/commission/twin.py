@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from tester.kinds.wheel_on_belt.commission.jog import AXES as JOGGED
 from tester.machine.commission.person import Person
+from tester.machine.commission.stages import ONCE_MORE
 from tester.machine.prompts import GO, Asks, Prompt, Prompts, Question
 
 THINKS_S: Final = 15.0
@@ -63,23 +64,21 @@ class TwinPerson(Person):
 
     def prepare(self, question: Question) -> None:
         """Do the question's task, if any, before the answer."""
-        words = question.key.split()
+        words = question.key.removeprefix(ONCE_MORE).split()
         if words[0] == "jog" and (words[2] == "first" or words[2] == "mark"):
             self._from.setdefault(words[1], self.hands.ruler(words[1]))
-            if words[2] == "mark":
-                self._from[words[1]] = self.hands.ruler(words[1])
         if words[0] == "hang":
             self.hands.hang(*self.hung(question))
 
     def hung(self, question: Question) -> tuple[float, float, float]:
         """Return the forces of the weight in a question, N: key ``hang CHANNEL NEWTONS``."""
-        _, channel, newtons = question.key.split()
+        _, channel, newtons = question.key.removeprefix(ONCE_MORE).split()
         force = float(newtons)
         return (force, 0.0, 0.0) if channel == "x" else (0.0, force, 0.0) if channel == "y" else (0.0, 0.0, force)
 
     def answer(self, question: Question) -> str:
         """Return the answer."""
-        words = question.key.split()
+        words = question.key.removeprefix(ONCE_MORE).split()
         if question.asks is Asks.KEY:
             return GO
         if words[0] == "jog":
@@ -111,4 +110,5 @@ class TwinPerson(Person):
             if abs(moved) < 1e-6:
                 return "other" if any(abs(self.hands.ruler(axis.name)) > 1e-6 for axis in JOGGED) else "nothing"
             return "yes" if moved > 0.0 else "reversed"
+        self._from[axis] = self.hands.ruler(axis)  # the instrument is set to zero
         return question.choices[0]

@@ -7,6 +7,7 @@ The record has each device's deadline, as read back, and its report after the de
 from __future__ import annotations
 
 from collections.abc import Generator
+from functools import partial
 from math import inf, isfinite
 from typing import Any, Final
 
@@ -21,6 +22,7 @@ from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
 from tester.machine.commission.commission_step import Dialogue, Measured, Notes, StepRefused, Waits, choose, press, wait
+from tester.machine.commission.stages import Stage, in_stages
 from tester.machine.proof import WatchdogProof
 from tester.machine.rig_ports import Ports
 
@@ -152,20 +154,27 @@ def watchdogs(seat: TrialSeat, notes: Notes) -> Dialogue:
     if without:
         raise StepRefused(f"no deadline for setpoints (axes.*.rpdo_deadline): {', '.join(without)}")
     motion = "hands off, guard closed; wheel, belt and press move a little, then wheel and belt creep"
-    yield from _shown(seat, notes, "heartbeat", Proof(seat.devices, seat.rig), f"{motion}, without our heartbeat")
-    proof = SetpointProof(seat.devices, seat.rig)
-    yield from _shown(seat, notes, "setpoints", proof, f"{motion}, without setpoints")
-    heat = yield from _lease(seat, notes)
-    notes.values["heat"] = heat
-    notes.text = (
-        f"each drive stops by itself without our heartbeat; {', '.join(drive.config.name for drive in proof.watched())}"
-        f" without setpoints; heat: {heat}"
-    )
+    proofs: dict[str, tuple[type[WatchdogProof], str]] = {
+        "heartbeat": (Proof, f"{motion}, without our heartbeat"),
+        "setpoints": (SetpointProof, f"{motion}, without setpoints"),
+    }
+
+    def heat() -> Dialogue:
+        ended = yield from _lease(seat, notes)
+        notes.values["heat"] = ended
+        watched = ", ".join(drive.config.name for drive in SetpointProof(seat.devices, seat.rig).watched())
+        notes.text = f"each drive stops by itself without our heartbeat; {watched} without setpoints; heat: {ended}"
+
+    stages: list[Stage] = []
+    for name, (proof, text) in proofs.items():
+        stages += [partial(_shown, seat, notes, name, proof, text), partial(_seen, name)]
+    yield from in_stages(notes, *stages, heat)
 
 
-def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text: str) -> Dialogue:
-    """Try a watchdog at the person's command, ask what they saw, and record every drive's deadline and report."""
+def _shown(seat: TrialSeat, notes: Notes, name: str, kind: Any, text: str) -> Dialogue:
+    """Try a watchdog at the person's command, and record every drive's deadline and report."""
     yield from press(f"watchdog {name}", text, seat.guarded)
+    proof: WatchdogProof = kind(seat.devices, seat.rig)
     yield from seat.prove(proof)
     for drive in proof.watched():
         entry = (o.CONSUMER_HEARTBEAT, 1) if name == "heartbeat" else (o.RPDO_COMMUNICATION, 5)
@@ -176,6 +185,10 @@ def _shown(seat: TrialSeat, notes: Notes, name: str, proof: WatchdogProof, text:
         }  # fmt: skip
         notes.read(f"{name}: {drive.config.name} stopped by itself", report)
         notes.values.setdefault(name, {})[drive.config.name] = report
+
+
+def _seen(name: str) -> Dialogue:
+    """Ask the person what they saw."""
     seen = yield from choose(f"watchdog {name} seen", "did wheel and belt stand still by themselves?", "yes", "no")
     if seen != "yes":
         raise StepRefused(f"watchdogs: a person saw wheel or belt run on without {name}, which their drives deny")

@@ -15,6 +15,7 @@ from collections import deque
 from collections.abc import Generator
 from dataclasses import dataclass, field
 from datetime import date
+from functools import partial
 from itertools import pairwise
 from math import hypot, inf, isfinite, sqrt
 from statistics import fmean, median
@@ -22,6 +23,7 @@ from typing import Final
 
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, line, measure
+from tester.machine.commission.stages import ONCE_MORE, Stage, in_stages, judged, measured_twice
 
 LEAST_READINGS: Final = 20
 """Fewest readings of the cell for judging whether they have settled [A]: five per quarter."""
@@ -72,6 +74,9 @@ def settled_cell(seat: JogSeat) -> Generator[Waits, str, list[float]]:
 CHANNELS: Final = ("x", "y", "z")
 PLAN: Final = {"z": (50.0, 100.0, 200.0, 300.0, 200.0), "x": (50.0, 100.0, 200.0, 100.0), "y": (50.0, 100.0, 200.0)}
 """Approximate weights, N, by the loaded channel: rising, and one while falling, for hysteresis [A]."""
+CHANNELS_HUNG: Final = tuple(PLAN)
+ASKED_AGAIN: Final = 1.2
+"""A weight off what the cell shows by a greater factor is asked for once more, and no gain is advised from it [A]."""
 AVERAGE_S: Final = 1.0
 """Averaging time of a settled point, s [A]: 0.25 N of noise at 100 readings a second leaves 0.025 N."""
 STILL_N: Final = 0.1
@@ -140,56 +145,118 @@ class HungChannel:
 
 def calibrate(seat: JogSeat, notes: Notes) -> Dialogue:
     """Calibrate every channel with hung weights; raises StepRefused."""
-    weights = yield from line(
-        "weights certificate", "which weights, with which certificate? Force = mass times local gravity (9.78 to 9.83)"
-    )
-    channels: list[HungChannel] = []
-    zero: list[float] = []
-    off = ""
+    hung = _Hung(seat, notes)
+    stages: list[Stage] = [hung.ask_weights]
     for name, plan in PLAN.items():
-        yield from measure(f"hang {name} 0.0", f"{off}F{name}: hang up hook and wire, no weight yet; type 0", "N")
-        zero = yield from settled_cell(seat)
-        channel = HungChannel(name)
-        for about in plan:
-            if about <= seat.rig.limits.load_n:
-                yield from _point(seat, notes, channel, about, zero)
-        channels.append(channel)
-        off = f"F{name}: take the weights off. "
+        first = partial(hung.ask_zero, name)
+        stages.append(first)
+        channel = hung.channels[name]
+        abouts = [about for about in plan if about <= seat.rig.limits.load_n]
+        stages += [partial(hung.ask_point, channel, place, about) for place, about in enumerate(abouts)]
+        stages += [partial(hung.ask_mistyped, channel), judged(first, partial(hung.judge, channel))]
+    yield from in_stages(notes, *stages, hung.ask_off, hung.ask_due, hung.conclude)
+
+
+class _Hung:
+    """The stages of a calibration with hung weights."""
+
+    def __init__(self, seat: JogSeat, notes: Notes) -> None:
+        """Nothing hangs yet."""
+        self.seat, self.notes = seat, notes
+        self.channels = {name: HungChannel(name) for name in PLAN}
+        self.zero: list[float] = []
+        self.weights = self.due = ""
+
+    def ask_weights(self) -> Dialogue:
+        """Ask for the weights' certificate."""
+        self.weights = yield from line(
+            "weights certificate",
+            "which weights, with which certificate? Force = mass times local gravity (9.78 to 9.83)",
+        )
+
+    def _off(self, name: str) -> str:
+        before = CHANNELS_HUNG[CHANNELS_HUNG.index(name) - 1] if name != CHANNELS_HUNG[0] else ""
+        return f"F{before}: take the weights off. " if before else ""
+
+    def ask_zero(self, name: str) -> Dialogue:
+        """Read the cell without a weight."""
+        text = f"{self._off(name)}F{name}: hang up hook and wire, no weight yet; type 0"
+        yield from measured_twice(f"hang {name} 0.0", text, "N", _not_zero)
+        self.zero = yield from settled_cell(self.seat)
+
+    def ask_point(self, channel: HungChannel, place: int, about: float) -> Dialogue:
+        """Ask for a hung force, and read the cell; a force far from what the cell shows is asked for once more."""
+        key = f"hang {channel.name} {about}"
+        what = f"F{channel.name}: hang about {about:g} N, wait until it is still, and type the force of all that hangs"
+        hung = yield from measured_twice(key, what, "N", lambda force: "" if force > 0.0 else "no weight has it")
+        if not hung > 0.0:
+            raise StepRefused(f"a weight of {hung:g} N cannot be hung")
+        mean = yield from settled_cell(self.seat)
+        shown = (mean[0] - self.zero[0], mean[1] - self.zero[1], mean[2] - self.zero[2])
+        most = max(abs(force) for force in shown)
+        if not 1.0 / ASKED_AGAIN <= most / hung <= ASKED_AGAIN:
+            text = (
+                f"{hung:g} N was typed, the cell shows {most:.4g} N. Once more: the force of all that hangs, in newtons"
+                " (kilograms times gravity)?"
+            )
+            hung = yield from measure(f"{ONCE_MORE}{key}", text, "N")
+        del channel.hung_n[place:], channel.shown_n[place:]
+        channel.hung_n.append(hung)
+        channel.shown_n.append(shown)
+        self.notes.read(f"F{channel.name} {about:g} N", {"hung_n": hung, "shown_n": list(shown)})
+
+    def ask_mistyped(self, channel: HungChannel) -> Dialogue:
+        """Ask once more for a weight that does not fit the others."""
         wrong = channel.typed_wrongly()
         if wrong >= 0:
-            yield from _again(notes, channel, wrong)
+            yield from _again(self.notes, channel, wrong)
+
+    def judge(self, channel: HungChannel) -> None:
+        """Raise StepRefused for a channel that is not as the rig file has it, or a weight that does not fit."""
+        wrong = channel.typed_wrongly()
+        if wrong >= 0:
+            answer = channel.answering()
+            raise StepRefused(
+                f"F{channel.name}: the weight typed as {channel.hung_n[wrong]:g} N does not fit the others (it was"
+                f" about {_seems_n(channel, wrong, answer):.1f} N): a weight was typed wrongly, or something bears on"
+                " the cell"
+            )
         _judge(channel)
-    yield from measure(f"hang {channels[-1].name} 0.0", f"{off}Take off hook and wire as well; type 0", "N")
-    due = yield from _due()
-    _conclude(notes, channels, zero, weights, due)
+
+    def ask_off(self) -> Dialogue:
+        """Let the person take everything off."""
+        last = CHANNELS_HUNG[-1]
+        text = f"F{last}: take the weights off. Take off hook and wire as well; type 0"
+        yield from measured_twice(f"hang {last} 0.0", text, "N", _not_zero)
+
+    def ask_due(self) -> Dialogue:
+        """Ask for the last day on which the calibration is valid."""
+        self.due = yield from _due()
+
+    def conclude(self) -> Dialogue:
+        """Report what was found."""
+        _conclude(self.notes, list(self.channels.values()), self.zero, self.weights, self.due)
+        yield from ()
 
 
-def _point(seat: JogSeat, notes: Notes, channel: HungChannel, about: float, zero: list[float]) -> Dialogue:
-    what = f"F{channel.name}: hang about {about:g} N, wait until it is still, and type its force"
-    hung = yield from measure(f"hang {channel.name} {about}", what, "N")
-    if not hung > 0.0:
-        raise StepRefused(f"a weight of {hung:g} N cannot be hung")
-    mean = yield from settled_cell(seat)
-    shown = (mean[0] - zero[0], mean[1] - zero[1], mean[2] - zero[2])
-    channel.hung_n.append(hung)
-    channel.shown_n.append(shown)
-    notes.read(f"F{channel.name} {about:g} N", {"hung_n": hung, "shown_n": list(shown)})
+def _not_zero(typed: float) -> str:
+    return "" if typed == 0.0 else "nothing is to hang: 0 is expected"
+
+
+def _seems_n(channel: HungChannel, wrong: int, answer: int) -> float:
+    """Return the force of a point by the channel's other points, N."""
+    pairs = zip(channel.hung_n, channel.shown_n, strict=True)
+    others = [shown[answer] / force for place, (force, shown) in enumerate(pairs) if place != wrong]
+    return abs(channel.shown_n[wrong][answer] / median(others))
 
 
 def _again(notes: Notes, channel: HungChannel, wrong: int) -> Dialogue:
     """Ask once more for a weight that does not fit the others."""
-    answer = channel.answering()
-    others = [s[answer] / f for i, (f, s) in enumerate(zip(channel.hung_n, channel.shown_n, strict=True)) if i != wrong]
-    typed, seems = channel.hung_n[wrong], abs(channel.shown_n[wrong][answer] / median(others))
+    typed, seems = channel.hung_n[wrong], _seems_n(channel, wrong, channel.answering())
     text = f"F{channel.name}: {typed:g} N was typed, by the other points it was about {seems:.1f} N; what was it?"
     notes.tell(text)
     channel.hung_n[wrong] = yield from measure(f"retype {channel.name} {seems:.6g}", text, "N")
     notes.read(f"F{channel.name} typed again", {"before_n": typed, "hung_n": channel.hung_n[wrong]})
-    if channel.typed_wrongly() >= 0:
-        raise StepRefused(
-            f"F{channel.name}: the weight typed as {typed:g} N does not fit the others (it was about {seems:.1f} N):"
-            " a weight was typed wrongly, or something bears on the cell"
-        )
 
 
 def _judge(channel: HungChannel) -> None:
@@ -206,6 +273,12 @@ def _judge(channel: HungChannel) -> None:
         raise StepRefused(
             f"the sign of the load cell's F{name} is reversed: a weight shows {gain:+.3f} N/N."
             " Swap its signal wires, or its sign at the transmitter"
+        )
+    if not 1.0 / ASKED_AGAIN <= gain <= ASKED_AGAIN:
+        raise StepRefused(
+            f"gain of the load cell's F{name}: {gain:.4g} N shown for each N hung. No setting of a sound cell explains"
+            " that: look at the unit of the weights, at pulley and wire, at the transmitter's full load; the profile"
+            " stays as it is"
         )
     if not abs(gain - 1.0) <= GAIN_SHARE:
         raise StepRefused(

@@ -41,7 +41,7 @@ def test_three_steps_are_done_with_real_keys_and_stand_when_the_screen_is_opened
         await on.asked("begin identify")
         assert "nothing is connected, nothing moves" in on.text() and on.twin.hands is None
         await on.answer_until("jog belt whole read")
-        assert "since the key" in on.text() and "guard, safety chain" in on.text()
+        assert "moved in all" in on.text() and "guard, safety chain" in on.text()
         assert "✔ jog wheel" in on.text() and "▶ jog belt" in on.text() and "▸ jog press" in on.text()
         await on.answer_until("begin jog press")
         assert "3 of 14 steps stand" in on.text()
@@ -192,6 +192,8 @@ def test_a_refused_step_says_what_to_set_in_full(tmp_path: Path) -> None:
     async def act(on: TwinStage) -> None:
         await on.answer_until("jog wheel direction")
         await on.type("rev")
+        await on.asked("again")
+        await on.type("leave")
         await on.ended()
         assert "0x607E" in on.text() and "r continues" in on.text()
 

@@ -34,7 +34,7 @@ def standing(name: str, what: str) -> StepStanding:
 
 READINGS = (
     StepReading("belt speed", 12.344, "mm/s", 2, "has power"),
-    StepReading("since the key", nan, "mm", 2),
+    StepReading("moved in all", nan, "mm", 2),
     StepReading("guard, safety chain", nan, "", 0, "closed"),
     StepReading("Fz, raw", -0.149, "N", 2),
 )
