@@ -67,6 +67,8 @@ class RigSpec:
     """Devices by the names in the rig file's section ``devices``."""
     nodes: tuple[NodeConfig, ...] = ()
     """Further nodes on the CAN bus, which measure."""
+    inputs: frozenset[str] = frozenset()
+    """Channels of sensors and nodes that are safety inputs, by their names in the record."""
     further: tuple[str, ...] = ()
     """Sensors besides the machine's own devices, by the same names."""
 

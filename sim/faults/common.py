@@ -6,16 +6,18 @@ each of them (``rows_of``, ``device_rows``). Budgets are those of docs/safety.md
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import replace
 from enum import Enum
 from functools import partial
 from typing import Final
 
 from drivers.canopen import objects as o
+from drivers.canopen.node_config import NodeConfig
 from sim.faults import cabinet, can, drives, modbus, sensors
 from sim.faults.kinds import Expected, Exposure, FaultKind
 from sim.faults.language import FaultLanguage
+from sim.faults.scene import Effect
 from sim.rig import DeviceSpec, RigSpec, title_of
 
 OVERCURRENT: Final = 0x2310
@@ -105,20 +107,43 @@ def device_rows(
 _OWN_ROWS: Final = "nothing trips without a row of a laboratory's own that looks at it"
 
 
-def further_rows(sensor: str, device: DeviceSpec) -> Iterator[FaultKind]:
-    """Yield the faults of a further sensor; ``sensor``: its name for people."""
-    for row in device_rows(sensor, ALWAYS, 0.0):
-        yield replace(row, reaction=MAY, note=_OWN_ROWS)
-    for signal in device.profile.blocks[0].signals:
-        if signal.name != "status":
-            make = partial(sensors.Shows, sensor, signal.name)
-            yield FaultKind(f"{sensor} shows {signal.name}", make, ALWAYS, MAY, unit="", value=signal.greatest,
-                            note=_OWN_ROWS)  # fmt: skip
+INPUT_S: Final = 0.25 + SCAN_S
+"""Time to notice a safety input that opened, or whose device fell silent, s."""
+
+
+def further_rows(sensor: str, device: DeviceSpec, inputs: Container[str] = ()) -> Iterator[FaultKind]:
+    """Yield the faults of a further sensor; ``sensor``: its name for people, ``inputs``: channels that must stay
+    closed.
+    """
+    names = {name: device.channels.get(name, name) in inputs for name in device.profile.channels}
+    for row in device_rows(sensor, DRIVES if any(names.values()) else ALWAYS, INPUT_S):
+        yield row if any(names.values()) else replace(row, reaction=MAY, budget_s=0.0, note=_OWN_ROWS)
+    for name, is_input in names.items():
+        yield _shows(sensor, name, partial(sensors.Shows, sensor, name), is_input, device.profile.signal(name).greatest)
+
+
+def _shows(part: str, channel: str, make: Callable[[float], Effect], is_input: bool, value: float) -> FaultKind:
+    """Return the fault of a channel that shows another number: a safety input opens."""
+    phrase = f"{part} shows {channel}"
+    if is_input:
+        return FaultKind(phrase, make, DRIVES, TRIP, INPUT_S, unit="", value=0.0)
+    return FaultKind(phrase, make, ALWAYS, MAY, unit="", value=value, note=_OWN_ROWS)
+
+
+def node_rows(node: NodeConfig, inputs: Container[str]) -> Iterator[FaultKind]:
+    """Yield the faults of a further CANopen node."""
+    title = title_of(node.name)
+    known = [name in inputs for name in node.channels]
+    lost = FaultKind(f"{title} without supply", partial(sensors.node_off, title), DRIVES, TRIP, INPUT_S)
+    yield lost if any(known) else replace(lost, exposure=ALWAYS, reaction=MAY, budget_s=0.0, note=_OWN_ROWS)
+    for name, is_input in zip(node.channels, known, strict=True):
+        yield _shows(title, name, partial(sensors.NodeShows, title, name), is_input, node.channels[name].simulated)
 
 
 def with_sensors(language: FaultLanguage, spec: RigSpec) -> FaultLanguage:
-    """Return a machine's language with the faults of a wiring's further sensors."""
-    rows = (row for name in spec.further for row in further_rows(title_of(name), spec.devices[name]))
+    """Return a machine's language with the faults of a wiring's further sensors and nodes."""
+    rows = [row for name in spec.further for row in further_rows(title_of(name), spec.devices[name], spec.inputs)]
+    rows += [row for node in spec.nodes for row in node_rows(node, spec.inputs)]
     return replace(language, catalogue={row.phrase: row for row in rows} | dict(language.catalogue))
 
 

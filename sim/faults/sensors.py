@@ -11,8 +11,10 @@ from typing import Final, cast
 
 from sim.faults.scene import Effect, Scene, switched
 from sim.nodes.controller_slave import ControllerSlave, TemperatureSource
+from sim.nodes.sensor_node import SimulatedSensorNode
 from sim.nodes.sensor_slave import FORCES, CellSlave, ForceSource, IrSlave, Quantity, SensorSlave, SurfaceSource
 from sim.noise import NormalStream
+from sim.rig import title_of
 
 SLOW: Final = ("lag", "delay")
 CROSSED: Final = ("exchanged x z", "reversed x", "reversed y", "reversed z")
@@ -41,6 +43,32 @@ class Shows(Effect):
 
     def _slave(self, scene: Scene) -> SensorSlave:
         return cast("SensorSlave", scene.rig.slave(self._sensor))
+
+
+class NodeShows(Effect):
+    """One channel of a further CANopen node shows a fixed number in place of its own."""
+
+    def __init__(self, node: str, channel: str, value: float) -> None:
+        """Take the node's name for people, the channel's, and the number in the channel's unit."""
+        self._node, self._channel, self._value = node, channel, value
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Replace the channel's value."""
+        _node(scene, self._node).show({self._channel: self._value})
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Show what is configured again."""
+        _node(scene, self._node).show({})
+
+
+@switched
+def node_off(scene: Scene, on: bool, now: float, node: str) -> None:
+    """A further CANopen node has no supply."""
+    _node(scene, node).power(not on)
+
+
+def _node(scene: Scene, title: str) -> SimulatedSensorNode:
+    return next(node for node in scene.rig.nodes if title_of(node.config.name) == title)
 
 
 class Slow:

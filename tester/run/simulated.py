@@ -63,6 +63,7 @@ def spec_of(rig: Rig) -> RigSpec:
         devices={name: _device(config, closed) for name, config in rig.devices.items()},
         nodes=tuple(_node(node, closed) for node in rig.can.nodes.values()),
         further=tuple(further_sensors(rig)),
+        inputs=closed,
     )
 
 

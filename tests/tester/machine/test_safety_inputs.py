@@ -9,10 +9,13 @@ from typing import Any, Final
 
 import pytest
 
+from sim.faults.common import SCAN_S, TRIP, further_rows, node_rows
+from sim.faults.scene import Scene
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig, load_rig_text
 from tester.machine.safety_inputs import InputStates
 from tester.machine.state import Mode
+from tester.run.simulated import spec_of
 from tests.tester.kinds.specimen_on_track.bench import TrackBench
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, Simulation
 
@@ -127,6 +130,45 @@ def test_a_module_that_falls_silent_trips_by_the_name_of_its_inputs() -> None:
     at = bench.now
     bench.until(lambda one: one.run.engine.control.state.trip is not None, at + 1.0)
     assert bench.run.engine.control.state.trip.name == "limiter" and bench.now - at < 0.5
+
+
+TRIPPED: Final = {
+    "io shows di_0": "light curtain",
+    "io shows di_4": "water",
+    "io silent": "light curtain",
+    "io without supply": "light curtain",
+    "inputs shows limiter_closed": "limiter",
+    "inputs shows air_closed": "air",
+    "inputs without supply": "limiter",
+}
+"""Faults of the catalogue, and the input that is named first."""
+
+
+class Unattended:
+    """A computer that nothing happens to."""
+
+    def stall(self, seconds: float) -> None: ...
+
+    def kill(self) -> None: ...
+
+    def jump(self, seconds: float) -> None: ...
+
+    def operate(self, action: str) -> None: ...
+
+
+@pytest.mark.parametrize("kind", ["wheel", "track"])
+@pytest.mark.parametrize("phrase", TRIPPED)
+def test_each_of_the_catalogue_s_faults_trips_in_its_time(kind: str, phrase: str) -> None:
+    bench: Any = wheel() if kind == "wheel" else track()
+    bench.until(lambda one: one.run.engine.control.state.mode is Mode.RUN, 300.0)
+    spec = spec_of(bench.run.engine.ctx.rig)
+    rows = {row.phrase: row for row in (*further_rows("io", spec.devices["io"], spec.inputs),
+                                        *node_rows(spec.nodes[0], spec.inputs))}  # fmt: skip
+    at = bench.now
+    rows[phrase].effect().begin(Scene(bench.world, Unattended()), at)
+    bench.until(lambda one: one.run.engine.control.state.trip is not None, at + 2.0)
+    assert bench.run.engine.control.state.trip.name == TRIPPED[phrase]
+    assert rows[phrase].reaction is TRIP and bench.now - at <= rows[phrase].budget_s + SCAN_S
 
 
 def test_the_file_reads_back_as_the_same() -> None:
