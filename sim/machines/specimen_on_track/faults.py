@@ -93,7 +93,7 @@ def _device_rows() -> Iterator[FaultKind]:
                     slow=True, note="seen by its reading, 10 K from the setpoint after it was there, or at its range")
     yield FaultKind("chamber sensor open", partial(SensorFault, "chamber", "open"), TEMPERED, TRIP, 3.0 + SCAN_S)
     yield FaultKind("chamber sensor frozen", partial(SensorFault, "chamber", "frozen"), TEMPERED, MAY, slow=True,
-                    note="seen at full output; an output that comes up slowly is its own limiter's")
+                    note="seen by output without effect: at its setpoint it asks for none")
     yield FaultKind("chamber sensor offset", partial(SensorFault, "chamber", "offset"), TEMPERED, MAY, unit="K",
                     value=-10.0, slow=True, note="one sensor alone: nothing in the chamber contradicts it")
     yield FaultKind("load cell frozen", partial(_CELL, "frozen"), SLIDING, TRIP, 2.0 + SCAN_S,

@@ -17,7 +17,7 @@ from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.mode_commands import bounded
 from tester.machine.safety_inputs import table_on
 from tester.machine.standstill import StandstillControl
-from tester.machine.state import ControlState
+from tester.machine.state import ControlState, Mode
 
 ARRIVED_K = 2.0
 """The air has reached the chamber's setpoint within this difference, K [A]."""
@@ -28,6 +28,8 @@ OUTPUT_S = 30.0
 FULL_PERCENT = 90.0
 MOVED_K = 0.3
 """Output that counts as full, and a change of the air beyond the noise of its reading [A]."""
+USUAL_S = 600.0
+"""Time in which an output becomes the usual one of an air that stays as it is, s [A]: walls take so long."""
 LATE_S = 0.1
 """Longest time from the end of a row's delay to its trip, s: two slow scans."""
 
@@ -76,19 +78,29 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
             return
         out = self.state.setpoints
         if not out.chamber:
-            view.arrived_c = view.full_since_s = inf
-            view.chamber_mean_percent = 0.0
+            view.arrived_c = view.full_c = inf
+            view.chamber_mean_percent = view.unanswered_s = 0.0
             view.off_since_s = min(view.off_since_s, r.now_s) if r.chamber_percent != 0.0 else inf
             return
         view.off_since_s = inf
         if r.chamber_percent == r.chamber_percent:
             view.chamber_mean_percent += (r.chamber_percent - view.chamber_mean_percent) * min(dt / OUTPUT_S, 1.0)
-        if -FULL_PERCENT < view.chamber_mean_percent < FULL_PERCENT:
-            view.full_since_s = inf
-        elif view.full_since_s == inf or abs(r.air_c - view.full_c) > MOVED_K:
-            view.full_c, view.full_since_s = r.air_c, r.now_s
+        self._look_at_answer(view, r, dt)
         if view.arrived_c != out.chamber_c:
             view.arrived_c = out.chamber_c if abs(r.air_c - out.chamber_c) <= ARRIVED_K else inf
+
+    def _look_at_answer(self, view: TrackInputs, r: TrackReadings, dt: float) -> None:
+        """Add up the output that has not moved the air: full output, or what is more than usual for this air."""
+        percent = view.chamber_mean_percent
+        full = not -FULL_PERCENT < percent < FULL_PERCENT
+        if view.full_c == inf or abs(r.air_c - view.full_c) > MOVED_K:
+            # The first output finds an air at rest: all of it counts.
+            view.usual_percent = 0.0 if view.full_c == inf else percent
+            view.full_c, view.excess_s, view.full_s = r.air_c, 0.0, 0.0
+        view.excess_s += 0.01 * (percent - view.usual_percent) * dt
+        view.usual_percent += (percent - view.usual_percent) * min(dt / USUAL_S, 1.0)
+        view.full_s = view.full_s + dt if full else 0.0
+        view.unanswered_s = max(view.full_s, abs(view.excess_s))
 
     def detail(self, readings: TrackReadings) -> str:
         """Return force, speed, place of the arm and temperature of the air."""
@@ -153,7 +165,10 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         lift_mm = self.view.readings.lift_mm
         if isfinite(lift_mm):
             self.state.setpoints.lift_mm = lift_mm
-        self.view.stop_start.speed_m_s = self._speed_m_s()
+        start, limits = self.view.stop_start, self.view.limits
+        start.speed_m_s = self._speed_m_s()
+        rate_m_s2 = limits.deceleration_m_s2 if self.state.mode is Mode.STOPPING else limits.quick_stop_m_s2
+        start.ramp_until_s = self.view.readings.now_s + abs(self.state.setpoints.track_m_s) / rate_m_s2
 
     def note_fast_stop(self) -> None:
         """Record the track's speed at the start of its quick stop."""
@@ -165,8 +180,11 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         return min(speed, most) if isfinite(speed) else most
 
     def motion_over(self) -> bool:
-        """Return whether the track is known to stand; the arm stays where it is."""
-        return standing(self.view)
+        """Return whether the track is known to stand; the arm stays where it is.
+
+        A speed that reads 0 before the commanded one can have been ramped down is that of a drive that repeats itself.
+        """
+        return standing(self.view) and self.view.readings.now_s >= self.view.stop_start.ramp_until_s
 
     def stop_ended(self) -> bool:
         """Return whether the track is at rest with the chamber off, or the stop has timed out ("stop not ended")."""
@@ -177,7 +195,7 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         # After this time the row "chamber not off" has tripped, and the chamber's lease ends its output.
         off = not view.limits.chamber or view.readings.chamber_percent == 0.0
         late = since_s > view.parameters[CHAMBER_OFF_S] + LATE_S
-        return standing(view) and (off or late)
+        return self.motion_over() and (off or late)
 
 
 def _limits(rig: TrackConfig) -> TrackLimits:

@@ -119,15 +119,16 @@ RUNAWAY: Final[Row] = Interlock(
 )
 
 FROZEN_AIR_S: Final = Parameter(
-    "frozen_air_s", "s", "120 s", "full output of the chamber has not moved the air by 0.3 K for this long [A]",
+    "frozen_air_s", "s", "120 s", "so much full output, or more output than usual, has not moved the air by 0.3 K [A]",
     hardest="240 s", because="from 23 degC full output gains 14 K in that time",
 )  # fmt: skip
 
 AIR_FROZEN: Final[Row] = Interlock(
     name="air sensor frozen",
-    cause="the chamber heats or cools with full output, and its sensor shows no effect",
-    watch=at_most("air unchanged at full output for {}", lambda v: v.readings.now_s - v.full_since_s, FROZEN_AIR_S),
-    applies=lambda v: v.full_since_s < inf,
+    cause="the chamber heats or cools, and its sensor shows no effect",
+    watch=at_most("air unchanged by {} of full output, or as much beyond the usual", lambda v: v.unanswered_s,
+                  FROZEN_AIR_S),
+    applies=lambda v: v.full_c < inf,
     ends_lease=True,
     reaction=CONTROLLED,
 )

@@ -95,6 +95,8 @@ class TrackStopStart:
 
     speed_m_s: float = 0.0
     fast_speed_m_s: float = 0.0
+    ramp_until_s: float = -inf
+    """Time until which the ramp from the last commanded speed lasts."""
 
 
 @dataclass(slots=True)
@@ -115,8 +117,13 @@ class TrackInputs(ScanInputs):
     chamber_mean_percent: float = 0.0
     """Output of the chamber, filtered over ``OUTPUT_S``."""
     full_c: float = inf
-    full_since_s: float = inf
-    """The air's reading, and the time, since which full output has not moved it; infinite without full output."""
+    """The air's reading since which no output has moved it; infinite in standby."""
+    usual_percent: float = 0.0
+    """The output that keeps the air there."""
+    full_s: float = 0.0
+    excess_s: float = 0.0
+    unanswered_s: float = 0.0
+    """Since then: time at full output, output beyond the usual one as time at full output, and the greater of both."""
     off_since_s: float = inf
     """Time since which the chamber, commanded to standby, has given output; infinite while it gives none."""
 

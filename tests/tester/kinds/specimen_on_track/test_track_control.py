@@ -119,6 +119,18 @@ def test_a_stop_leaves_the_arm_where_it_is_and_the_chamber_off(sliding: TrackBen
     assert chamber is not None and not chamber.running and sliding.world.track_m_s == 0.0
 
 
+def test_a_speed_that_reads_zero_ends_no_stop_before_its_ramp_can_be_over() -> None:
+    bench = TrackBench("pin-on-disc").phase("settle")
+    control = bench.run.engine.control
+    assert control.motion_over()
+    control.state.setpoints.track_m_s = 0.3
+    control.note_stop()
+    assert not control.motion_over()
+    readings = control.view.readings
+    readings.now_s = readings.track_at_s = control.view.stop_start.ramp_until_s
+    assert control.motion_over()
+
+
 def test_a_stop_while_the_arm_comes_down_stops_it_there() -> None:
     bench = TrackBench("grosch").until(lambda one: 2.0 < one.world.lift_mm < 8.0, 200.0)
     place_mm = bench.world.lift_mm
@@ -156,3 +168,22 @@ def test_full_output_that_does_not_move_the_air_is_a_frozen_sensor(
         control.look(demand, readings, 0.1, 0.1)
         seen = seen or "air sensor frozen" in held(sliding)
     assert seen is trips
+
+
+@pytest.mark.parametrize(("rise_percent", "trips"), [(0.0, False), (60.0, True), (-60.0, True)])
+def test_output_that_rises_without_effect_is_a_frozen_sensor_and_a_steady_one_is_none(
+    sliding: TrackBench, rise_percent: float, *, trips: bool
+) -> None:
+    control = sliding.run.engine.control
+    readings, demand, view = control.view.readings, control.view.demand, control.view
+    control.state.setpoints.chamber = True
+    readings.air_c, readings.chamber_percent = 80.0, 20.0
+    view.chamber_mean_percent = view.usual_percent = 20.0
+    view.full_c, view.excess_s, view.full_s = 80.0, 0.0, 0.0
+    most_s = 0.0
+    for scan in range(12000):
+        readings.now_s += 0.1
+        readings.chamber_percent = 20.0 + rise_percent * scan / 12000
+        control.look(demand, readings, 0.1, 0.1)
+        most_s = max(most_s, view.unanswered_s)
+    assert (most_s > 120.0) is trips
