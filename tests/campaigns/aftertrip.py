@@ -45,7 +45,14 @@ ENDING, ENDING_SHARE = ("stopping", "cooldown"), 0.3
 """Modes of a stop in which so many of the cases begin; in half of these nothing else begins one."""
 GOING = frozenset({"run", "hold", "armed"})
 DATA = ("statusword", "reading", "torque", "feedback", "inputs")
-SENSORS = {"wheel_on_belt": ("load cell", "thermometer", "hub sensor"), "specimen_on_track": ("load cell",)}
+SENSORS = {
+    "wheel_on_belt": ("load cell", "thermometer", "hub sensor"), "specimen_on_track": ("load cell", "chamber sensor"),
+}  # fmt: skip
+STUCK = {
+    "wheel_on_belt": ("jacket output stuck on", "jacket output stuck off", "contactor welded", "contactor dead"),
+    "specimen_on_track": ("chamber runs away",),
+}  # fmt: skip
+"""Outputs, and a contactor with its feedback, that stay as they are."""
 RUNAWAYS = {
     "wheel": ("wheel runs away", 10.0, "rad/s"), "belt": ("belt runs away", 0.5, "m/s"),
     "track": ("track overspeeds", 5.0, "mm/s"),
@@ -185,7 +192,7 @@ def cases(kind: str, moments: Sequence[Moment], count: int, seed: int, axes: Ite
     io = "press" if kind == "wheel_on_belt" else "track"
     frozen = [f"{axis} drive {what} frozen" for axis in axes for what in DATA[:3]]
     frozen += [f"{axis} drive feedback frozen" for axis in axes if axis not in ("sideslip", "camber")]
-    frozen += [f"{io} drive inputs frozen", *(f"{name} frozen" for name in SENSORS[kind])]
+    frozen += [f"{io} drive inputs frozen", *(f"{name} frozen" for name in SENSORS[kind]), *STUCK[kind]]
     ending = [moment for moment in moments if moment.step.endswith(ENDING)]
     while count:
         what = chooser.choice(frozen)

@@ -11,7 +11,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from sim.machines.wheel_on_belt.faults import CATALOGUE
-from tests.campaigns.faults import every_scan, first_up, late_scans, limits, magnitudes, second_stops, track
+from tests.campaigns.faults import (
+    every_scan,
+    first_up,
+    late_scans,
+    limits,
+    magnitudes,
+    second_stops,
+    track,
+    track_limits,
+)
 from tests.campaigns.faults.campaign import (
     PAIRS,
     Tally,
@@ -88,7 +97,7 @@ def main(arguments: list[str] | None = None) -> int:
                         help="faults of --limits with this text; may be repeated")
     parser.add_argument("--cases", type=int, default=limits.CASES, metavar="N", help="cases of --limits")
     parser.add_argument("--kind", choices=("wheel_on_belt", "specimen_on_track"), default="wheel_on_belt",
-                        help="of machine (wheel_on_belt); the second has --sample, --full and --list")
+                        help="of machine (wheel_on_belt)")
     options = parser.parse_args(arguments)
     if not (options.full or options.limits or options.magnitudes or options.mutants or options.list or options.sample):
         parser.error("one of --full, --sample, --limits, --magnitudes, --mutants, --list is asked for")
@@ -122,10 +131,15 @@ def on_track(options: argparse.Namespace) -> int:
         for row in track.CATALOGUE.values():
             print(f"{row.phrase}: {row.reaction.value}; within {row.budget_s:g} s, {row.exposure.value}")
         return 0
-    if options.limits or options.magnitudes or options.mutants:
-        print("a specimen on a track has --sample, --full and --list")
-        return 2
+    if options.mutants:
+        from tests.campaigns.faults import mutants
+
+        return mutants.main(options.jobs, mutants.TRACK_MUTANTS, mutants.TRACK)
     report, effort = Report(), Effort()
+    if options.limits or options.magnitudes:
+        track_at_limits(report, options)
+        print(f"{len(report.missed)} figures missed" if report.missed else "every figure met")
+        return 1 if report.missed else 0
     moments = rehearsals(track.GRID)
     cases = [one for one in all_cases(moments, track.FAULTS) if track.fits(one[0].recipe, one[1][0])]
     report.figure("faults in the catalogue", len(track.FAULTS), ">= 40", len(track.FAULTS) >= 40)
@@ -143,6 +157,28 @@ def on_track(options: argparse.Namespace) -> int:
     print(f"     processor time: {effort.used_s:.0f} s", flush=True)
     print(f"{len(report.missed)} figures missed" if report.missed else "every figure met")
     return 1 if report.missed else 0
+
+
+def track_at_limits(report: Report, options: argparse.Namespace) -> None:
+    """Run the corners of a track without a fault, then every fault in them, or those with a range at its quarters."""
+    names = track_limits.SHORT_CORNERS if options.sample else [n for n in track_limits.CORNERS if options.only in n]
+    fine = list(track_limits.fault_free(names))
+    for one in fine:
+        print(f"     {one.name}: {one.outcome}; {'; '.join(one.wrong) or 'well'}", flush=True)
+    wrong = [one for one in fine if one.wrong or one.outcome != "done"]
+    report.figure("track limits: corners without a fault that trip, harm or miss a row", len(wrong), "0", not wrong)
+    whole = track_limits.CASES if options.cases == limits.CASES else options.cases
+    count = track_limits.SHORT_CASES if options.sample else whole
+    faults = track_limits.magnitudes() if options.magnitudes else track.FAULTS
+    tally = track_limits.attempt(fine, count, options.jobs, faults)
+    held = [v for v in tally.unsafe if any(row.covers(v) for row in track_limits.HARDWARE)]
+    outside = [v for v in tally.unsafe if v not in held]
+    report.figure("track limits: cases", len(tally.verdicts), ">= 1", bool(tally.verdicts))
+    report.figure("track limits: unsafe, held by hardware", len(held), "written list", True)
+    report.figure("track limits: unsafe outside the list", len(outside), "0", not outside)
+    late = [] if options.magnitudes else tally.late
+    report.figure("track limits: reaction budgets missed", len(late), "0", not late)
+    report.causes(Tally("track limits", [*outside, *late]), options.causes)
 
 
 def short(report: Report, jobs: int, most: int) -> None:

@@ -15,7 +15,7 @@ import shutil
 import subprocess
 import sys
 import unittest
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import redirect_stdout
 from dataclasses import dataclass
@@ -26,6 +26,10 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from tests.campaigns.faults.first_up import FIRST
+from tests.campaigns.faults.track import FAULTS as TRACK_FAULTS
+from tests.campaigns.faults.track import FIRST as TRACK_FIRST
+from tests.campaigns.faults.track import GRID as TRACK_GRID
+from tests.campaigns.faults.track import fits
 
 ROOT = Path(__file__).resolve().parents[3]
 COPIED = ("tester", "drivers", "sim", "recipes", "tests")
@@ -34,19 +38,25 @@ ASKED_FOR = 0.9
 SHORT_CASES, PROBED = 90, 420
 """Cases of the short recipe, and of the three of the grid."""
 FIRST_CONTACT = "tests/tester/kinds/wheel_on_belt/procedures/test_first_contact.py"
+AFTER_TRIP, AFTER_TRIP_CASES = "after a trip", 110
+"""In place of an interlock: cases of tests.campaigns.aftertrip are tried first."""
 BATCH = 70
 """Cases between two looks at the result: each batch runs its recipes anew."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """One bug: a text in a file, replaced by another; ``row`` is the interlock it concerns, looked at first."""
+    """One bug: a text in a file, replaced by another; ``row`` is the interlock it concerns, looked at first.
+
+    ``kind``: of machine, whose campaign hunts it.
+    """
 
     name: str
     path: str
     old: str
     new: str
     row: str = ""
+    kind: str = "wheel_on_belt"
 
 
 _CONTROL, _STOPS = "tester/machine/control.py", "tester/kinds/wheel_on_belt/control/stop_modes.py"
@@ -57,10 +67,16 @@ _LOAD, _HUB = "tester/kinds/wheel_on_belt/interlocks/load.py", "tester/kinds/whe
 _CONTACT = "tester/kinds/wheel_on_belt/procedures/first_contact.py"
 
 
-def _masked(name: str) -> Mutant:
+def _masked(name: str, kind: str = "wheel_on_belt") -> Mutant:
     """Return the mutant in which a row of the table is never evaluated."""
     old = "for row in table.rows if row.when is when)"
-    return Mutant(f"row masked: {name}", _TABLE, old, f"{old[:-1]} and row.name != {name!r})", name)
+    return Mutant(f"row masked: {name}", _TABLE, old, f"{old[:-1]} and row.name != {name!r})", name, kind)
+
+
+def _powered(kind: str) -> Mutant:
+    """Return the mutant in which no drive loses its voltage half a second after a stop."""
+    old = "        out.voltage_off = now - state.unwanted_s > VOLTAGE_S\n"
+    return Mutant("voltage stays after a stop", _CONTROL, old, "        out.voltage_off = False\n", AFTER_TRIP, kind)
 
 
 BY_HAND: tuple[Mutant, ...] = (
@@ -127,7 +143,26 @@ BY_HAND: tuple[Mutant, ...] = (
 """Bugs by hand; each row of the interlock table that is the first cause of something is masked besides."""
 
 MASKED = tuple(_masked(name) for name in dict.fromkeys(row.interlock for row in FIRST))
-MUTANTS = (*BY_HAND, *MASKED)
+TRACK = "specimen_on_track"
+_T_ROWS, _T_CONTROL = "tester/kinds/specimen_on_track/interlocks", "tester/kinds/specimen_on_track/control.py"
+TRACK_BY_HAND: tuple[Mutant, ...] = (
+    _powered(TRACK),
+    Mutant("output without effect is not added up", _T_CONTROL,
+           "        view.unanswered_s = max(view.full_s, abs(view.excess_s))\n", "        view.unanswered_s = 0.0\n",
+           "air sensor frozen", TRACK),
+    Mutant("a runaway chamber passes", f"{_T_ROWS}/chamber.py",
+           "abs(v.readings.air_c - v.arrived_c), RUNAWAY_K", "v.readings.air_c - v.arrived_c - 1e3, RUNAWAY_K",
+           "chamber runaway", TRACK),
+    Mutant("a unit factor 1000: late scans", _WIRES,
+           "lambda v: v.late_s, LATE_SCAN_S", "lambda v: 1e-3 * v.late_s, LATE_SCAN_S", "scan late", TRACK),
+    Mutant("stale accepted: drives", _WIRES, "return allowed if allowed < most else most", "return 1e9",
+           "drive data stale", TRACK),
+)  # fmt: skip
+"""Bugs of the second kind's control by hand."""
+MUTANTS = (*BY_HAND, _powered("wheel_on_belt"), *MASKED)
+TRACK_MUTANTS = (
+    *TRACK_BY_HAND, *(_masked(name, TRACK) for name in dict.fromkeys(row.interlock for row in TRACK_FIRST))
+)  # fmt: skip
 
 
 def copy_tree(to: Path) -> None:
@@ -146,31 +181,36 @@ def apply(mutant: Mutant, tree: Path) -> None:
     path.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
 
 
-def hunt(mutant: Mutant | None) -> tuple[str, str]:
-    """Hunt a mutant (or the unchanged tree) in a copy; return its name and what noticed it ("" if nothing)."""
+def hunt(mutant: Mutant | None, kind: str = "wheel_on_belt") -> tuple[str, str]:
+    """Hunt a mutant, or the unchanged tree with a kind's campaign, in a copy.
+
+    Return its name and what noticed it ("" if nothing).
+    """
     with TemporaryDirectory() as folder:
         tree = Path(folder)
         copy_tree(tree)
         if mutant is not None:
             apply(mutant, tree)
         environment = {**os.environ, "PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
-        row = mutant.row if mutant is not None else ""
+        row, kind = (mutant.row, mutant.kind) if mutant is not None else ("", kind)
         done = subprocess.run(
-            [sys.executable, "-m", "tests.campaigns.faults.mutants", "--probe", "--row", row],
+            [sys.executable, "-m", "tests.campaigns.faults.mutants", "--probe", "--row", row, "--kind", kind],
             cwd=tree, env=environment, capture_output=True, text=True, check=False,
         )  # fmt: skip
     said = (done.stdout.strip() or done.stderr.strip()).splitlines()
     return mutant.name if mutant is not None else "unchanged", (said[-1] if said else "?") if done.returncode else ""
 
 
-def probe(row: str = "") -> str:
+def probe(row: str = "", kind: str = "wheel_on_belt") -> str:
     """Return what is wrong with the tree this runs in, "" if nothing is found.
 
     An interlock's faults are tried first where one is given, else what is quick.
     """
     from tests.campaigns.faults.recipes import GRID
 
-    found = _rows(row) if row else ""
+    found = _after_trip(kind) if row == AFTER_TRIP else _rows(row, kind) if row else ""
+    if kind == TRACK:
+        return found or _rows(kind=kind) or _recipes(TRACK_GRID, SHORT_CASES, TRACK_FAULTS) or _after_trip(kind)
     return (
         found
         or _recipes(("short",), SHORT_CASES)
@@ -182,19 +222,28 @@ def probe(row: str = "") -> str:
     )
 
 
-def _rows(only: str = "") -> str:
+def _after_trip(kind: str) -> str:
+    """See that after trips every axis loses its power."""
+    from tests.campaigns.aftertrip import SAMPLE, judged
+
+    with redirect_stdout(StringIO()) as said:
+        met = judged(kind, SAMPLE[kind], AFTER_TRIP_CASES, 29)
+    return "" if met else said.getvalue().strip().splitlines()[-1].strip()
+
+
+def _rows(only: str = "", kind: str = "wheel_on_belt") -> str:
     """See that rows of the interlock table are the first cause of their faults."""
     from tests.campaigns.faults.first_up import conduct
 
-    rows = [row for row in FIRST if only in ("", row.interlock)]
+    rows = [row for row in (TRACK_FIRST if kind == TRACK else FIRST) if only in ("", row.interlock)]
     for row, cause in conduct(rows).items():
         if cause != row.interlock:
             return f"{row.faults[0]}: tripped by {cause or 'nothing'}, not by {row.interlock}"
     return ""
 
 
-def _recipes(names: Iterable[str], count: int) -> str:
-    """Run recipes to their end, and a sample of ``count`` cases of them."""
+def _recipes(names: Iterable[str], count: int, faults: Sequence[str] = ()) -> str:
+    """Run recipes to their end, and a sample of ``count`` cases of them; ``faults``: () is all of the wheel's."""
     from tests.campaigns.faults.campaign import all_cases, conduct, faults_of_campaign, sample
     from tests.campaigns.faults.moments import Moment, rehearse
 
@@ -206,7 +255,8 @@ def _recipes(names: Iterable[str], count: int) -> str:
         if stage.observer.found or stage.invariants.broken:
             return f"{recipe}: {stage.observer.found or stage.invariants.broken}"
         moments += found
-    cases = sample(all_cases(moments, faults_of_campaign(everything=True)), count)
+    tried = all_cases(moments, faults or faults_of_campaign(everything=True))
+    cases = sample([one for one in tried if not faults or fits(one[0].recipe, one[1][0])], count)
     for start in range(0, len(cases), BATCH):
         tally = conduct("probe", cases[start : start + BATCH])
         if tally.failed:
@@ -239,10 +289,10 @@ def _stateful() -> str:
     return f"stateful test: {problems[0].strip().splitlines()[-1]}" if problems else ""
 
 
-def main(jobs: int = 1, mutants: Iterable[Mutant] = MUTANTS) -> int:
+def main(jobs: int = 1, mutants: Iterable[Mutant] = MUTANTS, kind: str = "wheel_on_belt") -> int:
     """Hunt every mutant; print each and the figure; return 1 when too few are killed."""
     chosen = list(mutants)
-    _, wrong = hunt(None)
+    _, wrong = hunt(None, kind)
     if wrong:
         print(f"MISS the unchanged tree: {wrong}", flush=True)
         return 1
@@ -261,9 +311,11 @@ if __name__ == "__main__":
     parser.add_argument("--probe", action="store_true", help="look for anything wrong with the tree this runs in")
     parser.add_argument("--row", default="", metavar="NAME", help="the interlock to look at first")
     parser.add_argument("--only", default="", metavar="TEXT", help="mutants whose name has this text")
+    parser.add_argument("--kind", choices=("wheel_on_belt", TRACK), default="wheel_on_belt")
     options = parser.parse_args()
     if options.probe:
-        found = probe(options.row)
+        found = probe(options.row, options.kind)
         print(found)
         sys.exit(1 if found else 0)
-    sys.exit(main(1, [mutant for mutant in MUTANTS if options.only in mutant.name]))
+    hunted = TRACK_MUTANTS if options.kind == TRACK else MUTANTS
+    sys.exit(main(1, [mutant for mutant in hunted if options.only in mutant.name], options.kind))
