@@ -139,6 +139,7 @@ class TemperatureController(Device):
             lease = profile.writes["lease"]
             self.add_write("off-line time", lease.address, lease.words(lease_s, profile.order), read_back=True)
         self.begin()
+        self._lasting = [step for step in self._lasting if step.request.address != self._register.address]
 
     def set_setpoint(self, celsius: float) -> None:
         """Ask for a temperature, in degC, kept inside the profile's bounds; call it in every scan.

@@ -29,6 +29,8 @@ class SetupStep:
     """Time from the first answer within which the registers must hold it, s."""
     mask: int = 0
     """Bits of the content that count; 0 = all."""
+    lasts: bool = False
+    """Whether the registers hold it for as long as the device is used."""
 
     def holds(self, data: bytes) -> bool:
         """Return whether the registers read hold what is expected."""
@@ -64,6 +66,8 @@ class Device(ABC):
         for number, poll in enumerate(self._polls):
             poll.block = number
         self._steps: list[SetupStep] = []
+        self._lasting: list[SetupStep] = []
+        """Steps of registers that hold what was set up for as long as the device is used."""
         self._step = 0
         self._waits_until_s = inf
         """Time at which the present step gives up; infinity until its first answer."""
@@ -83,7 +87,8 @@ class Device(ABC):
         identity = self.profile.identity
         if identity is not None:
             request = self.link.read(self.station, identity.function, identity.address, 1)
-            self._steps.insert(0, SetupStep("device type", request, identity.value.to_bytes(2, "big")))
+            self._steps.insert(0, SetupStep("device type", request, identity.value.to_bytes(2, "big"), lasts=True))
+        self._lasting = [step for step in self._steps if step.lasts]
         if not self._steps:
             self._steps.append(SetupStep("first reading", self._polls[0]))
         self.link.enable(self._steps[0].request)
@@ -108,19 +113,41 @@ class Device(ABC):
             self._steps.append(SetupStep(setup.name, write))
         if setup.read_back:
             read = self.link.read(self.station, setup.read, setup.address, setup.count)
-            self._steps.append(SetupStep(setup.name, read, setup.expected, setup.within_s, setup.mask))
+            lasts = setup.lasts or (setup.writes and not setup.within_s)
+            self._steps.append(SetupStep(setup.name, read, setup.expected, setup.within_s, setup.mask, lasts))
 
     def received(self, request: Request, data: bytes, t: float) -> None:
         """Process a good reply that arrived at ``t`` s: continue the set-up, or update the readings."""
-        if not self.ready and request is self._steps[self._step].request:
-            self._proceed(self._steps[self._step], data, t)
+        if not self.ready:
+            if request is self._steps[self._step].request:
+                self._proceed(self._steps[self._step], data, t)
+        elif request.block < 0:
+            self._look_again(request, data, t)
         if request.block >= 0:
             self.take(request.block, data, t)
+
+    def missed(self) -> None:
+        """Read once more what was set up: a device that begins anew may miss a single request, and forgets."""
+        if self.ready:
+            for step in self._lasting:
+                if not step.request.enabled:
+                    self.link.enable(step.request)
+
+    def _look_again(self, request: Request, data: bytes, t: float) -> None:
+        """Set a device up again that holds something else than was set up."""
+        for step in self._lasting:
+            if request is step.request:
+                self.link.disable(request)
+                if not step.holds(data):
+                    self.lost(t)
+                return
 
     def lost(self, t: float) -> None:
         """Stop reading and wait for the device to answer the first step of the set-up again."""
         if not self.ready:
             self.link.disable(self._steps[self._step].request)
+        for step in self._lasting:
+            self.link.disable(step.request)
         self.ready = False
         for poll in self._polls:
             self.link.disable(poll)

@@ -245,6 +245,8 @@ class ModbusLink(LineType):
         station = request.station
         station.counters.replies += 1
         station.misses = 0
+        if request.writes:
+            request.misses = 0
         station.is_lost = False
         schedule = self._schedule
         if not station.reply.measured:
@@ -277,17 +279,22 @@ class ModbusLink(LineType):
         if self.socket:
             self._doubt = f"no reply on {request.describe()}"
             self._fail(request, now, now)
-            return
-        self._suspect = request
-        self._fail(request, now, now + request.quiet_s)
+        else:
+            self._suspect = request
+            self._fail(request, now, now + request.quiet_s)
+        if not station.is_lost:
+            station.owner.missed()
 
     def _fail(self, request: Request, t: float, quiet_s: float) -> None:
         """End an attempt without a good reply."""
         self._end(quiet_s)
         station = request.station
         station.misses += 1
+        if request.writes:
+            request.misses += 1
         self._schedule.failed(request, t)
-        if station.misses >= MISSES_TO_LOSE and not station.is_lost:
+        if (station.misses >= MISSES_TO_LOSE or request.misses >= MISSES_TO_LOSE) and not station.is_lost:
+            request.misses = 0
             self._lose(station, t)
 
     def _lose(self, station: Station, t: float) -> None:

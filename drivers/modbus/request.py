@@ -67,8 +67,12 @@ class Owner(Protocol):
         """Process the registers of a good reply (empty for a write) that arrived at ``t`` s."""
         ...
 
+    def missed(self) -> None:
+        """Act on a reply that did not come, of a station that is not lost: it may have begun anew."""
+        ...
+
     def lost(self, t: float) -> None:
-        """Act on a station that has stopped answering."""
+        """Act on a station that has stopped answering, or to which a write does not get through."""
         ...
 
 
@@ -99,7 +103,8 @@ class Station:
     misses: int = 0
     """Failed attempts in a row."""
     is_lost: bool = False
-    """Whether three attempts in a row failed, or a gateway reported the device absent; a good reply ends it."""
+    """Whether three attempts in a row failed, of all requests or of one write, or a gateway reported the device absent;
+    a good reply ends it."""
     refused: str | None = None
     """Reason why the device cannot be used as configured; it stays until the program restarts."""
     reply: ReplyTimes = field(default_factory=ReplyTimes)
@@ -153,6 +158,8 @@ class Request:
     """Time at which it has waited as long as it may."""
     sent_s: float = -inf
     attempts: int = 0
+    misses: int = 0
+    """Failed attempts in a row of a write."""
     enabled: bool = False
     fresh: bool = False
     """Whether new values came after the last was sent."""

@@ -287,8 +287,10 @@ def _setup(table: ProfileTable, order: NumberOrder, functions: Collection[int]) 
     if mask and (writes or number.type not in ("u8", "u16")):
         raise table.error("mask", "is for a step that waits for some bits of a u8 or u16 and writes nothing")
     read_back = table.flag("read_back", True)
-    first = table.flag("first", False)
-    step = SetupWrite(number.name, number.address, words, read_back, within_s, writes, number.type, read, mask, first)
+    lasts, first = table.flag("lasts", False), table.flag("first", False)
+    step = SetupWrite(
+        number.name, number.address, words, read_back, within_s, writes, number.type, read, mask, lasts, first
+    )
     if within_s and not step.read_back:
         raise table.error("read_back", "must not be false where the step waits for its value")
     table.end()

@@ -44,6 +44,8 @@ class SetupWrite:
     """Function that reads it back."""
     mask: int = 0
     """Bits of the value that count when it is read back; 0 = all."""
+    lasts: bool = False
+    """For a value that is waited for: whether it lasts, and is read again whenever a reply did not come."""
     first: bool = False
     """Whether a controller needs it before it can be put into standby, which otherwise comes first."""
 

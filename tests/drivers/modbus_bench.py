@@ -42,10 +42,14 @@ class Notes:
         self.replies: list[tuple[float, bytes]] = []
         self.requests: list[Request] = []
         self.losses: list[float] = []
+        self.misses = 0
 
     def received(self, request: Request, data: bytes, t: float) -> None:
         self.requests.append(request)
         self.replies.append((t, data))
+
+    def missed(self) -> None:
+        self.misses += 1
 
     def lost(self, t: float) -> None:
         self.losses.append(t)

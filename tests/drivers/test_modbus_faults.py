@@ -329,6 +329,29 @@ def test_a_device_that_stays_busy_is_lost() -> None:
     assert request.station.is_lost
 
 
+def test_a_device_to_which_a_write_does_not_get_through_is_lost_although_it_is_read() -> None:
+    bench, request = polling()
+    write = bench.link.write(request.station, 6, 26, (500,), 0.45)
+    bench.link.enable(write)
+    for number in range(1, 200):
+        now = 0.02 * number
+        asked = bench.frames[-1][1]
+        bench.serve(now, (now - 0.01, refusal(4, function=6) if asked == 6 else GOOD))
+        if request.station.is_lost:
+            break
+    assert bench.notes.losses and bench.notes.replies
+    assert request.station.counters.exceptions == {4: 3}
+
+
+def test_a_reply_that_does_not_come_is_reported_unless_the_device_is_lost() -> None:
+    bench, request = polling()
+    for number in range(1, 100):
+        bench.serve(0.05 * number)
+        if request.station.is_lost:
+            break
+    assert (bench.notes.misses, len(bench.notes.losses)) == (2, 1)
+
+
 @pytest.mark.parametrize("code", [10, 11])
 def test_exceptions_of_a_gateway_mean_that_the_device_is_lost(code: int) -> None:
     bench, request = polling()

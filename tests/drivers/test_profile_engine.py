@@ -13,6 +13,7 @@ from drivers.sensor import Sensor
 from drivers.temperature_controller import TemperatureController
 from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.sensor_slave import SensorSlave
+from sim.wires.modbus_wire import Impairment
 from tests.drivers.modbus_bench import Bench, reply
 from tests.drivers.modbus_rig import Quantities, Rig
 
@@ -141,6 +142,27 @@ def test_a_number_that_guards_a_channel_is_none_and_its_bounds_make_the_channel_
         device.take(0, bytes.fromhex("0028 0000 0001"), 2.0)
     assert both.channels == ("first_ma", "second_ma") and both.values == [4.0, 0.0]
     assert (both.valid, first.valid) == (False, True)
+
+
+def test_what_was_set_up_is_read_again_after_a_reply_that_did_not_come() -> None:
+    writes = '[writes]\ngain = { address = 30, type = "u16", default = 7 }\n'
+    found = profile(TWO_READS + writes)
+    slave = SensorSlave(found, 1)
+    made = Rig(found.line.baud, slave)
+    one = Sensor(found, 1, made.link)
+    made.run(1.0)
+    assert one.ready and slave.get(30) == 7
+    made.wire.impair = Impairment("silence", count=1)
+    made.run(0.5)
+    assert one.fresh(made.now)
+    slave.put(30, bytes((0, 9)))  # it has begun anew
+    made.run(0.5)
+    assert one.fresh(made.now)
+    made.wire.impair = Impairment("silence", count=1)
+    made.run(0.5)
+    assert not one.ready
+    made.run(2.0)
+    assert one.fresh(made.now) and slave.get(30) == 7
 
 
 @pytest.mark.parametrize("guarded", ["third_ma", "second_state", "status"])

@@ -34,6 +34,8 @@ class Owner:
     def received(self, request: Request, data: bytes, t: float) -> None:
         self.value = data
 
+    def missed(self) -> None: ...
+
     def lost(self, t: float) -> None: ...
 
 
