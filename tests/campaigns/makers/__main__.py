@@ -4,7 +4,8 @@ Each device is a slave built from its maker's table alone, by another hand than 
 Numbers drawn over the whole range of every channel must be read within one step of the register. Each write must arrive
 as the table wants it. What the table forbids must be refused by name: values out of range, exceptions 1 to 3; while a
 device fails or is busy (4, 6) nothing is believed. No number is believed in any fault of the table, nor of a device
-that is silent; all are, once it is over. Prints a line a figure; exit status 1 where one misses.
+that is silent; all are, once it is over. A device that begins anew, and missed a reply, is set up again.
+Prints a line a figure; exit status 1 where one misses.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from tests.campaigns.makers import (
     hygrometer_sht20,
     jumo_diratron,
     laumas_tlb,
+    moxa_e1214,
     moxa_e1240,
     omron_e5cc,
     raytek_mi3,
@@ -37,6 +39,7 @@ SENSORS = (
     flintec_dad141.TABLE,
     seneca_z_sg.TABLE,
     moxa_e1240.TABLE,
+    moxa_e1214.TABLE,
     calex_pyrominibus.TABLE,
     calex_pyrousb.TABLE,
     hygrometer_sht20.TABLE,

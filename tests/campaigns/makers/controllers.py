@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from math import inf, isfinite, nan
 
 from drivers.modbus import ModbusLink
@@ -42,6 +42,15 @@ class ControllerCases(Cases):
             driver.set_setpoint(celsius)
 
         seat.each = each
+
+    @contextmanager
+    def _seat(self, parameters: Mapping[str, float] = {}, ready: bool = True) -> Iterator[Seat]:
+        """Command the parameter ``setpoint`` once the controller reads."""
+        with super()._seat({}, ready) as seat:
+            for celsius in parameters.values():
+                self._command(seat, celsius, on=True)
+                self._settle(seat)
+            yield seat
 
     def _write(self, name: str) -> None:
         """Command setpoints, standby, and a setpoint again after a silence."""

@@ -16,12 +16,15 @@ from drivers.profiles import load_profile
 from drivers.sensor import Sensor
 from drivers.temperature_controller import TemperatureController
 from drivers.transports.tcp_line import TcpLine, open_tcp_line
+from tester.base import clock
 from tests.campaigns.makers.slave import MakersSlave, SerialEnd, served
 from tests.campaigns.makers.table import Table
 from tests.peers.exchange import PATIENCE_S
 
 SCAN_S = 0.01
 """Time between two services of the link, s."""
+LOOK_S = 0.05
+"""Longest time between two looks for an answer over TCP, s of the wall: a new connection may not be open yet."""
 NAMED = (1, 2, 3)
 """Exceptions that a driver reports by their number: the device is not what the profile says."""
 PASSING = (4, 6)
@@ -63,10 +66,15 @@ class Seat:
             self.each()
             before = counters.requests
             self.link.service(self.line, self.now)
-            if counters.requests > before and not self.slave.silent and isinstance(self.line, TcpLine):
-                assert select([self.line], [], [], PATIENCE_S)[0], "the server is silent"
             self.now += 0.5 * SCAN_S
-            self.link.feed(self.line.read(self.now), self.now)
+            chunks = self.line.read(self.now)
+            patient_s = clock.monotonic() + PATIENCE_S
+            while not chunks and counters.requests > before and not self.slave.silent:
+                assert clock.monotonic() < patient_s, "the server is silent"
+                if isinstance(self.line, TcpLine):
+                    select([self.line], [], [], LOOK_S)
+                chunks = self.line.read(self.now)
+            self.link.feed(chunks, self.now)
             self.now += 0.5 * SCAN_S
 
 

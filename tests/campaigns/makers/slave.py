@@ -155,8 +155,8 @@ class MakersSlave(modbus.Slave):
         if register.area == "inside":
             self.kept[register.name] = value if register.type == "f32" else int(value)
             return
-        if register.type == "bits8":
-            words = [int(value) >> bit & 1 for bit in range(8)]
+        if register.type in ("bit", "bits8"):
+            words = [int(value) >> bit & 1 for bit in range(SIZES[register.type])]
         else:
             whole = value if register.type == "f32" else int(value)
             data = struct.pack(">" + CODES[register.type], whole)
@@ -167,7 +167,7 @@ class MakersSlave(modbus.Slave):
             block[offset : offset + len(words)] = words
 
     def _number(self, register: Register, words: list[int]) -> float:
-        if register.type == "bits8":
+        if register.type in ("bit", "bits8"):
             return sum(bit << place for place, bit in enumerate(words))
         words = words[::-1] if self.table.low_word_first else words
         return struct.unpack(">" + CODES[register.type], struct.pack(f">{len(words)}H", *words))[0]

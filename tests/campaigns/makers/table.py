@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 Area = Literal["coil", "discrete", "holding", "input", "inside"]
 """Tables of Modbus; ``inside``: a number of the device that no register shows as it is."""
-Type = Literal["bits8", "u16", "i16", "u32", "i32", "f32"]
-SIZES: Mapping[Type, int] = {"bits8": 8, "u16": 1, "i16": 1, "u32": 2, "i32": 2, "f32": 2}
+Type = Literal["bit", "bits8", "u16", "i16", "u32", "i32", "f32"]
+SIZES: Mapping[Type, int] = {"bit": 1, "bits8": 8, "u16": 1, "i16": 1, "u32": 2, "i32": 2, "f32": 2}
 """Addresses that a number takes."""
 
 

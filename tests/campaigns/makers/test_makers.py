@@ -24,6 +24,8 @@ MUTANTS = [
     ("flintec_dad141", "invalid = [0, 1]", "invalid = [0]", "over range"),
     ("seneca_z_sg", "greatest = 600.0", "greatest = 1e8", "beyond the end scale"),
     ("moxa_e1240", 'least = 0, greatest = 0, guards = "input_3"', 'guards = "input_3"', "channel 3"),
+    ("moxa_e1214", "address = 5", "address = 6", "exception 2"),
+    ("jumo_diratron", "lasts = true", "lasts = false", "begun anew"),
     ("calex_pyrominibus", "invalid = [0, 1, 2, 3, 4]", "invalid = [0, 1, 2, 3]", "object too hot"),
     ("calex_pyrousb", "least = 0.1, greatest = 1.0", "least = 0.2, greatest = 1.0", "is refused"),
     ("hygrometer_sht20", "greatest = 100.0", "greatest = 200.0", "of humidity"),
