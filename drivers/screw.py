@@ -41,6 +41,11 @@ class Screw:
     def _m(self) -> float:
         return 1e-3 * self.lead_mm / (2.0 * pi)
 
+    @property
+    def spring_nm(self) -> float:
+        """Torque that the spring takes without friction: half the sum of those of unloaded travel both ways, N m."""
+        return self._m * self.spring_n
+
     def torque_nm(self, force_n: float) -> float:
         """Return the torque that reaches a force (N, at least 0) at any friction within the bounds, N m."""
         return self._m * (force_n + self.spring_n) / self.efficiency_least + self.drag_most_nm

@@ -57,6 +57,14 @@ class DeviceSpec:
 
 
 @dataclass(frozen=True, slots=True)
+class ShareSpec:
+    """What some devices and axes have in common, such as a supply, and their names in the wiring."""
+
+    shared: str
+    members: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class RigSpec:
     """The connections of a rig: its wiring, without any software's settings."""
 
@@ -71,6 +79,8 @@ class RigSpec:
     """Channels of sensors and nodes that are safety inputs, by their names in the record."""
     further: tuple[str, ...] = ()
     """Sensors besides the machine's own devices, by the same names."""
+    shares: Mapping[str, ShareSpec] = field(default_factory=dict[str, ShareSpec])
+    """What fails together, by the names in the rig file's section ``shares``."""
 
 
 class SimRig:
@@ -93,7 +103,8 @@ class SimRig:
         self.devices = {title_of(name): slave for name, slave in wired.items()}
         self.sensors = further_sensors(spec, wired, plant)
         self.nodes = [SimulatedSensorNode(config, self.can) for config in spec.nodes]
-        every = {**wired, **self.sensors}
+        self.wired = every = {**wired, **self.sensors}
+        """Every Modbus device, by the names of the wiring."""
         self.lines = lines_of(spec, every)
         self.now_s = self.plant_s = 0.0
         self._drives = tuple(self.axes.values())
@@ -107,10 +118,10 @@ class SimRig:
         return Cia402Slave(config, self.can, serial_number=config.node_id)
 
     def slave(self, title: str) -> ModbusSlave:
-        """Return a device or a further sensor by its name for people; raises KeyError."""
+        """Return a device by its name for people; raises KeyError."""
         if title in self.devices:
             return self.devices[title]
-        return {title_of(name): slave for name, slave in self.sensors.items()}[title]
+        return {title_of(name): slave for name, slave in self.wired.items()}[title]
 
     def own_devices(self, spec: RigSpec) -> dict[str, ModbusSlave]:
         """Return the machine's own devices by their keys in the wiring."""

@@ -18,6 +18,7 @@ from sim.faults import cabinet, can, drives, modbus, sensors
 from sim.faults.kinds import Expected, Exposure, FaultKind
 from sim.faults.language import FaultLanguage
 from sim.faults.scene import Effect
+from sim.faults.shares import share_rows
 from sim.rig import DeviceSpec, RigSpec, title_of
 
 OVERCURRENT: Final = 0x2310
@@ -141,9 +142,10 @@ def node_rows(node: NodeConfig, inputs: Container[str]) -> Iterator[FaultKind]:
 
 
 def with_sensors(language: FaultLanguage, spec: RigSpec) -> FaultLanguage:
-    """Return a machine's language with the faults of a wiring's further sensors and nodes."""
+    """Return a machine's language with the faults of a wiring's further sensors and nodes, and of its shares."""
     rows = [row for name in spec.further for row in further_rows(title_of(name), spec.devices[name], spec.inputs)]
     rows += [row for node in spec.nodes for row in node_rows(node, spec.inputs)]
+    rows += share_rows(spec)
     return replace(language, catalogue={row.phrase: row for row in rows} | dict(language.catalogue))
 
 

@@ -34,6 +34,7 @@ _FACTORS: dict[str, dict[str, float]] = {
     "rad/s": {"rad/s": 1.0},
     "K/s": {"K/s": 1.0},
     "N/s": {"N/s": 1.0},
+    "%/min": {"%/min": 1.0, "%/s": 60.0},
     "": {"": 1.0},
 }
 """Accepted units of a value, by the unit of the fault's row; times become seconds."""

@@ -11,10 +11,11 @@ from typing import Final, cast
 
 from sim.faults.scene import Effect, Scene, switched
 from sim.nodes.controller_slave import ControllerSlave, TemperatureSource
+from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.sensor_node import SimulatedSensorNode
 from sim.nodes.sensor_slave import FORCES, CellSlave, ForceSource, IrSlave, Quantity, SensorSlave, SurfaceSource
 from sim.noise import NormalStream
-from sim.rig import title_of
+from sim.rig import SimRig, title_of
 
 SLOW: Final = ("lag", "delay")
 CROSSED: Final = ("exchanged x z", "reversed x", "reversed y", "reversed z")
@@ -141,9 +142,10 @@ class SpoiledForces(_Spoiled):
 
     def __init__(self, source: ForceSource, kind: str, size: float = 0.0, since_s: float = 0.0, force: str = "fz",
                  name: str = "load cell") -> None:  # fmt: skip
-        """Replace ``source``; ``force``: the faulty force."""
+        """Replace ``source``; ``force``: the faulty force, "" for all three."""
         super().__init__(kind, size, since_s, 0.0, name)
-        self.source, self._place = source, FORCES.index(force)
+        self.source = source
+        self._places = (FORCES.index(force),) if force else (0, 1, 2)
 
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return Fx, Fy, Fz in N and the moment in N m as shown at ``t`` s."""
@@ -156,7 +158,8 @@ class SpoiledForces(_Spoiled):
             x, y, z, m = _crossed(self.kind, x, y, z, m)
         else:
             shown = list(forces)
-            shown[self._place] = self.spoil(shown[self._place], t)
+            for place in self._places:
+                shown[place] = self.spoil(shown[place], t)
             x, y, z, m = shown
         return x, y, z, m
 
@@ -198,6 +201,21 @@ class SpoiledTemperature(_Spoiled):
         return self.spoil(true_c, t)
 
 
+class SpoiledQuantity(_Spoiled):
+    """The faulty source of a further sensor's channel: ``source`` is the sound one."""
+
+    def __init__(self, kind: str, size: float, since_s: float, rig: SimRig, name: str) -> None:
+        """``rig``: the machine, for its time; shares count from 0."""
+        super().__init__(kind, size, since_s, 0.0, name)
+        self.source: Quantity | float = nan
+        self._rig = rig
+
+    def __call__(self) -> float:
+        """Return the reading in the channel's unit."""
+        true = self.source if isinstance(self.source, float | int) else self.source()
+        return self.spoil(true, self._rig.now_s)
+
+
 def _crossed(kind: str, x: float, y: float, z: float, m: float) -> tuple[float, float, float, float]:
     """Return the channels of a load cell whose wires are crossed."""
     if kind == "reversed x":
@@ -218,9 +236,13 @@ class SensorFault(Effect):
         self.device, self.kind, self.size, self.force = device, kind, size, force
         self._wrapped: SpoiledForces | SpoiledTemperature | None = None
 
+    def slave(self, scene: Scene) -> ModbusSlave | None:
+        """Return the device, or None."""
+        return scene.rig.devices.get(self.device)
+
     def begin(self, scene: Scene, now: float) -> None:
         """Replace the sensor's source from now on."""
-        slave = scene.rig.devices.get(self.device)
+        slave = self.slave(scene)
         if isinstance(slave, SensorSlave) and self.kind == "frozen":
             slave.frozen = True
         elif isinstance(slave, CellSlave):
@@ -234,7 +256,7 @@ class SensorFault(Effect):
 
     def end(self, scene: Scene, now: float) -> None:
         """Show the true values again."""
-        slave = scene.rig.devices.get(self.device)
+        slave = self.slave(scene)
         if self._wrapped is not None:
             self._wrapped.active = False
         elif isinstance(slave, SensorSlave):

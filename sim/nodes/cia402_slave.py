@@ -46,7 +46,8 @@ class Cia402Slave(DrivePower):
     """One servo drive with its axis.
 
     For the plant: ``axis.value`` (velocity) and ``axis.position`` are in units of the axis. ``torque_nm`` is the load
-    torque for 0x6077, set from outside, and ``encoder_error`` the error of TPDO1's reading. ``io``
+    torque for 0x6077 with the error of its measuring (``torque_gain``, ``torque_offset_nm``), set from outside, and
+    ``encoder_error`` the error of TPDO1's reading. ``io``
     are the safety inputs and the contactor of a drive with digital I/O. While the power stage is off the axis
     is driven to ``unpowered_velocity`` (unit/s; a spring; 0: it coasts to rest) with ``coast_deceleration`` (unit/s2;
     by default the configured deceleration [A]).
@@ -173,14 +174,20 @@ class Cia402Slave(DrivePower):
 
     def load(self, torque_nm: float, encoder_error: float) -> None:
         """Put a torque on the shaft (N m) and an error on the encoder's reading (units of the axis)."""
-        self.torque_nm = torque_nm
+        self.torque_nm = self.torque_gain * torque_nm + self.torque_offset_nm
         self.encoder_error = encoder_error
         self.pdos.stale = True
 
+    def misread_torque(self, gain: float, offset_nm: float) -> None:
+        """Measure the torque with a gain (above 0) and an offset (N m) from now on; 1 and 0 is right."""
+        true_nm = (self.torque_nm - self.torque_offset_nm) / self.torque_gain
+        self.torque_gain, self.torque_offset_nm = gain, offset_nm
+        self.load(true_nm, self.encoder_error)
+
     @property
     def torque_limit_nm(self) -> float:
-        """Torque limit of the drive by 0x6072, N m."""
-        return self.store.values[_MAX_TORQUE] / self._per_mille
+        """True torque at the limit of 0x6072, N m: the drive limits the torque that it measures."""
+        return (self.store.values[_MAX_TORQUE] / self._per_mille - self.torque_offset_nm) / self.torque_gain
 
     def stall(self, position: float) -> None:
         """Stand at ``position`` (axis unit) with the torque limit of 0x6072; bit 11 shows it until ``unstall``."""

@@ -57,8 +57,10 @@ class DrivePower(CanopenDevice):
         "ramps",
         "state",
         "statusword",
+        "torque_gain",
         "torque_nm",
         "torque_off",
+        "torque_offset_nm",
         "unpowered_velocity",
         "watching",
     )
@@ -81,6 +83,8 @@ class DrivePower(CanopenDevice):
         self.origin = 0.0
         self.statusword = 0
         self.torque_nm = 0.0
+        self.torque_gain = 1.0
+        self.torque_offset_nm = 0.0
         self.state = State.NOT_READY
         self.mode: DriveMode | None = None
         self.modes: dict[int, DriveMode] = {}

@@ -11,13 +11,13 @@ from drivers.canopen.node_config import NodeConfig
 from drivers.ports import byte_bits
 from sim import machines
 from sim.nodes.sensor_slave import UnknownQuantityError
-from sim.rig import DeviceSpec, LineSpec, RigSpec, SimRig
+from sim.rig import DeviceSpec, LineSpec, RigSpec, ShareSpec, SimRig
 from sim.wires.can_wire import CanWire
 from tester.base.source import InvalidSource, Problem
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.rig import DeviceConfig, LineConfig, Rig
-from tester.inputs.rig.further_sensors import further_sensors
+from tester.inputs.rig.further_sensors import further_sensors, shares_of
 from tester.inputs.rig.profiles import profile_of
 from tester.inputs.rig.safety_input import CLOSED
 from tester.machine.rig_ports import Ports
@@ -64,6 +64,7 @@ def spec_of(rig: Rig) -> RigSpec:
         nodes=tuple(_node(node, closed) for node in rig.can.nodes.values()),
         further=tuple(further_sensors(rig)),
         inputs=closed,
+        shares={name: ShareSpec(share.shared, share.members) for name, share in shares_of(rig).items()},
     )
 
 

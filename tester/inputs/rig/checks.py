@@ -23,6 +23,8 @@ EMISSIVITIES = (0.1, 1.0)
 """Least and greatest plausible emissivity of a surface [A]."""
 SYNC_BITS, RPDO_BITS, TPDO_BITS = 55, 115, 135
 """Bits of a frame of 0, 6 and 8 bytes with worst-case stuffing and the space between frames."""
+_SHARE = "[a-z][a-z0-9_]*"
+"""Names of shares: a fault script has them with spaces in place of the underscores."""
 
 _Found = Iterator[tuple[Location, str]]
 
@@ -32,7 +34,7 @@ def problems_of(rig: Rig, tree: Tree) -> list[Problem]:
     profiles, unread = _read(rig)
     sensors = further_sensors(rig)
     parts = {name: parts_of(rig, name) for name, own in rig.own.items() if own.joined}
-    faults = [*unread, *_packaged(rig), *_nodes(rig), *_bus_load(rig), *_lines(rig), *_simulation(rig)]
+    faults = [*unread, *_packaged(rig), *_nodes(rig), *_bus_load(rig), *_lines(rig), *_simulation(rig), *_shares(rig)]
     faults += [*_profiles(rig, profiles), *_channels(rig, sensors, profiles), *_own(rig, parts, profiles)]
     faults += [*_drives(rig), *rig.problems()]
     faults += _safety_inputs(rig) if not unread else ()
@@ -118,6 +120,23 @@ def _lines(rig: Rig) -> _Found:
         if line.port in ports and line.port != "sim":
             yield ("lines", name, "port"), f"{line.port} is the port of line {ports[line.port]} already"
         ports.setdefault(line.port, name)
+
+
+def _shares(rig: Rig) -> _Found:
+    """Yield members of shares that the rig does not have, and shares of less than two."""
+    known = dict.fromkeys((*rig.devices, *(device.part_of for device in rig.devices.values()), *rig.drives()))
+    known.pop("", None)
+    for name, share in rig.shares.items():
+        place = ("shares", name, "members")
+        if not re.fullmatch(_SHARE, name):
+            yield ("shares", name), "a name has small letters, digits and underscores, and begins with a letter"
+        if len(set(share.members)) < 2:
+            yield place, "expected two different members at least: one alone shares nothing"
+        for member in share.members:
+            if member not in known:
+                near = difflib.get_close_matches(member, known, n=1)
+                meant = f", did you mean {near[0]}?" if near else ""
+                yield place, f"{member} is no device and no axis with a drive{meant} (expected {', '.join(known)})"
 
 
 def _read(rig: Rig) -> tuple[dict[str, DeviceProfile], list[tuple[Location, str]]]:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 _POSITIVE = Range(gt=0.0)
 _WIRE: Final = Free("which wire: nothing moves before every drive on it has answered with its identity")
 _ANSWER: Final = Held("the devices that answer there: nothing moves before all have, with plausible readings")
+_TOGETHER: Final = Free("faults of the simulated machine, which campaigns draw from: a real run does not use it")
 PAPER: Final = Held("the certificates, and the record of the commissioning")
 NOT_REAL: Final = Free("the simulated machine: a real one does not use it")
 OneRig = TypeVar("OneRig", bound="Rig")
@@ -145,6 +146,15 @@ class OwnDevice:
 
 
 @dataclass(frozen=True, slots=True)
+class ShareConfig:
+    """What some devices and axes of a rig have in common: one fault of it spoils all of them alike."""
+
+    shared: Annotated[Literal["supply", "ground", "line", "adapter", "clock", "temperature"], _TOGETHER]
+    members: Annotated[tuple[str, ...], _TOGETHER]
+    """Keys of ``devices`` and ``axes``; of an axis the readings of its drive."""
+
+
+@dataclass(frozen=True, slots=True)
 class CalibrationConfig:
     """The last days on which the certificates of the sensors are valid, as 2027-01-31; "" if unknown.
 
@@ -240,6 +250,8 @@ class Rig:
     lines: Mapping[str, LineConfig] = field(default_factory=dict[str, LineConfig])
     devices: Mapping[str, DeviceConfig] = field(default_factory=dict[str, DeviceConfig])
     safety_inputs: Mapping[str, SafetyInput] = field(default_factory=dict[str, SafetyInput], metadata=LEFT_OUT)
+    shares: Mapping[str, ShareConfig] = field(default_factory=dict[str, ShareConfig], metadata=LEFT_OUT)
+    """What fails together, besides the devices of a line (tester.inputs.rig.further_sensors.shares_of)."""
 
     @classmethod
     def of(cls: type[OneRig], rig: Rig) -> OneRig:

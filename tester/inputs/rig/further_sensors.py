@@ -13,7 +13,7 @@ from drivers.profiles.registers import Signal
 from tester.base.config_reader import SUFFIXES
 from tester.base.quantities import FURTHER, Channel, Figure, Quantities, Screen
 from tester.base.source import Location
-from tester.inputs.rig.config import DeviceConfig, Rig
+from tester.inputs.rig.config import DeviceConfig, Rig, ShareConfig
 from tester.inputs.rig.profiles import profile_of
 
 if TYPE_CHECKING:
@@ -72,6 +72,16 @@ def further_sensors(rig: Rig) -> dict[str, DeviceConfig]:
 def parts_of(rig: Rig, own: str) -> dict[str, DeviceConfig]:
     """Return the transmitters of a joined device, in the order of the rig file; none = a single device."""
     return {name: device for name, device in rig.devices.items() if device.part_of == own}
+
+
+def shares_of(rig: Rig) -> dict[str, ShareConfig]:
+    """Return what fails together: the file's ``shares``, and each line that several devices are on."""
+    found = dict(rig.shares)
+    for line in rig.lines:
+        members = tuple(name for name, device in rig.devices.items() if device.line == line)
+        if len(members) > 1:
+            found.setdefault(f"{line}_line", ShareConfig("line", members))
+    return found
 
 
 def further_channels(rig: Rig) -> tuple[FurtherChannel, ...]:

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from sim.machines.wheel_on_belt.faults import CATALOGUE
 from tests.campaigns.faults import (
     every_scan,
     first_up,
@@ -30,7 +29,7 @@ from tests.campaigns.faults.campaign import (
     pairs,
     rehearsals,
     sample,
-)
+)  # fmt: skip
 from tests.campaigns.faults.corners import corners
 from tests.campaigns.faults.effort import Effort
 from tests.campaigns.faults.hardware import (
@@ -42,6 +41,8 @@ from tests.campaigns.faults.hardware import (
 )
 from tests.campaigns.faults.judge import JUDGED, Verdict, connecting, fault_of
 from tests.campaigns.faults.moments import Moment, rehearse
+from tests.campaigns.faults.parametric import range_of
+from tests.campaigns.faults.recipes import GRID, language_of
 
 SAMPLE_CASES = 420
 TRACK_CASES, TRACK_PAIRS = 300, 150
@@ -57,7 +58,7 @@ UNNOTICED = 0.2
 """Share of the cases with a budget, begun in a run, in which the fault may never show: no load follows, say."""
 DOUBLES_AT = ("1 install install, begin", "2 heat heat, middle", "2 heat soak, middle", "3 3#: measure, middle")
 """Places of the heated recipe at which the pairs of hardware's list are tried: standing, approaching, hot, sliding."""
-HOLD = "sim.press_on_power_loss=hold"
+HOLD = ("sim.press_on_power_loss=hold", "axes.press.screw.spring=0 N")
 """The rig whose press stays where it is without power; sampled beside the one with a spring."""
 
 
@@ -104,8 +105,7 @@ def main(arguments: list[str] | None = None) -> int:
     if options.kind == "specimen_on_track":
         return on_track(options)
     if options.list:
-        for row in CATALOGUE.values():
-            print(f"{row.phrase}: {row.reaction.value}; within {row.budget_s:g} s, {row.exposure.value}")
+        listed(GRID[:1])
         return 0
     if options.mutants:
         from tests.campaigns.faults.mutants import main as mutants
@@ -124,12 +124,18 @@ def main(arguments: list[str] | None = None) -> int:
     return 1 if report.missed else 0
 
 
+def listed(recipes: Sequence[str]) -> None:
+    """Print the catalogue of the rigs of these recipes, a line a fault."""
+    for row in {row.phrase: row for recipe in recipes for row in language_of(recipe).catalogue.values()}.values():
+        words = f"{row.reaction.value}; within {row.budget_s:g} s, {row.exposure.value}{range_of(row.phrase)}"
+        print(f"{row.phrase}: {words}")
+
+
 def on_track(options: argparse.Namespace) -> int:
     """Conduct the campaign of a specimen on a track: a sample of its grid, or all of it, and its rows; return the
     exit status."""
     if options.list:
-        for row in track.CATALOGUE.values():
-            print(f"{row.phrase}: {row.reaction.value}; within {row.budget_s:g} s, {row.exposure.value}")
+        listed(track.GRID)
         return 0
     if options.mutants:
         from tests.campaigns.faults import mutants
@@ -186,7 +192,7 @@ def short(report: Report, jobs: int, most: int) -> None:
     effort = Effort()
     moments = rehearsals()
     faults = faults_of_campaign(everything=True)
-    report.figure("faults in the catalogue", len(CATALOGUE), ">= 40", len(CATALOGUE) >= 40)
+    report.figure("faults in the catalogue", len(faults), ">= 40", len(faults) >= 40)
     grid(report, conduct("grid", sample(all_cases(moments, faults), SAMPLE_CASES), jobs), 400, most)
     effort.look()
     ticks = range(every_scan.scans())
@@ -203,7 +209,7 @@ def full(report: Report, jobs: int, most: int) -> None:
     effort = Effort()
     moments = rehearsals()
     faults = faults_of_campaign(everything=False)
-    report.figure("faults in the catalogue", len(CATALOGUE), ">= 40", len(CATALOGUE) >= 40)
+    report.figure("faults in the catalogue", len(faults), ">= 40", len(faults) >= 40)
     tally = conduct("grid", all_cases(moments, faults), jobs)
     grid(report, tally, 7000, most)
     everywhere(report, tally)
@@ -212,7 +218,7 @@ def full(report: Report, jobs: int, most: int) -> None:
     doubles(report, conduct("pairs", pairs(moments, faults, PAIRS), jobs, budgets=False), most)
     needed(report, jobs, [m for m in rehearse("heated")[0] if m.place in DOUBLES_AT])
     held = sample(all_cases(moments, faults), SAMPLE_CASES)
-    held_press(report, conduct("grid, press held without power", held, jobs, (HOLD,)), most)
+    held_press(report, conduct("grid, press held without power", held, jobs, HOLD), most)
     late(report, most)
     again(report, most)
     ticks = range(every_scan.scans())
@@ -258,7 +264,7 @@ def searched(report: Report, jobs: int, only: str) -> None:
     for one in magnitudes.conduct(jobs, only):
         found.append(one)
         print(f"     {one.text}", flush=True)
-    table = magnitudes.written()
+    table = [row for row in magnitudes.written() if not row.only]
     outside = [one for one in found if one.harming and not any(row.covers(one) for row in table)]
     inside = [row for row in table if any(row.covers(one) for one in found)]
     report.figure("magnitudes: faults and signs searched", len(found), ">= 1", bool(found))

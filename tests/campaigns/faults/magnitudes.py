@@ -113,7 +113,8 @@ def kind_of_place(phrase: str) -> str:
     """Return where a fault is looked for: ASSEMBLED, HOT or LOADED."""
     if phrase.startswith(ASSEMBLY):
         return ASSEMBLED
-    return HOT if phrase.startswith(("hub", "thermometer", "common")) else LOADED
+    together = phrase.startswith("common ") and PARAMETRIC[phrase].kind.slow
+    return HOT if together or phrase.startswith(("hub", "thermometer")) else LOADED
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,10 +233,18 @@ class Written:
     does: str
     device: str
     why: str
+    only: str = ""
+    """The rigs that it holds for; "" is a rig with a history of heatings, which is what a search has."""
+
+    @property
+    def range(self) -> str:
+        """Fault, magnitudes and rigs, in words."""
+        words = f"{self.fault}, {self.least:g} to {self.most:g} {self.unit}"
+        return f"{words}, {self.only}" if self.only else words
 
     def covers(self, found: Found) -> bool:
         """Tell whether every magnitude that harms is in this row."""
-        mine = bool(found.harmed) and found.row.kind.phrase == self.fault
+        mine = bool(found.harmed) and found.row.kind.phrase == self.fault and not self.only
         return mine and all(self.least <= trial.value <= self.most for trial in found.harmed)
 
 
@@ -244,6 +253,6 @@ def written() -> tuple[Written, ...]:
     with WRITTEN.open(encoding="utf-8", newline="") as file:
         return tuple(
             Written(row["fault"], float(row["least"]), float(row["most"]), row["unit"], row["does"], row["device"],
-                    row["why"])
+                    row["why"], row["only"])
             for row in csv.DictReader(file)
         )  # fmt: skip

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sim.faults.kinds import FaultKind
-from sim.machines.wheel_on_belt.faults import CATALOGUE
+from tests.campaigns.faults.recipes import GRID, language_of
 
 ASSEMBLY = (
     "wheel drive reversed", "belt drive reversed", "wheel speed", "belt speed", "wheel and belt drives swapped",
@@ -15,6 +15,8 @@ ASSEMBLY = (
 """Beginnings of the phrases of assembly faults of the machine: none of them begins in a run."""
 _LAGS = {"load cell": 4.0, "thermometer": 6.0, "hub sensor": 40.0}
 """Greatest time constant, or delay, of a sensor in a search, s."""
+_OF_SHARES = {" gain": (60.0, 140.0, 100.0), " offset": (-30.0, 30.0, 0.0), " drift": (-10.0, 10.0, 0.0)}
+"""Ranges of what fails together, by the end of the phrase: percent of the reading, of the span, of it in a minute."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +59,7 @@ def _ranges() -> Iterator[tuple[str, float, float, float]]:
     yield "thermometer offset", -40.0, 40.0, 0.0
     yield "thermometer drift", -1.0, 1.0, 0.0
     yield "thermometer gain", 60.0, 140.0, 100.0
-    yield "common supply of hub sensor and thermometer", 60.0, 140.0, 100.0
     yield "hub sensor drift", -10.0 / 60.0, 10.0 / 60.0, 0.0
-    yield "common drift of hub sensor and thermometer", -10.0 / 60.0, 10.0 / 60.0, 0.0
     for name in ("load cell", "thermometer", "hub sensor"):
         for slow in ("lag", "delay"):
             yield f"{name} {slow}", 0.0, _LAGS[name], 0.0
@@ -70,9 +70,22 @@ def _ranges() -> Iterator[tuple[str, float, float, float]]:
     yield "rubber detached", 0.0, 1.0, 0.0
     yield "rubber relaxation", 3.0, 15.0, 3.0
     yield "CAN frames late", 0.0, 1.0, 0.0
+    for phrase in CATALOGUE:
+        of_share = next((_OF_SHARES[end] for end in _OF_SHARES if phrase.endswith(end)), None)
+        if of_share and phrase.startswith("common "):
+            yield phrase, *of_share
 
 
+CATALOGUE = language_of(GRID[0]).catalogue
 PARAMETRIC: dict[str, Parametric] = {
     phrase: Parametric(CATALOGUE[phrase], least, most, normal) for phrase, least, most, normal in _ranges()
 }
 """The rows of the catalogue whose magnitude matters, each with its range, by phrase."""
+
+
+def range_of(phrase: str) -> str:
+    """Return the range of a fault's magnitude in words, "" for a fault without one."""
+    row = PARAMETRIC.get(phrase)
+    if row is None:
+        return ""
+    return f"; {row.least:g} to {row.most:g} {row.kind.unit}, without a fault {row.normal:g}"

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
+from sim import machines
 from sim.faults.language import FaultLanguage
-from sim.machines.specimen_on_track.faults import LANGUAGE as TRACK
-from sim.machines.wheel_on_belt.faults import LANGUAGE as WHEEL
+from tester.kinds import load_rig
+from tester.run.kind_lookup import run_parts
+from tester.run.simulated import spec_of
 from tests.campaigns.faults.corners import corners
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
@@ -130,8 +133,14 @@ class Setting(NamedTuple):
 
 
 def language_of(recipe: str) -> FaultLanguage:
-    """Return the language of the faults of a recipe's kind of machine."""
-    return TRACK if recipe in TRACKS else WHEEL
+    """Return the language of the faults of a recipe's machine, with those of the shares of its rig file."""
+    return _language(TRACKS[recipe].rig if recipe in TRACKS else "sim")
+
+
+@cache
+def _language(rig_name: str) -> FaultLanguage:
+    rig = load_rig(rig_name)
+    return machines.find(run_parts(rig).plant).language(spec_of(rig))
 
 
 def setting_of(recipe: str) -> Setting:

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from sim.machines.wheel_on_belt.faults import CATALOGUE
 from tester.inputs.recipe.loader import check
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
@@ -17,13 +16,17 @@ from tests.campaigns.faults.judge import fault_of
 from tests.campaigns.faults.magnitudes import Found, Trial, Written, search, written
 from tests.campaigns.faults.moments import Moment
 from tests.campaigns.faults.mutants import ROOT
-from tests.campaigns.faults.parametric import ASSEMBLY, PARAMETRIC
+from tests.campaigns.faults.parametric import ASSEMBLY, CATALOGUE, PARAMETRIC
 
 ALLOWED = {
-    "common supply of hub sensor and thermometer": (85.0, 88.0),
+    "common temperature supply gain": (65.0, 88.0),
+    "hub sensor gain": (82.0, 87.0),
+    "hub sensor drift": (-0.1, -0.04),
+    "common force supply drift": (-10.0, -0.1),
     "load cell gain": (50.0, 150.0),
 }
-"""What the written table may hold, and how far: both temperatures 12 to 15 % low; the gain of the cell."""
+"""What the written table may hold, and how far: temperatures 12 to 35 % low, a rig without a history;
+load cell and press torque that drift together; the gain of the cell."""
 
 
 def test_there_is_a_corner_for_every_compound_stiffness_and_heat() -> None:
@@ -88,6 +91,11 @@ def _found(value: float) -> Found:
     return Found(PARAMETRIC["load cell gain"], 50.0, "somewhere", harming, (harming,), "")
 
 
+def test_a_row_of_rigs_without_a_history_covers_nothing_of_a_search() -> None:
+    row = Written("load cell gain", 70.0, 90.0, "%", "", "", "", "without a history")
+    assert not row.covers(_found(80.0))
+
+
 @pytest.mark.parametrize(("value", "covered"), [(80.0, True), (60.0, False), (95.0, False)])
 def test_the_written_table_covers_only_its_magnitudes(value: float, covered: bool) -> None:
     row = Written("load cell gain", 70.0, 90.0, "%", "", "", "")
@@ -98,7 +106,7 @@ def test_the_written_table_holds_only_what_it_may_and_the_safety_page_shows_it()
     page = (ROOT / "docs" / "kinds" / "wheel-on-belt.md").read_text(encoding="utf-8")
     shown = page.split("<!-- magnitudes: begin -->")[1].split("<!-- magnitudes: end -->")[0].splitlines()[3:]
     assert shown == [
-        f"| {row.fault}, {row.least:g} to {row.most:g} {row.unit} | {row.does} | {row.device} | {row.why} |"
+        f"| {row.range} | {row.does} | {row.device} | {row.why} |"
         for row in written()
     ]
     for row in written():

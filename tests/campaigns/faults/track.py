@@ -8,7 +8,7 @@ from math import isfinite
 
 from sim.faults.can import FaultyCanWire
 from sim.faults.kinds import Exposure, FaultKind
-from sim.machines.specimen_on_track.faults import CATALOGUE, TrackExposure
+from sim.machines.specimen_on_track.faults import TrackExposure
 from sim.machines.specimen_on_track.rig import TrackRig
 from tester.inputs.recipe.plan import Plan
 from tester.kinds import load_rig
@@ -25,7 +25,7 @@ from tests.campaigns.faults.campaign import pairs
 from tests.campaigns.faults.first_up import First
 from tests.campaigns.faults.hardware import MustHold
 from tests.campaigns.faults.moments import Moment
-from tests.campaigns.faults.recipes import TRACKS
+from tests.campaigns.faults.recipes import TRACKS, language_of
 from tests.campaigns.faults.stage import Ledger, Stage
 from tests.campaigns.faults.track_harm import TrackHarmObserver, TrackTruth
 from tests.tester.inputs.recipe.texts import load_recipe
@@ -199,11 +199,13 @@ class TrackInvariants:
 
 GRID = ("slow track", "disc")
 """The recipes of the campaign, by name."""
-FAULTS = tuple(CATALOGUE)
+FAULTS = tuple(dict.fromkeys(fault for recipe in GRID for fault in language_of(recipe).catalogue))
 
 
 def fits(recipe: str, fault: str) -> bool:
     """Tell whether the rig of a recipe has what a fault is of."""
+    if fault not in language_of(recipe).catalogue:
+        return False
     rig = track_rig_of(TRACKS[recipe].rig, ())
     has = {"lift": rig.axes.lift is not None, "end switch": rig.linear}
     has |= {name: name in rig.devices for name in ("chamber", "pyrometer", "thermometer")}

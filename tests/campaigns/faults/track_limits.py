@@ -92,6 +92,7 @@ class Held:
 
 HARDWARE = (
     Held("chamber sensor offset", "chamber beyond its range", "the chamber's own limiters, with sensors of their own"),
+    Held("common ", "chamber beyond its range", "the chamber's own limiters, with sensors and a supply of their own"),
 )
 """Single faults that the software does not hold."""
 

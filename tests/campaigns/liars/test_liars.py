@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from tester.kinds.wheel_on_belt.control.loops import hub_needed_c
@@ -49,3 +51,13 @@ def test_a_lie_that_the_table_of_hardware_lists_is_known(monkeypatch: pytest.Mon
     monkeypatch.setattr(liars, "written", lambda: (listed,))
     assert liars.listed(Lie(percent=88.0)) and not liars.listed(Lie(percent=91.0))
     assert not liars.listed(Lie(percent=88.0, common=True))
+
+
+def test_a_computed_bound_agrees_with_its_row_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    row = Written("hub sensor gain", 85.0, 90.0, "%", "", "", "", liars.NO_HISTORY)
+    monkeypatch.setattr(liars, "written", lambda: (row,))
+    assert liars.Bound("hub sensor gain", liars.NO_HISTORY, 85.0, 90.0, 160.0).agrees
+    assert not liars.Bound("hub sensor gain", liars.NO_HISTORY, 84.0, 90.0, 160.0).agrees
+    assert not liars.Bound("hub sensor gain", "", 85.0, 90.0, 160.0).agrees
+    assert liars.Bound("hub sensor gain", "", math.inf, -math.inf, 0.0).agrees
+    assert not liars.listed(Lie(percent=88.0))

@@ -273,9 +273,7 @@ def _misread_rows() -> Iterator[FaultKind]:
     yield _hides("hub sensor gain", partial(HUB, "gain"), "%", 60.0)
     yield _hides("hub sensor partly detached", h.hub_detached, "%", 60.0)
     yield _may("hub sensor drift", partial(HUB, "drift"), "K/s", -0.02, slow=True)
-    yield _may("common drift of hub sensor and thermometer", h.common_drift, "K/s", -0.02, slow=True)
     yield _may("thermometer gain", partial(SURFACE, "gain"), "%", 80.0, slow=True)
-    yield _hides("common supply of hub sensor and thermometer", h.common_supply_off, "%", 60.0)
     for name, lag_s in (("load cell", 1.0), ("thermometer", 1.5)):
         slow = name != "load cell"
         yield _may(f"{name} lag", partial(SensorFault, name, "lag"), "ms", lag_s, slow=slow)

@@ -8,6 +8,7 @@ from typing import Final
 from sim.faults.modbus import line_of, slave_of
 from sim.faults.scene import Effect, Scene, switched
 from sim.faults.sensors import SensorFault
+from sim.faults.shares import Together
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.control_loop import JACKET_HOTTEST_C
 from sim.wires.modbus_wire import Impairment
@@ -20,36 +21,9 @@ STICKS_EVERY_S: Final = 8.0
 """Period of a relay that sticks, s [A]."""
 
 
-class _Together(Effect):
-    """Faults that begin and end together."""
-
-    def __init__(self, *effects: Effect) -> None:
-        self._effects = effects
-
-    def begin(self, scene: Scene, now: float) -> None:
-        """Begin all of them."""
-        for effect in self._effects:
-            effect.begin(scene, now)
-
-    def end(self, scene: Scene, now: float) -> None:
-        """End all of them."""
-        for effect in self._effects:
-            effect.end(scene, now)
-
-
-def common_supply_off(percent: float) -> Effect:
-    """The common supply of hub sensor and thermometer is off: both show ``percent`` of the excess above ambient."""
-    return _Together(SensorFault("jacket", "gain", percent), SensorFault("thermometer", "gain", percent))
-
-
-def common_drift(k_s: float) -> Effect:
-    """Hub sensor and thermometer drift alike, by ``k_s`` K/s: their common reference ages, or warms."""
-    return _Together(SensorFault("jacket", "drift", k_s), SensorFault("thermometer", "drift", k_s))
-
-
 def hub_detached(percent: float) -> Effect:
     """The hub's sensor is loose: it shows ``percent`` of the excess above ambient, late by DETACHED_S."""
-    return _Together(SensorFault("jacket", "gain", percent), SensorFault("jacket", "lag", DETACHED_S))
+    return Together(SensorFault("jacket", "gain", percent), SensorFault("jacket", "lag", DETACHED_S))
 
 
 @switched

@@ -15,13 +15,22 @@ from tester.kinds.wheel_on_belt.interlocks import hub, motion, surface, witness
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance, KnownRatio
 from tester.kinds.wheel_on_belt.interlocks.inputs import STANDING_M_S, Inputs, PressBand, RigLimits
-from tester.kinds.wheel_on_belt.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
+from tester.kinds.wheel_on_belt.interlocks.monitors import (
+    FREE_MM,
+    FreeTravel,
+    JacketMonitor,
+    PressTracker,
+    SpeedTracker,
+    SurfaceMonitor,
+)
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
 _INF: Final = inf
 _LOAD: Final = Press.LOAD  # bound once: a look-up on the enum class costs several times as much (CPython 3.11)
 ALIKE_K: Final = 1.5
 """Hub and surface of a rig at the air's temperature differ by less, K [A]: the bias of the thermometer and noise."""
+UNKNOWN_MM: Final = 2.0
+"""A wheel that has not been touched yet may be so much nearer than its diameter says, mm: interlocks.touch_margin."""
 AIR_OFF_K: Final = 3.0
 AIR_WRONG_K: Final = 20.0
 """Air off the file's by more than the first is believed, K [A]; by more than the second, a sensor is wrong."""
@@ -57,6 +66,7 @@ class InterlockInputs(Inputs):
         self.belt = SpeedTracker(p[motion.RAMP_SHARE] * rig.axes.belt.acceleration)
         self.press = PressTracker(p[motion.RAMP_SHARE] * rig.loops.load.acceleration_mm_s2)
         self.press_band = _press_band(rig)
+        self.free = _free_travel(rig)
         self.force = ForceObserver(
             self.limits.stiffness_n_per_mm,
             p[witness.FORCE_STEP_UNSEEN_SHARE],
@@ -140,13 +150,23 @@ class InterlockInputs(Inputs):
             self.wheel.begin(r.wheel_speed_m_s)
             self.belt.begin(r.belt_speed_m_s)
             self.press.begin(r)
+            self.free.begin(r)
         if self.confirmed:
             out = self.state.setpoints
             self.wheel.follow(out.wheel_rad_s * r.diameter_mm * 0.5e-3, dt)
             self.belt.follow(out.belt_m_s, dt)
             self.press.follow(out.press_mm_s, dt, r)
+            if r.press_at_s > self.free.at_s and self.free.spring_nm > 0.0:
+                self.free.update(r, r.press_mm < self._free_to_mm(r.diameter_mm))
         elif self.unpowered and (not resting or r.press_mm < self.rest_mm):
             self.rest_mm = r.press_mm
+
+    def _free_to_mm(self, diameter_mm: float) -> float:
+        """Return how far the press surely touches no wheel, mm."""
+        contact_mm = self.state.load.contact_mm
+        if -_INF < contact_mm < _INF:
+            return contact_mm - FREE_MM
+        return self.rig.geometry.touch_at_mm(diameter_mm) - UNKNOWN_MM
 
     def wheel_changed(self, now: float) -> None:
         """Restart with a wheel at ambient temperature: nothing is compared with the previous wheel."""
@@ -201,6 +221,12 @@ def _press_band(rig: RigConfig) -> PressBand:
     if screw is None:
         return PressBand(known=False)
     return PressBand(True, screw.drag_most_nm, screw.spring_n, screw.reached_n_per_nm, screw.held_n_per_nm)
+
+
+def _free_travel(rig: RigConfig) -> FreeTravel:
+    press = rig.axes.press
+    spring_nm = press.screw.spring_nm if press.screw is not None else 0.0
+    return FreeTravel(spring_nm, 0.5e-3 * press.rated_torque_nm)
 
 
 def _heat_balance(rig: RigConfig, p: Values) -> HeatBalance:

@@ -183,10 +183,10 @@ HEAT_SHARE: Final = Parameter(
     because="0.3 hides temperatures that read 26 % low until a rig has a history: heat_share_known",
 )  # fmt: skip
 HEAT_SHARE_KNOWN: Final = Parameter(
-    "heat_share_known", "1", "0.12",
+    "heat_share_known", "1", "0.09",
     "... or this beyond the ratio that a rig's own heatings have shown [A] ...",
-    SHARE, hardest="0.15",
-    because="0.15 beyond a ratio of 1 hides temperatures that read 15 % low, and with heat_leak some 2 % more",
+    SHARE, hardest="0.09",
+    because="0.1 and heat_leak hide temperatures 14 % low: at 85 degC the hub is at 155 degC then",
 )  # fmt: skip
 HEAT_LEAK_W: Final = Parameter(
     "heat_leak_w", "W", "5 W", "... and this: air 10 K colder than believed takes 4 W [A] ...", NOT_NEGATIVE,

@@ -13,7 +13,13 @@ from tester.inputs.rig.parameter import Direction, Parameter
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Readings, Setpoints
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, Contact, ForceObserver
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import HeatBalance
-from tester.kinds.wheel_on_belt.interlocks.monitors import JacketMonitor, PressTracker, SpeedTracker, SurfaceMonitor
+from tester.kinds.wheel_on_belt.interlocks.monitors import (
+    FreeTravel,
+    JacketMonitor,
+    PressTracker,
+    SpeedTracker,
+    SurfaceMonitor,
+)
 from tester.machine.inputs import ScanInputs
 from tester.machine.row import Interlock
 from tester.machine.wires import STALE_INPUTS_S
@@ -102,6 +108,7 @@ class Inputs(ScanInputs):
     belt: SpeedTracker = field(init=False)
     press: PressTracker = field(init=False)
     press_band: PressBand = field(init=False)
+    free: FreeTravel = field(init=False)
     force: ForceObserver = field(init=False)
     heat: HeatBalance = field(init=False)
     model_c: float = nan

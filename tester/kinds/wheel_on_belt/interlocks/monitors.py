@@ -161,6 +161,73 @@ class PressTracker:
             self.at_s, self.press_mm = at_s, press_mm
 
 
+FREE_MM = 1.0
+"""The press is free this far off the contact, mm [A]: twice what a hot wheel grows."""
+UNDER_WAY_MM = 0.2
+"""Travel one way after which the screw's friction acts that way, mm [A]: ten times its presliding."""
+MOVES_MM = 0.002
+"""Travel between two readings that counts as motion, mm [A]: two increments."""
+LEAST_READINGS = 3
+"""Readings of a way that make a torque [A]."""
+
+
+@dataclass(slots=True)
+class FreeTravel:
+    """The torque of the press's drive in free travel: half the sum of both ways is what the lifting spring takes.
+
+    The friction of the screw cancels. A spring shares nothing with any sensor: it shows whether the torque is right.
+    """
+
+    spring_nm: float
+    """Torque that the spring takes without friction; 0 without a spring."""
+    digit_nm: float
+    """Half the last digit of the drive's torque."""
+    off_share: float = 0.0
+    """How far the half sum is off the spring's torque beyond a digit, a share of it; 0 until both ways are known."""
+    at_s: float = -inf
+    down_nm: float = nan
+    up_nm: float = nan
+    _down: bool = False
+    _up: bool = False
+    _press_mm: float = nan
+    _way_mm: float = 0.0
+    """Travel since it last turned round, positive towards the contact."""
+    _mean_nm: float = 0.0
+    _count: int = 0
+
+    def begin(self, r: Readings) -> None:
+        """Begin a way at the press's position: the drive was off, and the press may have moved without it."""
+        self.at_s, self._press_mm = r.press_at_s, r.press_mm
+        self._way_mm = 0.0
+        self._count = 0
+
+    def update(self, r: Readings, free: bool) -> None:
+        """Process a new position and torque; ``free``: the press is clear of the contact."""
+        moved_mm = r.press_mm - self._press_mm
+        self.at_s, self._press_mm = r.press_at_s, r.press_mm
+        if not free or moved_mm * self._way_mm < 0.0:
+            self._way_mm = 0.0
+            self._count = 0
+        if not free or not abs(moved_mm) >= MOVES_MM:
+            return
+        self._way_mm += moved_mm
+        if abs(self._way_mm) < UNDER_WAY_MM:
+            return
+        self._count += 1
+        before_nm = self._mean_nm if self._count > 1 else 0.0
+        self._mean_nm = mean = before_nm + (r.press_torque_nm - before_nm) / self._count
+        if self._count < LEAST_READINGS:
+            return
+        if self._way_mm > 0.0:
+            self.down_nm, self._down = mean, True
+        else:
+            self.up_nm, self._up = mean, True
+        if not (self._down and self._up):
+            return
+        off_nm = abs(0.5 * (self.down_nm + self.up_nm) - self.spring_nm) - self.digit_nm
+        self.off_share = 0.0 if off_nm < 0.0 else off_nm / self.spring_nm
+
+
 @dataclass(slots=True)
 class SpeedTracker:
     """The allowed range of a drive's speed: from its target to the present speed of a slow ramp to the target."""

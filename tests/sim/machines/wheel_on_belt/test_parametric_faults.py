@@ -10,20 +10,21 @@ import pytest
 
 from sim.faults import FaultScript, Scene
 from sim.faults.sensors import Slow
-from sim.machines.wheel_on_belt.faults import CATALOGUE, LANGUAGE
 from sim.machines.wheel_on_belt.faults.heat import DETACHED_S
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.nodes.motion import VelocityAxis
 from tester.kinds import load_rig
 from tester.run.simulated import spec_of
-from tests.campaigns.faults.parametric import PARAMETRIC, Parametric
+from tests.campaigns.faults.parametric import CATALOGUE, PARAMETRIC, Parametric
+from tests.campaigns.faults.recipes import GRID, language_of
 
+LANGUAGE = language_of(GRID[0])
 QUIET = ["sim.noise=0", "sim.scatter=0", "sim.running_in=0"]
 LOADED_MM = 11.9
 UNDONE = [
     name for name in CATALOGUE
     if name.endswith((" gain", " lag", " delay", "reversed", "exchanged", "swapped", " scale", "doubled", "detached"))
-    or name in ("wheel diameter", "common supply of hub sensor and thermometer", "rubber relaxation")
+    or name in ("wheel diameter", "rubber relaxation")
     or name == "belt slips on its roller"
 ]  # fmt: skip
 """Faults that leave the rig as it was when they end."""
@@ -164,7 +165,7 @@ def test_exchanged_channels_show_each_other() -> None:
 def test_a_common_supply_is_that_of_both_thermometers(percent: int) -> None:
     rig = deepcopy(sliding())
     rig.plant.heat.set_all(83.0)
-    play(rig, f"common supply of hub sensor and thermometer {percent} %", 1.5)
+    play(rig, f"common temperature supply gain {percent} %", 1.5)
     t = rig.now_s
     shown = [rig.jacket.source.controller_measured_c(t) - 23.0, rig.ir.source.surface_measured_c(t) - 23.0]
     true = [rig.plant.controller_measured_c(t) - 23.0, rig.plant.surface_measured_c(t) - 23.0]

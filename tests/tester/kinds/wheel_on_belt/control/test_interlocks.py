@@ -112,6 +112,15 @@ def _frozen_hub(bench: Bench) -> None:
     bench.control.view.heat.still_k = 31.0
 
 
+def _sprung(off_share: float) -> Break:
+    """The press's torque was off what its spring takes, in free travel."""
+
+    def apply(bench: Bench) -> None:
+        bench.control.view.free.off_share = off_share
+
+    return apply
+
+
 def _torn(bench: Bench) -> None:
     bench.readings.force_x_n = bench.readings.drive_torque_nm = 0.0
 
@@ -196,6 +205,7 @@ CAUSES: dict[str, list[Break]] = {
     "contact lost": [_set(force_z_n=15.0), _set(force_z_n=NAN)],
     "force step": [_stepped(30.0), _stepped(-30.0), _set(press_mm=NAN)],
     "press torque": [_screwed(450.0), _screwed(80.0), _screwed(NAN)],
+    "press spring": [_sprung(0.06), _sprung(NAN)],
     "friction sign": [_set(force_x_n=-30.0), _set(force_x_n=NAN)],
     "shaft power": [_shafts(60.0), _shafts(-60.0), _shafts(NAN)],
     "belt caught": [_belt_pulls(44.0), _belt_pulls(NAN)],

@@ -102,6 +102,6 @@ def test_what_earlier_runs_have_shown_tightens_the_heat_balance() -> None:
     prompts = Prompts(automatic=True)
     run = build_run(RunSetup(config, plan_of(), ports, attendant, NullRecorder(), prompts), KnownRatio(3, 1.0))
     heat = run.engine.ctx.heat
-    assert heat is not None and heat.share == pytest.approx(0.12)
+    assert heat is not None and heat.share == pytest.approx(0.09)
     (known,) = run.engine.ctx.known()
-    assert known == "heat balance: known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"
+    assert known == "heat balance: known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 9 %"

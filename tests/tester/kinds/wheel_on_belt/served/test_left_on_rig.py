@@ -36,7 +36,7 @@ def test_an_age_is_said_in_a_unit_that_fits(seconds: float, words: str) -> None:
     ("heat", "ok", "words"),
     [
         (NO_HISTORY, None, "no history yet; a row tells from 30 %"),
-        (KnownRatio(3, 1.0), True, "known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 12 %"),
+        (KnownRatio(3, 1.0), True, "known from 3 heatings, ratio 1.00, 0.00 apart; a row tells from 9 %"),
         (KnownRatio(3, 1.25), None, "known from 3 heatings, ratio 1.25, 0.00 apart; a row tells from 30 %: measure"
                                     " observer.thermal, or check the sensors"),
     ],
