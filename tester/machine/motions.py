@@ -12,8 +12,9 @@ from typing import Any, Final
 
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.context import AnyContext
+from tester.machine.safety_inputs import InputStates
 
-GUARD_OPEN: Final = "answered with the guard open: close it, then the question is put again"
+GUARD_OPEN: Final = "answered with the guard or a door open: close it, then the question is put again"
 AGAIN: Final = "the guard is closed now, go on?"
 
 
@@ -72,8 +73,9 @@ class Power(Move):
 class Ask:
     """Asks a question and waits for the answer.
 
-    It moves nothing: the activity before it has made it safe to come near. An answer counts only while the guard is
-    closed. After an answer with the guard open the question is asked again, so that closing the guard starts nothing.
+    It moves nothing: the activity before it has made it safe to come near. An answer counts only while the guard, and
+    every door among the safety inputs, is closed. After an answer with one open the question is asked again, so that
+    closing it starts nothing.
     """
 
     def __init__(self, text: str, *, near: bool = True) -> None:
@@ -96,7 +98,8 @@ class Ask:
             return False
         # With automatic answers no person closes the guard: an open guard is a fault, which trips when the next drive
         # is switched on.
-        closed = ctx.readings.guard_closed or alone
+        r = ctx.readings
+        closed = alone or (r.guard_closed and not InputStates(ctx.rig).open_door(r.channels))
         if not self.recorded:
             self.recorded = True
             ctx.journal.prompt_answered(self.record, ctx.now, answer, asked.by)

@@ -54,8 +54,13 @@ class InputStates:
         self.size = len(names)
         """Number of the rig's further channels; 0 without safety inputs."""
         self._places = {title_of_input(name): names.index(one.channel) for name, one in rig.safety_inputs.items()}
+        self._doors = {title_of_input(name) for name, one in rig.safety_inputs.items() if one.open_at_rest}
 
     def closed(self, channels: list[float]) -> dict[str, bool]:
         """Return whether each input is closed, by its name, in ``Readings.channels``."""
         known = [*channels, *[nan] * (self.size - len(channels))]
         return {name: known[place] == CLOSED for name, place in self._places.items()}
+
+    def open_door(self, channels: list[float]) -> str:
+        """Return the first input that is open and may be so at rest, as a second door may; "" for none."""
+        return next((name for name, shut in self.closed(channels).items() if not shut and name in self._doors), "")

@@ -13,6 +13,8 @@ from sim.faults.common import SCAN_S, TRIP, further_rows, node_rows
 from sim.faults.scene import Scene
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig, load_rig_text
+from tester.machine.motions import Ask
+from tester.machine.prompts import Prompts
 from tester.machine.safety_inputs import InputStates
 from tester.machine.state import Mode
 from tester.run.simulated import spec_of
@@ -122,6 +124,20 @@ def test_the_rig_is_not_armed_while_one_is_open(kind: str, name: str) -> None:
     while not bench.run.finished and bench.now < 300.0:
         bench.tick()
     assert f"not armed: {title(name)}" in bench.run.reason + bench.run.connector.failure
+
+
+def test_an_answer_with_a_door_open_does_not_count_and_is_asked_again(running: Any) -> None:
+    ctx = deepcopy(running.run.engine).ctx
+    ctx.prompts = Prompts(automatic=False)
+    ask, door = Ask("change the specimen"), list(running.run.engine.control.view.further_places).index("di_1")
+    ctx.readings.channels[door] = 0.0
+    assert not ask.step(ctx)
+    ctx.prompts.asked[-1].answer = "yes"
+    assert not ask.step(ctx) and "door open" in ctx.progress.phase
+    ctx.readings.channels[door] = 1.0
+    assert not ask.step(ctx) and ask.number == 2
+    ctx.prompts.asked[-1].answer = "yes"
+    assert ask.step(ctx)
 
 
 def test_a_module_that_falls_silent_trips_by_the_name_of_its_inputs() -> None:
