@@ -99,8 +99,8 @@ def stopping(rig: RigConfig, load_n: float, speed_m_s: float) -> Stopping:
     """Return how long a contact of this load (N) and speed (m/s) rubs at full power for each cause, s."""
     limits, scan_s = rig.interlocks, 1.0 / rig.scan.enabled_hz
     end_s = stop_s(rig, load_n, speed_m_s)
-    told = rig.axes.wheel.speed_zero > 0.0 and rig.axes.belt.speed_zero > 0.0  # else the next scan reads it
-    seen_s = (0.0 if told else scan_s) + limits.standing_delay_s
+    reported = rig.axes.wheel.speed_zero > 0.0 and rig.axes.belt.speed_zero > 0.0  # else the next scan reads it
+    seen_s = (0.0 if reported else scan_s) + limits.standing_delay_s
     delay_s = max(limits.belt_torque_delay_s, STEP_S)
     noticed_s = scan_s * (1 + ceil(delay_s / scan_s)) + CELL_S
     return Stopping(
