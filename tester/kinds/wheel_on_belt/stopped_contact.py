@@ -41,7 +41,7 @@ WARMING_K: Final = 5.0
 """Between the temperatures of a heating at which friction is looked at, K."""
 
 
-class Contact(NamedTuple):
+class PlannedContact(NamedTuple):
     """A contact that a plan asks for: compound, load (N), greatest speed (m/s), and friction on a part at rest (N)."""
 
     compound: str
@@ -129,15 +129,15 @@ def _limit_nm(axis: AxisConfig) -> float:
     return 1e-3 * axis.max_torque_per_mille * axis.rated_torque_nm
 
 
-def contact(rig: RigConfig, compound: str, load_n: float, speed_m_s: float, hottest_c: float) -> Contact:
+def contact(rig: RigConfig, compound: str, load_n: float, speed_m_s: float, hottest_c: float) -> PlannedContact:
     """Return a contact between the rig's ambient temperature and another, degC."""
     low, high = min(rig.ambient_c, hottest_c), max(rig.ambient_c, hottest_c)
     count = ceil((high - low) / WARMING_K)
     at_c = [low + (high - low) * place / count for place in range(count + 1)] if count else [low]
-    return Contact(compound, load_n, speed_m_s, friction_n(rig, compound, load_n, speed_m_s, at_c))
+    return PlannedContact(compound, load_n, speed_m_s, friction_n(rig, compound, load_n, speed_m_s, at_c))
 
 
-def unheld(rig: RigConfig, one: Contact) -> str:
+def unheld(rig: RigConfig, one: PlannedContact) -> str:
     """Return why the program alone does not keep a contact below harm, "" if it does."""
     times = stopping(rig, one.load_n, one.speed_m_s)
     heat_j = one.power_w * times.worst_s
@@ -146,7 +146,7 @@ def unheld(rig: RigConfig, one: Contact) -> str:
     return f"{_heat(one, times)}; harm begins at {HARMFUL_J:g} J"
 
 
-def remedy(rig: RigConfig, one: Contact) -> str:
+def remedy(rig: RigConfig, one: PlannedContact) -> str:
     """Return what lets the program hold a contact that it does not hold."""
     times, most_s = stopping(rig, one.load_n, one.speed_m_s), HARMFUL_J / one.power_w
     late_s = rig.interlocks.late_scan_s - (times.late_s - most_s)
@@ -155,7 +155,7 @@ def remedy(rig: RigConfig, one: Contact) -> str:
     return f"a smaller load, less torque of the drives (max_torque_per_mille), or {RELAY}"
 
 
-def _heat(one: Contact, times: Stopping) -> str:
+def _heat(one: PlannedContact, times: Stopping) -> str:
     cause = _CAUSES[times.index(times.worst_s)]
     who = one.compound or "rubber without a friction model"
     return (
@@ -177,7 +177,7 @@ def counted_on(rig: RigConfig, plan: Plan) -> list[str]:
     return [f"stopped contact: {why}: the relay that takes the torque off is COUNTED ON ({RELAY})"]
 
 
-def _contacts(rig: RigConfig, plan: Plan) -> Iterator[Contact]:
+def _contacts(rig: RigConfig, plan: Plan) -> Iterator[PlannedContact]:
     """Yield the contacts of a plan. What heats up rolls at the load of its condition or less, from ambient on."""
     compound, ambient_c = "", rig.ambient_c
     for step in plan.steps:

@@ -22,7 +22,7 @@ from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.recipe.references import AT
 from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD
 from tester.kinds.wheel_on_belt.rig.wheel_rig import RIPPLE_N
-from tester.kinds.wheel_on_belt.stopped_contact import POWER_SCATTER, Contact, contact, remedy, unheld
+from tester.kinds.wheel_on_belt.stopped_contact import POWER_SCATTER, PlannedContact, contact, remedy, unheld
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
@@ -39,7 +39,7 @@ lags (gates.ir_lag) and has a bias. On the simulated rig the excess is 1.2 K, an
 """
 
 
-def _power_w(one: Contact) -> float:
+def _power_w(one: PlannedContact) -> float:
     return one.power_w
 
 
