@@ -45,7 +45,8 @@ class ServoAxis(AxisCommand):
     the device, by (index, sub-index). Since connect ``plan`` lists the objects that the drive lacks, and the loss by
     that (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is
     the arrival of the last TPDO2, -inf before the first. A caller that sees no effect of the outputs sets
-    ``outputs_unanswered``: they are then sent again. ``stands``: between two SYNCs the drive reported standstill; the
+    ``outputs_unanswered``: they are then sent again. ``machine_late``: a simulated machine's report since connect that
+    its own computer was late, in words, "" if none. ``stands``: between two SYNCs the drive reported standstill; the
     caller clears it.
 
     The master calls the methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds``.
@@ -53,7 +54,8 @@ class ServoAxis(AxisCommand):
 
     __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "changed_s",
                  "diagnosis", "emergencies_dropped", "emergency", "emergency_log", "homed", "identity", "inputs",
-                 "inputs_stamp_s", "outputs_unanswered", "parameters", "plan", "rebooted", "stands", "torque_nm")
+                 "inputs_stamp_s", "machine_late", "outputs_unanswered", "parameters", "plan", "rebooted", "stands",
+                 "torque_nm")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config)
@@ -83,6 +85,7 @@ class ServoAxis(AxisCommand):
         self.heartbeat = HeartbeatMonitor(self.config.heartbeat_s)
         self.usual_heartbeat = b""
         self.emergency: Emergency | None = None
+        self.machine_late = ""
         self.identity: DeviceIdentity | None = None
         self.refused = None
         self.parameters: dict[tuple[int, int], int] = {}
@@ -200,6 +203,8 @@ class ServoAxis(AxisCommand):
         """Record an EMCY message that arrived at ``t``."""
         emergency = decode_emergency(data, t)
         self.emergency = None if emergency.is_reset else emergency
+        if emergency.code == o.MACHINE_LATE:
+            self.machine_late = emergency.text
         self.news = True
         if len(self.emergency_log) < _MAX_EMERGENCIES:
             self.emergency_log.append(emergency)

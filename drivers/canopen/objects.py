@@ -180,7 +180,10 @@ class OperationMode(IntEnum):
     HOMING = 6
 
 
+MACHINE_LATE = 0xFF4C
+"""Manufacturer's error code of the simulated machine: the computer that simulates it was late."""
 EMERGENCY_TEXT: dict[int, str] = {
+    MACHINE_LATE: "the computer that simulates this machine was late",
     0x0000: "error reset or no error",
     0x1000: "generic error",
     0x2310: "over-current",

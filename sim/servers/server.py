@@ -13,6 +13,8 @@ from math import inf
 from pathlib import Path
 from typing import Protocol
 
+from drivers.canopen import objects as o
+from drivers.canopen.messages import encode_emergency
 from sim.rig import SHORTEST_STEP_S, SimRig
 from sim.servers.adapter_door import AdapterDoor
 from sim.servers.connection import listen
@@ -22,6 +24,8 @@ from sim.servers.tcp_doors import GatewayDoor, SocketcandDoor
 
 STEP_S = 0.01
 """Longest step of the rig, s; after each the observer sees the rig."""
+LATE_S = 0.15
+"""Lateness that the machine reports, s of this computer's clock: drives are then taken for silent in every state."""
 LONGEST_SLEEP_S = 0.05
 """Longest delay before the loop notices a request to end, s of this computer's clock [A]."""
 
@@ -72,6 +76,8 @@ class RigServer:
             opened.pop_all()
         self._doors: list[WireDoor] = [self.can, *self.lines.values()]
         self._step_due_s = 0.0
+        self.starved_s: list[float] = []
+        """Every lateness beyond ``LATE_S`` while a program was on the CAN bus, s of this computer's clock."""
 
     @property
     def line_places(self) -> dict[str, Place]:
@@ -97,6 +103,8 @@ class RigServer:
         t = now()
         if t - due > self.latest_s:
             self.latest_s = t - due
+        if t - due > LATE_S * self.speed and self.can.taken:
+            self._report_late((t - due) / self.speed, t)
         (self.life or self.rig).advance(t)
         readable = set(ready)
         for door in self._doors:
@@ -108,6 +116,15 @@ class RigServer:
                 self.observer.observe(self.rig, self.can.taken)
             while self._step_due_s <= t:
                 self._step_due_s += STEP_S
+
+    def _report_late(self, late_s: float, t: float) -> None:
+        """Let a drive report that its machine was late, as a device reports an overrun: ms in the vendor's bytes."""
+        self.starved_s.append(late_s)
+        drive = next((drive for drive in self.rig.axes.values() if drive.io is not None), None)
+        if drive is not None:
+            milliseconds = min(round(1e3 * late_s), 0xFFFF).to_bytes(2, "little")
+            frame = encode_emergency(o.MACHINE_LATE, 1, milliseconds)
+            self.rig.can.transmit(o.EMERGENCY_BASE + drive.node_id, frame, t, True)
 
     def close(self) -> None:
         """Close every door."""

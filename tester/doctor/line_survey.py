@@ -151,7 +151,7 @@ def _ask_unit(scan: LineScan, port: LinePort, wires: Wires, unit: UnitSurvey) ->
             return
     for name, question in unit.settings():
         unit.configuration[name] = _patiently(scan, port, wires, question)
-    if RUN in unit.profile.switches:
+    if RUN in unit.profile.switches and not unit.profile.switches[RUN].coil:
         question = RegisterQuestion(unit.config.unit_id, unit.reads, unit.profile.switches[RUN].address, 1)
         unit.running = _patiently(scan, port, wires, question)
 

@@ -278,6 +278,10 @@ class DeviceList:
                 return True
         return False
 
+    def machine_late(self) -> str:
+        """Return that a simulated machine has reported its own computer late, in words; "" if none has."""
+        return next((drive.machine_late for drive in self.drives if drive.machine_late), "")
+
     def all_off(self) -> bool:
         """Return whether every drive's power stage is off."""
         return all(drive.state <= State.READY_TO_SWITCH_ON or drive.lost for drive in self.drives)

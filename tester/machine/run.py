@@ -189,6 +189,10 @@ class Run:
             self.outcome = Outcome.UNREACHABLE
         elif trip is not None:
             self.outcome, self.reason = Outcome.TRIPPED, f"{trip.name}: {trip.text}"
+            late = engine.devices.machine_late()
+            if late and late not in self.reason:
+                # A machine whose computer stands still looks like a cable, until it reports so.
+                self.reason = f"{self.reason}; {late}"
         elif engine.executor.failed:
             self.outcome, self.reason = Outcome.FAILED, engine.executor.failed
         elif engine.executor.finished:

@@ -183,6 +183,9 @@ class _Observers:
         self._server.speed = self._clock.speed
         for line in self._console.happened():
             self._say(line)
+        for late_s in self._server.starved_s:
+            self._say(f"this computer was late by {late_s:.2f} s: the machine stood still, and a drive reports it")
+        self._server.starved_s.clear()
         if self._show is not None:
             now = clock.monotonic()
             if now - self._shown_s >= SHOWN_EVERY_S:

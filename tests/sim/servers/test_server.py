@@ -216,3 +216,28 @@ def test_ports_that_are_taken_are_refused_and_none_stays_open() -> None:
         port = taken.getsockname()[1]
         with pytest.raises(OSError, match="in use"):
             RigServer(rig, "127.0.0.1", port)
+
+
+def test_a_machine_whose_own_computer_was_late_reports_it_before_its_drives_miss_anything(
+    bench: Bench, connect: Callable[[tuple[str, int]], socket.socket]
+) -> None:
+    client = connect(can_address(bench.server))
+    client.sendall(b"< open can0 >< rawmode >")
+    bench.run(0.1)
+    codes: list[int] = []
+    bench.rig.can.watch(
+        lambda _t, can_id, data, from_pc: codes.append(int.from_bytes(data[:2], "little"))
+        if can_id & 0x780 == 0x080 and len(data) == 8 and not from_pc
+        else None
+    )
+    bench.t += 1.0
+    bench.run(0.01)
+    assert codes[0] == 0xFF4C
+    assert bench.server.starved_s == [pytest.approx(1.0, abs=0.02)]
+
+
+def test_a_late_machine_that_no_program_uses_reports_nothing(bench: Bench) -> None:
+    bench.run(0.1)
+    bench.t += 1.0
+    bench.run(0.01)
+    assert bench.server.starved_s == []
