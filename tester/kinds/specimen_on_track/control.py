@@ -28,6 +28,7 @@ OUTPUT_S = 30.0
 FULL_PERCENT = 90.0
 MOVED_K = 0.3
 """Output that counts as full, and a change of the air beyond the noise of its reading [A]."""
+SETTLE_S = 6.0 * OUTPUT_S
 USUAL_S = 600.0
 """Time in which an output becomes the usual one of an air that stays as it is, s [A]: walls take so long."""
 LATE_S = 0.1
@@ -95,8 +96,14 @@ class TrackControl(StandstillControl[TrackState, TrackReadings, TrackDemand, Tra
         full = not -FULL_PERCENT < percent < FULL_PERCENT
         if view.full_c == inf or abs(r.air_c - view.full_c) > MOVED_K:
             # The first output finds an air at rest: all of it counts.
-            view.usual_percent = 0.0 if view.full_c == inf else percent
+            first = view.full_c == inf
+            view.settle_s = 0.0 if first else SETTLE_S
+            view.usual_percent = 0.0 if first else percent
             view.full_c, view.excess_s, view.full_s = r.air_c, 0.0, 0.0
+        if view.settle_s > 0.0:
+            # After a move the filtered output is still that of the move.
+            view.settle_s -= dt
+            view.usual_percent = percent
         view.excess_s += 0.01 * (percent - view.usual_percent) * dt
         view.usual_percent += (percent - view.usual_percent) * min(dt / USUAL_S, 1.0)
         view.full_s = view.full_s + dt if full else 0.0

@@ -118,6 +118,8 @@ class TrackInputs(ScanInputs):
     """Output of the chamber, filtered over ``OUTPUT_S``."""
     full_c: float = inf
     """The air's reading since which no output has moved it; infinite in standby."""
+    settle_s: float = 0.0
+    """Time left after a move until the filtered output is that of the air as it is."""
     usual_percent: float = 0.0
     """The output that keeps the air there."""
     full_s: float = 0.0
