@@ -12,7 +12,7 @@ from operator import attrgetter
 from typing import Final, TypeAlias
 
 from drivers.modbus import ModbusLink
-from drivers.modbus.link import POLL_S
+from drivers.modbus.schedule import POLL_S
 from drivers.profiles.model import DeviceProfile
 from drivers.sensor import Sensor
 

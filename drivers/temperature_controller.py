@@ -71,20 +71,14 @@ class TemperatureController(Device):
         itself, by its lease or its own setpoint; None: the hardware must switch the heat off when the PC is silent.
         Raises ProfileError for a profile without pv, output, setpoint, or a way to write setpoint and run.
         """
-        profile.expect(kind)
-        super().__init__(profile, unit_id, link)
         commanding = _COMMANDED[kind]
-        switch = self._switch = profile.switches.get("run")
-        if "setpoint" not in profile.writes or (switch is None) == (profile.standby_c is None):
-            raise ProfileError(f"profile {profile.name} does not say how to write the setpoint, or to run")
-        if commanding.needs_lease and "lease" not in profile.writes:
-            raise ProfileError(f"profile {profile.name} does not say how to write the lease, which a {kind} needs")
+        _check(profile, kind, commanding.needs_lease)
+        super().__init__(profile, unit_id, link)
+        self._switch = profile.switches.get("run")
         self._places: list[list[tuple[int, int]]] = [
             [(PARTS.index(signal.name), place) for place, signal in enumerate(block.signals) if signal.name in PARTS]
             for block in profile.blocks
         ]
-        for name in PARTS[:_STATUS]:
-            profile.signal(name)
         self._part_s: list[float] = [-inf] * len(PARTS)
         self._unpack = [block.unpack for block in profile.blocks]
         if not profile.has("status"):
@@ -111,8 +105,13 @@ class TemperatureController(Device):
         self.status = 0
         self.measured_c = self.output_percent = self.setpoint_c = nan
         self.sensor_break = self.out_of_range = self.lease_expired = False
-        renew_s, size, register = commanding.renew_s, self._register.size, self._register.address
-        standby_c = profile.standby_c
+        self._add_commands(commanding.renew_s)
+        self._set_up(commanding.lease_s)
+
+    def _add_commands(self, renew_s: float) -> None:
+        """Add the writes of the setpoint and, with a switch, of run and standby, repeated every ``renew_s``."""
+        profile, link, switch = self.profile, self.link, self._switch
+        size, register, standby_c = self._register.size, self._register.address, profile.standby_c
         self._no_heat = size * (0,) if standby_c is None else self._register.words(standby_c, profile.order)
         """Registers of the setpoint that takes the place of a switch."""
         self._setpoint_write = link.write(self.station, self.write_function(size), register, self._no_heat, renew_s)
@@ -120,7 +119,6 @@ class TemperatureController(Device):
         if switch is not None:
             function = self.write_function(1, switch.coil)
             self._run_write = link.write(self.station, function, switch.address, (switch.off,), renew_s)
-        self._set_up(commanding.lease_s)
 
     def _set_up(self, lease_s: float) -> None:
         """Add standby, the profile's own writes and the lease (s, if there is one) to the set-up."""
@@ -243,3 +241,14 @@ class TemperatureController(Device):
             self.link.enable(self._setpoint_write)
         if self._run_write is not None:
             self.link.enable(self._run_write)
+
+
+def _check(profile: DeviceProfile, kind: ControllerKind, needs_lease: bool) -> None:
+    """Raise ProfileError for a profile that a controller of ``kind`` cannot be read or commanded by."""
+    profile.expect(kind)
+    if "setpoint" not in profile.writes or ("run" in profile.switches) == (profile.standby_c is not None):
+        raise ProfileError(f"profile {profile.name} does not say how to write the setpoint, or to run")
+    if needs_lease and "lease" not in profile.writes:
+        raise ProfileError(f"profile {profile.name} does not say how to write the lease, which a {kind} needs")
+    for name in PARTS[:_STATUS]:
+        profile.signal(name)

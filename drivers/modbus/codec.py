@@ -68,6 +68,9 @@ EXCEPTION_TEXTS = {
     11: "gateway target failed to respond",
 }
 """Exception codes (Modbus application protocol V1.1b3, 7); 8 on a write: write-protected (JUMO)."""
+CONFIGURATION, WRITE_PROTECTED, DEVICE_GONE = frozenset({1, 2, 3}), 8, frozenset({10, 11})
+"""Exceptions of a device that is not as its profile says; one that is this for a write alone; those of a gateway whose
+device is absent."""
 
 # Without this handler the library would report bad frames on stderr; the link counts them instead.
 logging.getLogger("pymodbus").addHandler(logging.NullHandler())

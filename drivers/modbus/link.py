@@ -15,21 +15,11 @@ from drivers.modbus import codec
 from drivers.modbus.answers import AnswerKind, ReplySoFar, SerialEar, numbered, tcp_answer
 from drivers.modbus.line import LineType
 from drivers.modbus.request import Owner, Request, Station
-from drivers.modbus.schedule import PROBE_S, Schedule
+from drivers.modbus.schedule import BUSY_S, MISSES_TO_LOSE, POLL_S, PROBE_S, Schedule
 from drivers.ports import BusLost, LineFraming, LinePort, Parity, RenewablePort
 from drivers.profiles.model import Timing
 
-MISSES_TO_LOSE: Final = 3
-"""Failed attempts in a row after which a station counts as lost (safety page: 3 misses)."""
-BUSY_S: Final = 0.02
-"""Pause before a request is repeated after exceptions 04 to 07, or 08 on a read: a device that is busy or failed, s."""
-POLL_S: Final = 0.002
-"""While other requests wait and a reply is overdue, the link asks to be served on a grid of this, s."""
-
 _TINY_S: Final = 1e-9
-_CONFIGURATION: Final = frozenset({1, 2, 3})
-_WRITE_PROTECTED: Final = 8
-_DEVICE_GONE: Final = frozenset({10, 11})
 _GOOD: Final = AnswerKind.GOOD
 
 
@@ -245,8 +235,7 @@ class ModbusLink(LineType):
         station = request.station
         station.counters.replies += 1
         station.misses = 0
-        if request.writes:
-            request.misses = 0
+        request.misses = 0
         station.is_lost = False
         schedule = self._schedule
         if not station.reply.measured:
@@ -322,14 +311,14 @@ class ModbusLink(LineType):
         station = request.station
         exceptions = station.counters.exceptions
         exceptions[code] = exceptions.get(code, 0) + 1
-        if code in _CONFIGURATION or (code == _WRITE_PROTECTED and request.writes):
+        if code in codec.CONFIGURATION or (code == codec.WRITE_PROTECTED and request.writes):
             self._end(t + self.gap_s)
             self._schedule.disable(request)
             self._schedule.look_again()
             if station.refused is None:
                 text = codec.EXCEPTION_TEXTS[code]
                 station.refused = f"exception {code} ({text}) on {request.describe()}"
-        elif code in _DEVICE_GONE:
+        elif code in codec.DEVICE_GONE:
             self._end(t + self.gap_s)
             station.misses = MISSES_TO_LOSE
             self._schedule.failed(request, t)

@@ -7,6 +7,12 @@ from typing import Final
 
 from drivers.modbus.request import Request, Station
 
+MISSES_TO_LOSE: Final = 3
+"""Failed attempts in a row after which a station counts as lost (safety page: 3 misses)."""
+BUSY_S: Final = 0.02
+"""Pause before a request is repeated after exceptions 04 to 07, or 08 on a read: a device that is busy or failed, s."""
+POLL_S: Final = 0.002
+"""While other requests wait and a reply is overdue, the link asks to be served on a grid of this, s."""
 PROBE_S: Final = 1.0
 """Pause between attempts to reach a lost station, s: other stations need the line."""
 RETRY_S: Final = 0.5

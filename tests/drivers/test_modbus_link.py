@@ -10,7 +10,7 @@ import pytest
 from drivers.crc16 import with_crc
 from drivers.modbus import ModbusLink, codec
 from drivers.modbus.line import silent_gap_s
-from drivers.modbus.link import POLL_S
+from drivers.modbus.schedule import POLL_S
 from drivers.ports import BusLost
 from drivers.profiles import Timing
 from tests.drivers.modbus_bench import TIMING, Bench, Notes, reply
