@@ -71,12 +71,7 @@ class ControllerSlave(ModbusSlave):
         self._setup = frozenset(
             (write.address + place, word) for write in steps for place, word in enumerate(write.words)
         )
-        kept = {address for address, _ in self._setup}
-        if self._switch is not None and not self._switch.coil:
-            kept.add(self._switch.address)
-        if self._lease is not None:
-            kept.add(self._lease.address)
-        self.stored = frozenset(kept)
+        self.stored = frozenset({address for address, _ in self._setup} | _kept(profile))
         self._place(profile)
         self.source = source
         self._pid = Pid(plant)
@@ -291,3 +286,12 @@ def _registers(profile: DeviceProfile) -> list[tuple[int, int]]:
     registers += [(write.address, write.count) for write in profile.setup if write.read not in BIT_READS]
     registers += [(switch.address, 1) for switch in profile.switches.values() if not switch.coil]
     return registers if profile.identity is None else [*registers, (profile.identity.address, 1)]
+
+
+def _kept(profile: DeviceProfile) -> set[int]:
+    """Return the addresses of the switch and of the lease, if these are registers."""
+    switch, lease = profile.switches.get("run"), profile.writes.get("lease")
+    kept = {lease.address} if lease is not None else set[int]()
+    if switch is not None and not switch.coil:
+        kept.add(switch.address)
+    return kept
