@@ -56,14 +56,9 @@ class ControllerSlave(ModbusSlave):
         shown = [profile.signal(name) for name in _SHOWN[:3]]
         self._scales = tuple(signal.scale for signal in shown)
         self._floats = tuple(signal.type == "f32" for signal in shown)
-        # If the profile has an alarm of its own, over_range is for its sensor.
-        self._hot_bits = profile.bit("alarm_1") or profile.bit("over_range")
-        self._cold_bits = profile.bit("under_range")
-        self._break_bits = profile.bit("sensor_break") | profile.bit("over_range") & ~self._hot_bits
-        self._expired_bits = profile.bit("remote_fail") | profile.bit("lease_expired")
+        self._take_bits(profile)
         self._setpoint = profile.writes["setpoint"]
-        self._lease = profile.writes.get("lease")
-        self._falls_back_s = profile.falls_back_s
+        self._lease, self._falls_back_s = profile.writes.get("lease"), profile.falls_back_s
         self._order = profile.order
         self._switch = profile.switches.get("run")
         self._standby_c = profile.standby_c
@@ -75,8 +70,8 @@ class ControllerSlave(ModbusSlave):
         self._place(profile)
         self.source = source
         self._pid = Pid(plant)
-        self._cycle_s, self._coldest_c, self._latches = plant.cycle_s, plant.coldest_c, plant.latches
-        self._refuses = plant.refuses
+        self._cycle_s, self._coldest_c = plant.cycle_s, plant.coldest_c
+        self._latches, self._refuses = plant.latches, plant.refuses
         self._power_w = POWER_W if profile.kind == "jacket" else 0.0
         self.hottest_c = plant.hottest_c
         self.due_s = -inf
@@ -87,6 +82,14 @@ class ControllerSlave(ModbusSlave):
         self._broken = False
         self._renewed_s = -inf
         self.dither = 0
+
+    def _take_bits(self, profile: DeviceProfile) -> None:
+        """Take the meaning of the status bits."""
+        # If the profile has an alarm of its own, over_range is for its sensor.
+        self._hot_bits = profile.bit("alarm_1") or profile.bit("over_range")
+        self._cold_bits = profile.bit("under_range")
+        self._break_bits = profile.bit("sensor_break") | profile.bit("over_range") & ~self._hot_bits
+        self._expired_bits = profile.bit("remote_fail") | profile.bit("lease_expired")
 
     def _place(self, profile: DeviceProfile) -> None:
         """Set the type, the switch to standby, and what the set-up waits for."""
