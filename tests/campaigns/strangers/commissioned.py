@@ -25,7 +25,13 @@ LASTS_S = {"cell": 260.0, "thermometer": 300.0, "watchdogs": 20.0}
 USUAL_S = 35.0
 PLANNED_W = 120.0
 """Slip speed times load that commissioning asks for at most, W: 200 N at 0.6 m/s."""
+GIVEN_UP_S = 600.0
+"""A commissioning that waits for a person so long is ended, s of rig time."""
 _OF_FRAMES = ("frames lost", "frozen", "commands lost", "off the bus", "computer late")
+
+
+class GivenUpError(Exception):
+    """The machine waits for a person who does nothing: a guard that stays open."""
 
 
 class Watched:
@@ -48,6 +54,8 @@ class Watched:
                 (begin_s + one.after_s, Defect(one.place, one.size, one.course)) for one in self.case.defects
             ]
             self._begun = []
+        if now > GIVEN_UP_S:
+            raise GivenUpError
         scene = Scene(world, None)
         while self._defects and self._defects[0][0] <= now:
             begun = self._defects.pop(0)[1]
@@ -96,8 +104,10 @@ def _tried(case: Case, seed: int) -> Outcome:
     watched = Watched(case)
     with TemporaryDirectory() as folder:
         steps = tuple(step for step in STEPS if step.name == case.moment.step)
-        outcome = Bench(Path(folder) / "record.jsonl", seed, steps=steps, look=watched.look).run()
+        try:
+            outcome = Bench(Path(folder) / "record.jsonl", seed, steps=steps, look=watched.look).run()
+            watched.outcome.noticed = "" if outcome.ended is Ended.DONE else outcome.text
+        except GivenUpError:
+            watched.outcome.noticed = "it waits for a person"
     watched.end()
-    if outcome.ended is not Ended.DONE:
-        watched.outcome.noticed = outcome.text
     return watched.outcome

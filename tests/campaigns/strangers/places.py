@@ -74,6 +74,11 @@ def _brakes(drive: Any, share: float) -> None:
         drive.axis.deceleration = max(min(drive.axis.deceleration, (1.0 - share) * drive.config.deceleration), _FEW)
 
 
+def _misreads(drive: Any, size: float) -> None:
+    """Measure the torque, and limit it, with an error of gain."""
+    drive.misread_torque(1.0 + size, 0.0)
+
+
 def _held(drive: Any, size: float) -> None:
     if drive.axis.blocked != (size != 0.0):
         drive.block(size != 0.0)
@@ -267,6 +272,7 @@ WHEEL: tuple[Place, ...] = (
     Place("belt slower than shown", "", -0.4, 0.6, _scale("belt_speed")),
     Place("wheel torque shown", "", -0.8, 0.8, _torque("wheel_shaft")),
     Place("belt torque shown", "", -0.8, 0.8, _torque("belt_shaft")),
+    Place("press torque measured", "", -0.5, 1.0, _on_axis("press", _misreads)),
     Place("friction", "", -0.9, 1.0, _plant(lambda plant, size: plant.set_grip(1.0 + size))),
     Place("belt slips on its roller", "", 0.0, 0.6, _belt_slip),
     Place("wheel towards the belt", "mm", -2.0, 2.0, _touch),
