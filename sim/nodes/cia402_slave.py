@@ -47,28 +47,15 @@ class Cia402Slave(DrivePower):
 
     For the plant: ``axis.value`` (velocity) and ``axis.position`` are in units of the axis. ``torque_nm`` is the load
     torque for 0x6077 with the error of its measuring (``torque_gain``, ``torque_offset_nm``), set from outside, and
-    ``encoder_error`` the error of TPDO1's reading. ``io``
-    are the safety inputs and the contactor of a drive with digital I/O. While the power stage is off the axis
-    is driven to ``unpowered_velocity`` (unit/s; a spring; 0: it coasts to rest) with ``coast_deceleration`` (unit/s2;
-    by default the configured deceleration [A]).
+    ``encoder_error`` the error of TPDO1's reading. ``io`` are the safety inputs and the contactor of a drive with
+    digital I/O. While the power stage is off the axis is driven to ``unpowered_velocity`` (unit/s; a spring; 0: it
+    coasts to rest) with ``coast_deceleration`` (unit/s2; by default the configured deceleration [A]).
     """
 
     __slots__ = (
-        "_by_position",
-        "_increments",
-        "_mode_bits",
-        "_offset",
-        "_per_mille",
-        "_remote_bit",
-        "_sent_data",
-        "_sent_status",
-        "_sent_torque",
-        "_sent_value",
-        "_velocity",
-        "encoder_error",
-        "homed",
-        "homing",
-    )
+        "_by_position", "_increments", "_mode_bits", "_offset", "_per_mille", "_remote_bit", "_sent_data",
+        "_sent_status", "_sent_torque", "_sent_value", "_velocity", "encoder_error", "homed", "homing",
+    )  # fmt: skip
 
     def __init__(
         self,

@@ -42,28 +42,10 @@ class DrivePower(CanopenDevice):
     """
 
     __slots__ = (
-        "_causes",
-        "_controlword",
-        "_leaving",
-        "_steady",
-        "axis",
-        "coast_deceleration",
-        "config",
-        "io",
-        "local",
-        "mode",
-        "modes",
-        "origin",
-        "ramps",
-        "state",
-        "statusword",
-        "torque_gain",
-        "torque_nm",
-        "torque_off",
-        "torque_offset_nm",
-        "unpowered_velocity",
-        "watching",
-    )
+        "_causes", "_controlword", "_leaving", "_steady", "axis", "coast_deceleration", "config", "io",
+        "local", "mode", "modes", "origin", "ramps", "state", "statusword", "torque_gain", "torque_nm",
+        "torque_off", "torque_offset_nm", "unpowered_velocity", "watching",
+    )  # fmt: skip
 
     def __init__(
         self,

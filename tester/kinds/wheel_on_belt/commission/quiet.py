@@ -108,13 +108,10 @@ class Jogging(Moving):
         self.rig = rig
         self.jog: JogMove | None = None
         self._earlier = self._marked = 0.0
-        """Way from the mark to the begin of the present jog, and the position at the mark: of velocity and position
-        feedback."""
+        """Way from the mark to the present jog (velocity feedback), and the position at the mark (position)."""
         self._drives: dict[str, ServoDrive] = {drive.config.name: drive for drive in devices.drives}
         self._phase = ""
-        self._since_s = 0.0
-        self._last_s = 0.0
-        self._from = 0.0
+        self._since_s = self._last_s = self._from = 0.0
         self._rest: tuple[float, ...] = ()
         """Readings of the cell before the jog."""
 
