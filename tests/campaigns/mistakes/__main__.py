@@ -16,6 +16,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import chain
 from math import ceil
 from pathlib import Path
 from time import process_time
@@ -32,6 +33,8 @@ LISTED_SHARE = 0.9
 """Least share of another hand's list that is to be named."""
 SOURCES = ("by_doctor", "by_answers", "by_commissioning")
 """Modules of this package that bring ``MISTAKES`` and ``clean``, quick ones first."""
+SECOND_HAND = Path(__file__).with_name("second_hand.yaml")
+"""Mistakes by another author than the probes'."""
 CLEAN_SEEDS = 10
 
 
@@ -108,7 +111,12 @@ def main() -> int:
     modules = sources(SOURCES[:2]) if given.sample else sources()
     seeds, clean_seeds = (1, 5) if given.sample else (given.seeds, CLEAN_SEEDS)
     missed, total = 0, 0
-    measured = listed(given.list, seeds) if given.list else figures(modules, seeds, clean_seeds, given.names)
+    if given.list:
+        measured = listed(given.list, seeds)
+    else:
+        measured = figures(modules, seeds, clean_seeds, given.names)
+        if not given.sample and not given.names:
+            measured = chain(measured, listed(SECOND_HAND, seeds))
     for figure in measured:
         print(figure, flush=True)
         missed, total = missed + (not figure.ok), total + 1
