@@ -45,9 +45,9 @@ class ServoAxis(AxisCommand):
     the device, by (index, sub-index). Since connect ``plan`` lists the objects that the drive lacks, and the loss by
     that (``without``). ``inputs`` and ``outputs`` have the program's bits (drivers.digital_io). ``inputs_stamp_s`` is
     the arrival of the last TPDO2, -inf before the first. A caller that sees no effect of the outputs sets
-    ``outputs_unanswered``: they are then sent again. ``machine_late``: a simulated machine's report since connect that
-    its own computer was late, in words, "" if none. ``stands``: between two SYNCs the drive reported standstill; the
-    caller clears it.
+    ``outputs_unanswered``: they are then sent again. ``machine_late``: a simulated machine's latest reports that its
+    own computer was late: arrival in s, lateness in ms. ``stands``: between two SYNCs the drive reported standstill;
+    the caller clears it.
 
     The master calls the methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds``.
     """
@@ -85,7 +85,7 @@ class ServoAxis(AxisCommand):
         self.heartbeat = HeartbeatMonitor(self.config.heartbeat_s)
         self.usual_heartbeat = b""
         self.emergency: Emergency | None = None
-        self.machine_late = ""
+        self.machine_late: list[tuple[float, int]] = []
         self.identity: DeviceIdentity | None = None
         self.refused = None
         self.parameters: dict[tuple[int, int], int] = {}
@@ -202,9 +202,12 @@ class ServoAxis(AxisCommand):
     def on_emergency(self, t: float, data: bytes) -> None:
         """Record an EMCY message that arrived at ``t``."""
         emergency = decode_emergency(data, t)
+        if emergency.code == o.MACHINE_LATE and emergency.vendor[2:] == o.MACHINE_LATE_MARK:
+            # No fault of the drive: the run continues as long as its own limits hold.
+            self.machine_late.append((t, int.from_bytes(emergency.vendor[:2], "little")))
+            del self.machine_late[:-_MAX_EMERGENCIES]
+            return
         self.emergency = None if emergency.is_reset else emergency
-        if emergency.code == o.MACHINE_LATE:
-            self.machine_late = emergency.text
         self.news = True
         if len(self.emergency_log) < _MAX_EMERGENCIES:
             self.emergency_log.append(emergency)

@@ -181,7 +181,11 @@ class OperationMode(IntEnum):
 
 
 MACHINE_LATE = 0xFF4C
-"""Manufacturer's error code of the simulated machine: the computer that simulates it was late."""
+"""Manufacturer's error code of the simulated machine: the computer that simulates it was late.
+
+The vendor's bytes are its lateness in ms (two bytes), then ``MACHINE_LATE_MARK``. With them it is no fault of a drive.
+"""
+MACHINE_LATE_MARK = b"sim"
 EMERGENCY_TEXT: dict[int, str] = {
     MACHINE_LATE: "the computer that simulates this machine was late",
     0x0000: "error reset or no error",

@@ -24,8 +24,11 @@ from sim.servers.tcp_doors import GatewayDoor, SocketcandDoor
 
 STEP_S = 0.01
 """Longest step of the rig, s; after each the observer sees the rig."""
-LATE_S = 0.15
-"""Lateness that the machine reports, s of this computer's clock: drives are then taken for silent in every state."""
+LATE_S = 0.015
+"""Lateness that the machine reports, s of this computer's clock: a scan of 100 Hz trips where two answers are missing.
+"""
+STARVED_S = 0.15
+"""Lateness of which its user reads, s of this computer's clock: drives are then taken for silent in every state."""
 LONGEST_SLEEP_S = 0.05
 """Longest delay before the loop notices a request to end, s of this computer's clock [A]."""
 
@@ -77,7 +80,7 @@ class RigServer:
         self._doors: list[WireDoor] = [self.can, *self.lines.values()]
         self._step_due_s = 0.0
         self.starved_s: list[float] = []
-        """Every lateness beyond ``LATE_S`` while a program was on the CAN bus, s of this computer's clock."""
+        """Every lateness beyond ``STARVED_S`` while a program was on the CAN bus, s of this computer's clock."""
 
     @property
     def line_places(self) -> dict[str, Place]:
@@ -118,13 +121,14 @@ class RigServer:
                 self._step_due_s += STEP_S
 
     def _report_late(self, late_s: float, t: float) -> None:
-        """Let a drive report that its machine was late, as a device reports an overrun: ms in the vendor's bytes."""
-        self.starved_s.append(late_s)
+        """Let a drive report that its machine was late, as a device reports an overrun."""
+        if late_s > STARVED_S:
+            self.starved_s.append(late_s)
         drive = next((drive for drive in self.rig.axes.values() if drive.io is not None), None)
         if drive is not None:
             milliseconds = min(round(1e3 * late_s), 0xFFFF).to_bytes(2, "little")
-            frame = encode_emergency(o.MACHINE_LATE, 1, milliseconds)
-            self.rig.can.transmit(o.EMERGENCY_BASE + drive.node_id, frame, t, True)
+            frame = encode_emergency(o.MACHINE_LATE, 0, milliseconds + o.MACHINE_LATE_MARK)
+            self.rig.can.transmit(o.EMERGENCY_BASE + drive.node_id, frame, t)
 
     def close(self) -> None:
         """Close every door."""

@@ -10,6 +10,7 @@ from math import inf, nan
 from typing import Any, Final, Protocol
 
 from drivers.canopen.master import CanMaster
+from drivers.canopen.objects import EMERGENCY_TEXT, MACHINE_LATE
 from drivers.canopen.sensor_node import SensorNode
 from drivers.cia402 import Goal, State
 from drivers.modbus import ModbusLink
@@ -278,9 +279,19 @@ class DeviceList:
                 return True
         return False
 
-    def machine_late(self) -> str:
-        """Return that a simulated machine has reported its own computer late, in words; "" if none has."""
-        return next((drive.machine_late for drive in self.drives if drive.machine_late), "")
+    def machine_late(self, from_s: float, to_s: float) -> str:
+        """Return that a simulated machine's own computer was late in this time, in words; "" if none reports so."""
+        most_ms = 0
+        for drive in self.drives:
+            for at_s, late_ms in drive.machine_late:
+                # The report arrives at the end of the lateness.
+                if late_ms > most_ms and at_s >= from_s and at_s - 1e-3 * late_ms <= to_s:
+                    most_ms = late_ms
+        return f"{EMERGENCY_TEXT[MACHINE_LATE]} by {most_ms} ms" if most_ms else ""
+
+    def bus_silent(self, now: float, longest_s: float) -> bool:
+        """Return whether no frame has arrived on the CAN bus for longer than ``longest_s``."""
+        return not (now - self._can_heard_s <= longest_s)
 
     def all_off(self) -> bool:
         """Return whether every drive's power stage is off."""

@@ -22,6 +22,15 @@ POWER_OFF_S: Final = 2.0
 """After this time a drive is released even if it has not switched its power off, s [A]."""
 RELEASE_S: Final = 5.0
 """Time limit for the drives to stop watching our heartbeat, s [A]."""
+LATE_NAMED_S: Final = 0.015
+"""A scan as late as this is named beside an alarm, s: replies of 10 ms are then read late, and asked again."""
+LATE_BEFORE_S: Final = 1.0
+"""A lateness counts as long before an alarm, s: a device is asked five times before it counts as silent [A]."""
+OVERLAP_S: Final = 0.05
+"""A lateness may begin as long after an alarm, s: both clocks are read at different moments [A]."""
+CONNECTION_S: Final = 5.0
+"""The same before a connection has failed, s: its axes are stopped and released first."""
+MOST_LATE: Final = 100
 
 
 class Outcome(Enum):
@@ -54,6 +63,8 @@ class Run:
         self._refused = False
         self._trip: Trip | None = None
         self._releasing = False
+        self._late_scans: list[tuple[float, float]] = []
+        """The latest late scans: time and lateness, s."""
 
     @property
     def connected(self) -> bool:
@@ -128,7 +139,9 @@ class Run:
         due = self.connector.tick(now)
         if self.connector.stage is Stage.FAILED:
             if self.outcome is Outcome.RUNNING:
-                self.outcome, self.reason = Outcome.UNREACHABLE, self.connector.failure
+                late = self.engine.devices.machine_late(now - CONNECTION_S, now)
+                self.outcome = Outcome.UNREACHABLE
+                self.reason = f"{self.connector.failure}; {late}" if late else self.connector.failure
             self.finished = True
         elif self.connector.stage is Stage.READY:
             self._arm(now, due)
@@ -163,6 +176,9 @@ class Run:
     def _supervise(self, now: float) -> None:
         engine = self.engine
         state = engine.control.state
+        if state.last_late_s > LATE_NAMED_S and state.trip is None:
+            self._late_scans.append((state.last_s, state.last_late_s))
+            del self._late_scans[:-MOST_LATE]
         self._trip = state.trip or self._trip
         if state.mode is Mode.RUN or state.mode is Mode.HOLD:
             # A recipe does not end in a hold, but manual mode may have ended there.
@@ -182,6 +198,17 @@ class Run:
         elif not any(devices.master.busy(drive) for drive in devices.drives) or now - self._ended_s > RELEASE_S:
             self._finish()
 
+    def _late(self, at_s: float) -> str:
+        """Return which computer was late before ``at_s``, in words, "" if none.
+
+        A computer that is late looks like a cable or a device: both sides are therefore named beside the alarm.
+        """
+        devices: DeviceList = self.engine.devices
+        machine = devices.machine_late(at_s - LATE_BEFORE_S, at_s + OVERLAP_S)
+        here = [late_s for scan_s, late_s in self._late_scans if at_s - LATE_BEFORE_S <= scan_s <= at_s + OVERLAP_S]
+        own = f"; this computer was late by {1e3 * max(here):.0f} ms" if here else ""
+        return own + (f"; {machine}" if machine else "")
+
     def _finish(self) -> None:
         engine = self.engine
         trip = self._trip
@@ -189,10 +216,7 @@ class Run:
             self.outcome = Outcome.UNREACHABLE
         elif trip is not None:
             self.outcome, self.reason = Outcome.TRIPPED, f"{trip.name}: {trip.text}"
-            late = engine.devices.machine_late()
-            if late and late not in self.reason:
-                # A machine whose computer stands still looks like a cable, until it reports so.
-                self.reason = f"{self.reason}; {late}"
+            self.reason += self._late(trip.at_s)
         elif engine.executor.failed:
             self.outcome, self.reason = Outcome.FAILED, engine.executor.failed
         elif engine.executor.finished:

@@ -73,6 +73,22 @@ def test_a_device_that_falls_silent_is_a_trip(running: Simulation, line: str, un
     assert running.run.outcome is Outcome.TRIPPED and running.run.reason.startswith(interlock)
 
 
+def test_a_trip_names_the_computer_that_was_late_before_it_and_no_other(running: Simulation) -> None:
+    drives = running.run.engine.devices.drives
+    drives[0].machine_late += [(running.now - 5.0, 400), (running.now - 0.2, 65), (running.now - 0.1, 20)]
+    running.world.axes["press"].set_guard(False)
+    running.to_the_end()
+    assert running.run.reason.endswith("; the computer that simulates this machine was late by 65 ms")
+
+
+def test_a_trip_names_its_own_computer_where_scans_came_late(running: Simulation) -> None:
+    running.now += 0.08
+    running.run.tick(running.now)
+    running.world.axes["press"].set_guard(False)
+    running.to_the_end()
+    assert "; this computer was late by 8" in running.run.reason
+
+
 def test_a_drive_that_goes_dark_is_a_trip(running: Simulation) -> None:
     running.world.axes["belt"].power(False)
     running.to_the_end()
