@@ -18,7 +18,7 @@ from tester.machine import line_speed
 from tester.machine.devices import INPUT_GUARD, INPUT_SAFETY_CHAIN, DeviceList
 from tester.machine.proof import WatchdogProof
 from tester.machine.safety_inputs import InputStates
-from tester.machine.wires import CAN_SILENT, STALE_INPUTS_S
+from tester.machine.wires import CAN_SILENT, SILENT_CAN_HEARTBEATS, STALE_INPUTS_S
 
 CONNECT_S = 0.01
 """Period of the ticks while connecting, s: an SDO exchange takes half a millisecond on the wire."""
@@ -144,6 +144,7 @@ class Connector:
         self.devices = devices
         self.rig = rig
         self.listen_s = listen_s
+        self._silent_s = rig.values()[SILENT_CAN_HEARTBEATS] * rig.can.drive_heartbeat_s
         self.arming = arming
         self.stage = Stage.LISTEN
         self.failure = ""
@@ -228,6 +229,10 @@ class Connector:
             self._listen(elapsed)
         elif not devices.busy():
             self._next(now)
+        silent = self.arming.silent()
+        if self.failed and not devices.lost and silent not in self.failure and devices.bus_silent(now, self._silent_s):
+            # Where the whole bus is silent, the cable is the cause, and the drive that was missed first is not.
+            self.failure = f"not armed: {silent} ({self.failure.removeprefix('not armed: ')})"
 
     def _listen(self, elapsed: float) -> None:
         if elapsed < self.listen_s:

@@ -55,6 +55,17 @@ def test_every_modbus_device_has_reported(simulation: Simulation) -> None:
     assert devices.cell.valid and devices.thermometer.valid and devices.jacket.valid
 
 
+@pytest.mark.parametrize("stage", [Stage.CONFIGURE, Stage.LIFT, Stage.HOME, Stage.PROVE])
+def test_a_bus_that_falls_silent_is_named_as_the_cable_and_no_drive_is(simulation: Simulation, stage: Stage) -> None:
+    connector = simulation.run.connector
+    while connector.stage is not stage:
+        simulation.world.advance(simulation.now)
+        simulation.now = connector.tick(simulation.now)
+    for axis in simulation.world.axes.values():
+        axis.power(False)
+    assert connect(simulation).failure.startswith("not armed: CAN silent: CAN cable")
+
+
 @pytest.mark.parametrize("name", ["wheel", "press", "camber"])
 def test_an_absent_node_is_named(simulation: Simulation, name: str) -> None:
     simulation.world.axes[name].power(False)
