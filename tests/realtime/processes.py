@@ -48,10 +48,12 @@ class NotReachedError(Exception):
 class SimProcess:
     """`tester sim` in a folder of its own."""
 
-    def __init__(self, folder: Path, overrides: Sequence[str] = OVERRIDES, *, bus_log: bool = False) -> None:
-        """Start it and wait until it is ready; raises NotReachedError."""
+    def __init__(
+        self, folder: Path, overrides: Sequence[str] = OVERRIDES, *, bus_log: bool = False, options: Sequence[str] = ()
+    ) -> None:
+        """Start it, with further options, and wait until it is ready; raises NotReachedError."""
         self.rig_file, self.bus_log = folder / "rig.yaml", folder / "bus"
-        arguments = ["sim", "--write-rig", str(self.rig_file), "--log", str(folder / "state.csv")]
+        arguments = ["sim", "--write-rig", str(self.rig_file), "--log", str(folder / "state.csv"), *options]
         arguments += [word for override in overrides for word in ("--set", override)]
         arguments += ["--bus-log", str(self.bus_log)] if bus_log else []
         self.errors = folder / "sim.err"

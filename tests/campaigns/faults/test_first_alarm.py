@@ -15,14 +15,6 @@ def test_the_first_alarm_names_what_was_pulled_out_while_the_wheel_slides() -> N
     assert unnamed(found) == []
 
 
-@pytest.mark.parametrize("what", ["CAN plug out", "CAN adapter out"])
-def test_the_cable_is_named_at_any_moment_between_two_scans(what: str) -> None:
-    moments_s = [2e-4 * number for number in range(100)]
-    found = conduct([one for one in PULLED if one.what == what], ("measure",), moments_s=moments_s)
-    assert len(found) == len(moments_s)
-    assert unnamed(found) == []
-
-
 @pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(5))
 def test_the_first_alarm_names_it_at_every_step_with_contact(seed: int) -> None:
