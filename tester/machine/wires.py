@@ -52,8 +52,8 @@ def _bus_silent(v: Any) -> bool:
         return True
     # A plug that is pulled between two drives' answers makes the data of the later drive old one scan before the whole
     # bus counts as silent. The alarm must name the cable: not one drive has answered the last SYNC. Where data are old
-    # because this computer was late, it must not.
-    if not (silent_s > SILENT_SCANS * v.scan_s and late_s < v.scan_s):
+    # because this computer was late, it must not: the answers to its last SYNC have arrived meanwhile.
+    if not (silent_s > SILENT_SCANS * v.scan_s and r.can_heard_s <= v.last_s):
         return False
     return r.drives_enabled and v.demand.enabled and drive_data_old(v)
 

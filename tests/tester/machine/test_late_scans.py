@@ -53,7 +53,7 @@ def tripped(row: Interlock, late_s: Sequence[float], lost: Collection[int] = ())
         shown = SimpleNamespace(now_s=now_s, drive_stamps_s=stamps, can_heard_s=heard_s, drives_enabled=True)
         looked_at = view(
             readings=shown, demand=SimpleNamespace(enabled=True), limits=SimpleNamespace(heartbeat_s=0.05),
-            late_s=control.view.late_s, late_before_s=control.view.late_before_s,
+            last_s=control.view.last_s, late_s=control.view.late_s, late_before_s=control.view.late_before_s,
         )  # fmt: skip
         if row.holds(looked_at):
             found.append(number)
@@ -103,3 +103,18 @@ def test_never_more_than_stale_can(late_s: float) -> None:
 
 def test_after_a_pause_longer_than_stale_can_drive_data_trip() -> None:
     assert tripped(DRIVE_DATA_STALE, late_by(0.16))[:1] == [LATE]
+
+
+@pytest.mark.parametrize(("heard_s", "silent"), [(0.962, True), (0.972, False)])
+def test_a_bus_without_an_answer_since_a_late_scan_is_silent_and_one_drive_without_is_not(
+    heard_s: float, silent: bool
+) -> None:
+    readings = SimpleNamespace(
+        now_s=1.0, can_heard_s=heard_s, drives_enabled=True, drive_stamps_s=lambda: (heard_s, 0.952)
+    )
+    late = view(
+        readings=readings, demand=SimpleNamespace(enabled=True), limits=SimpleNamespace(heartbeat_s=0.05),
+        last_s=0.97, late_s=0.02, late_before_s=0.0,
+    )  # fmt: skip
+    assert DRIVE_DATA_STALE.holds(late)
+    assert CAN_SILENT.holds(late) is silent
