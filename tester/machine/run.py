@@ -205,9 +205,9 @@ class Run:
         """
         devices: DeviceList = self.engine.devices
         machine = devices.machine_late(at_s - LATE_BEFORE_S, at_s + OVERLAP_S)
-        here = [late_s for scan_s, late_s in self._late_scans if at_s - LATE_BEFORE_S <= scan_s <= at_s + OVERLAP_S]
-        own = f"; this computer was late by {1e3 * max(here):.0f} ms" if here else ""
-        return own + (f"; {machine}" if machine else "")
+        late_s = [late_s for scan_s, late_s in self._late_scans if at_s - LATE_BEFORE_S <= scan_s <= at_s + OVERLAP_S]
+        controller = f"; this computer was late by {1e3 * max(late_s):.0f} ms" if late_s else ""
+        return controller + (f"; {machine}" if machine else "")
 
     def _finish(self) -> None:
         engine = self.engine

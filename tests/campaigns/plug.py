@@ -76,7 +76,7 @@ class Pulled:
 
 def in_one_process(count: int, seed: int) -> Figure:
     """Pull plug and adapter in turn, in each phase, at moments between two scans."""
-    pulled = [one for one in PULLED if one.what in ("CAN plug out", "CAN adapter out")]
+    pulled = [thing for thing in PULLED if thing.what in ("CAN plug out", "CAN adapter out")]
     random = Random(seed)
     each = -(-count // (len(pulled) * len(PHASES)))
     alarms = conduct(pulled, PHASES, seed, [random.uniform(0.0, TWO_SCANS_S) for _ in range(each)])
@@ -152,20 +152,20 @@ def in_two_processes(folder: Path, door: str, count: int, seed: int) -> list[Pul
     """Pull plug and adapter in turn at drawn moments; return the last try of each moment."""
     random = Random(f"{seed} {door}")
     machine = Machine(folder / door, door)
-    found: list[Pulled] = []
+    tries: list[Pulled] = []
     try:
         for number in range(count):
             what, stage = WAYS[number % len(WAYS)]
             after_s = random.uniform(0.0, STAGES[stage])
             for _ in range(AGAIN):
-                found[number:] = [tried := machine.pull(what, stage, after_s)]
+                tries[number:] = [tried := machine.pull(what, stage, after_s)]
                 late = f"bare loop {1e3 * tried.loop_late_s:.0f} ms late"
                 print(f"{tried.where}: {tried.alarm[:150]} ({late})", flush=True)
                 if tried.named or not tried.late:
                     break
     finally:
         machine.close()
-    return found
+    return tries
 
 
 def pulls(folder: Path, count: int, seed: int) -> Iterator[Figure]:

@@ -236,6 +236,21 @@ def test_a_machine_whose_own_computer_was_late_reports_it_before_its_drives_miss
     assert bench.server.starved_s == [pytest.approx(1.0, abs=0.02)]
 
 
+def test_a_lateness_of_which_no_user_reads_is_reported_as_no_fault_of_the_drive(
+    bench: Bench, connect: Callable[[tuple[str, int]], socket.socket]
+) -> None:
+    client = connect(can_address(bench.server))
+    client.sendall(b"< open can0 >< rawmode >")
+    bench.run(0.1)
+    reports: list[bytes] = []
+    bench.rig.can.watch(lambda _t, can_id, data, _from_pc: reports.append(data) if can_id & 0x780 == 0x080 else None)
+    bench.t += 0.04
+    bench.run(0.01)
+    emergencies = [data for data in reports if len(data) == 8]
+    assert emergencies[0][2:3] == b"\0" and emergencies[0][5:] == b"sim"
+    assert bench.server.starved_s == []
+
+
 def test_a_late_machine_that_no_program_uses_reports_nothing(bench: Bench) -> None:
     bench.run(0.1)
     bench.t += 1.0
