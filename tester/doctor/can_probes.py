@@ -120,7 +120,8 @@ def emergencies(e: Examination) -> Iterator[Finding]:
     for node, data in {**e.can.traffic.emergencies, **e.watch.can.emergencies}.items():
         code = int.from_bytes(data[:2], "little")
         if code:
-            yield warning(names.get(node, f"node {node}"), f"emergency: {o.emergency_text(code)}", "the drive's manual")
+            advice = "end other programs on it" if code == o.MACHINE_LATE else "the drive's manual"
+            yield warning(names.get(node, f"node {node}"), f"emergency: {o.emergency_text(code)}", advice)
 
 
 _STATES = {
