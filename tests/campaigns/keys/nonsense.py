@@ -112,6 +112,8 @@ def _nonsense(random: Random, rig: str, place: Place, value: Any) -> Any:
         return random.choice((*((value or 1.0) * factor for factor in FACTORS), *NUMBERS))
     if isinstance(value, tuple):
         numbers: tuple[Any, ...] = value
+        if any(isinstance(one, str) for one in numbers):
+            return random.choice(([], [random.choice(TEXTS)], list(numbers[:1]), [*numbers, *numbers]))
         factor = random.choice(FACTORS)
         return [factor * number for number in numbers]
     if isinstance(value, str):
