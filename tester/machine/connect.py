@@ -230,7 +230,8 @@ class Connector:
         elif not devices.busy():
             self._next(now)
         silent = self.arming.silent()
-        if self.failed and not devices.lost and silent not in self.failure and devices.bus_silent(now, self._silent_s):
+        missed = self.failed and not devices.lost and silent not in self.failure and not devices.refused_by_lines()
+        if missed and devices.bus_silent(now, self._silent_s):
             # Where the whole bus is silent, the cable is the cause, and the drive that was missed first is not.
             self.failure = f"not armed: {silent} ({self.failure.removeprefix('not armed: ')})"
 

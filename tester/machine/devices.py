@@ -266,6 +266,10 @@ class DeviceList:
         """Return why devices cannot be used, naming all of them; "" if all can."""
         return "; ".join(refusals(self.drives, self.nodes, self.modbus))
 
+    def refused_by_lines(self) -> bool:
+        """Return whether the devices that cannot be used are all on Modbus lines."""
+        return bool(self.refused()) and not refusals(self.drives, self.nodes, ())
+
     def without(self) -> list[str]:
         """Return the objects that drives lack, with the consequence, a line each."""
         return [f"{drive.config.name} drive: {text}" for drive in self.drives for text in drive.plan.without]

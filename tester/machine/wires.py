@@ -52,8 +52,9 @@ def _bus_silent(v: Any) -> bool:
         return True
     # A plug that is pulled between two drives' answers makes the data of the later drive old one scan before the whole
     # bus counts as silent. The alarm must name the cable: not one drive has answered the last SYNC. Where data are old
-    # because this computer was late, it must not: the answers to its last SYNC have arrived meanwhile.
-    if not (silent_s > SILENT_SCANS * v.scan_s and r.can_heard_s <= v.last_s):
+    # because this computer was late, it must not: the answers to its last SYNC have arrived meanwhile. After a
+    # longer pause, or a jump of the clock, data are old in any case: "scan late" judges that.
+    if not (silent_s > SILENT_SCANS * v.scan_s and r.can_heard_s <= v.last_s) or v.late_s > p[STALE_CAN_S]:
         return False
     return r.drives_enabled and v.demand.enabled and drive_data_old(v)
 

@@ -120,7 +120,7 @@ def test_after_a_kill_the_devices_stop_by_themselves():
 
 
 def test_a_press_that_holds_without_power_keeps_its_force_and_everything_stands():
-    stage = Stage(SHORT, ("sim.press_on_power_loss=hold",))
+    stage = Stage(SHORT, ("sim.press_on_power_loss=hold", "axes.press.screw.spring=0 N"))
     while not (stage.run.engine.ctx.contact.loaded and stage.rig.plant.force_z_n > 100.0):
         stage.tick()
     stage.inject(*LANGUAGE.parse_script([f"t={stage.next_s:.6f} s: process killed"]))

@@ -474,4 +474,4 @@ def test_a_run_begins_with_what_the_runs_beside_it_have_shown_of_the_rig_s_heat(
     writer.close()
     with RunReader(run(tmp_path, *QUIET).folder) as reader:
         said = [event.text for event in reader.events() if event.kind == "arming"]
-    assert "heat balance: known from 3 heatings, ratio 1.02, 0.00 apart; a row tells from 14 %" in said
+    assert "heat balance: known from 3 heatings, ratio 1.02, 0.00 apart; a row tells from 11 %" in said
