@@ -68,10 +68,23 @@ def _runs(drive: Any, speed: float) -> None:
         drive.axis.aim(speed)
 
 
-def _brakes(drive: Any, share: float) -> None:
-    """Brake with a share of the ramp that the drive was given."""
-    if share != 0.0:
-        drive.axis.deceleration = max(min(drive.axis.deceleration, (1.0 - share) * drive.config.deceleration), _FEW)
+def _brakes(axis: str) -> Callable[[Scene], Apply]:
+    """Return what makes an axis brake with less than the ramp that its drive was given, by a share."""
+
+    def make(scene: Scene) -> Apply:
+        drive: Any = scene.rig.axes[axis]
+        sound = drive.axis.deceleration
+
+        def apply(scene: Scene, size: float) -> None:
+            if size != 0.0:
+                limit = max((1.0 - size) * drive.config.deceleration, _FEW)
+                drive.axis.deceleration = min(drive.axis.deceleration, limit)
+            else:
+                drive.axis.deceleration = sound
+
+        return apply
+
+    return make
 
 
 def _misreads(drive: Any, size: float) -> None:
@@ -227,7 +240,7 @@ def _drive(axis: str, runs: float, unit: str) -> list[Place]:
     return [
         Place(f"{axis} faster than commanded", "", -0.6, 0.6, _on_axis(axis, _drifts)),
         Place(f"{axis} runs by itself", unit, -runs, runs, _on_axis(axis, _runs)),
-        Place(f"{axis} brakes less", "", 0.3, 0.98, _on_axis(axis, _brakes)),
+        Place(f"{axis} brakes less", "", 0.3, 0.98, _brakes(axis)),
         Place(f"{axis} held", "", 1.0, 1.0, _on_axis(axis, _held), whole=True),
         *_data(axis),
     ]
@@ -290,7 +303,7 @@ TRACK: tuple[Place, ...] = (
     *_readings("load cell", gain=1.0, offset=150.0, unit="N", channel="fx"),
     *_readings("chamber", gain=0.9, offset=80.0, unit="K", slow=True),
     Place("track faster than commanded", "", -0.6, 0.6, _on_axis("track", _drifts)),
-    Place("track brakes less", "", 0.3, 0.98, _on_axis("track", _brakes)),
+    Place("track brakes less", "", 0.3, 0.98, _brakes("track")),
     Place("track held", "", 1.0, 1.0, _on_axis("track", _held), whole=True),
     *_data("track"), *_data("lift"),
     Place("lift held", "", 1.0, 1.0, _on_axis("lift", _held), whole=True),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from math import inf
+from typing import Any
 
 import pytest
 
@@ -11,11 +12,15 @@ from sim.faults.scene import Scene
 from tests.campaigns.faults.corners import corners
 from tests.campaigns.faults.moments import Moment
 from tests.campaigns.strangers import places, trial
-from tests.campaigns.strangers.defect import Course, Defect, Place
+from tests.campaigns.strangers.defect import Course, Defect, Place, Reading
 from tests.campaigns.strangers.draw import Case, Drawn, cases
 from tests.campaigns.strangers.hardware import row_of, written
 from tests.campaigns.strangers.scenes import TRACK, WHEEL, setups
 
+ELSEWHERE = ("silent", "late", "commanded", "by itself")
+"""Ends of names of places that show on a line, in the computer, or on an axis that has power."""
+LOOKED_AT_AGAIN = frozenset({"impair", "still", "settled", "watching", "stale"})
+"""Impairments of a line are counted down; the others only say that something is looked at once more."""
 MOMENT = Moment("a recipe", 0, "4 rest rest", "begin")
 
 
@@ -47,15 +52,45 @@ def test_sizes_fill_their_range_to_either_side() -> None:
     assert min(offsets) < -200.0 and max(offsets) > 200.0
 
 
+def numbers_of(thing: Any, path: str = "rig", seen: set[int] | None = None) -> dict[str, object]:
+    """Return every plain value of a machine by its path."""
+    seen = set() if seen is None else seen
+    if isinstance(thing, Reading):
+        spoilt = {f"{path}.{name}": getattr(thing, name) for name in ("gain", "offset", "holds")}
+        return {name: value for name, value in spoilt.items() if value} | numbers_of(thing._source, path, seen)
+    if isinstance(thing, dict):
+        named = [(str(name), value) for name, value in thing.items()]
+    else:
+        slots = [name for one in type(thing).__mro__ for name in getattr(one, "__slots__", ())]
+        names = (*slots, *getattr(thing, "__dict__", ()))
+        named = [(name, getattr(thing, name)) for name in names if hasattr(thing, name) and name not in LOOKED_AT_AGAIN]
+    found: dict[str, object] = {}
+    for name, value in named:
+        if isinstance(value, (int, float, str, frozenset, type(None))):
+            found[f"{path}.{name}"] = round(value, 9) if isinstance(value, float) else value
+        elif id(value) not in seen:
+            seen.add(id(value))
+            if isinstance(value, dict) or type(value).__module__.startswith(("sim.", Reading.__module__)):
+                found |= numbers_of(value, f"{path}.{name}", seen)
+    return found
+
+
 @pytest.mark.parametrize("rig", ["sim", "grosch", "pin-on-disc"])
-def test_each_place_is_sound_again_after_its_defect(rig: str) -> None:
+def test_each_place_changes_its_machine_and_is_sound_again_afterwards(rig: str) -> None:
     setup = next(one for kind in (WHEEL, TRACK) for one in setups(kind).values() if one.rig == rig)
     for place in places.of(rig):
         stage = setup.stage()
-        effect, scene = Defect(place, place.high, Course(lasts_s=1.0)), Scene(stage.rig, stage.faulty)
+        if rig == "sim":
+            stage.rig.install(1, 1, "1#", new_specimen=True)
+        scene, sound = Scene(stage.rig, stage.faulty), numbers_of(stage.rig)
+        effect = Defect(place, place.high, Course(lasts_s=1.0))
         effect.begin(scene, 0.0)
+        spoilt = numbers_of(stage.rig)
         effect.renew(scene, 1.5)
         effect.end(scene, 2.0)
+        changed = {path for path, value in numbers_of(stage.rig).items() if sound.get(path, value) != value}
+        assert (place.name, changed) == (place.name, set())
+        assert spoilt != sound or place.name.endswith(ELSEWHERE), place.name
 
 
 def test_a_force_beyond_its_limit_is_harm_that_an_interlock_notices() -> None:
