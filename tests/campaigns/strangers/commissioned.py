@@ -23,6 +23,8 @@ NAME = "commissioning"
 LASTS_S = {"cell": 260.0, "thermometer": 300.0, "watchdogs": 20.0}
 """How long a step takes on a sound machine, s; others USUAL_S."""
 USUAL_S = 35.0
+OF_STEP = {"cell": "load cell", "home": "press", "touch": "press", "rolling": "belt", "thermometer": "thermometer"}
+"""What a step looks at: the first defect of a case is of it. A jog looks at its own axis, the others at any part."""
 PLANNED_W = 120.0
 """Slip speed times load that commissioning asks for at most, W: 200 N at 0.6 m/s."""
 GIVEN_UP_S = 600.0
@@ -88,7 +90,9 @@ def cases(chooser: random.Random, count: int) -> list[Case]:
     for _ in range(count):
         step = chooser.choice(steps)
         at_s = chooser.uniform(0.0, LASTS_S.get(step, USUAL_S))
-        defects = [defect(chooser, places) for _ in range(chooser.choice((1, 2)))]
+        part = OF_STEP.get(step, step.removeprefix("jog "))
+        own = [place for place in places if place.name.startswith(part)] or places
+        defects = [defect(chooser, own), defect(chooser, places)][: chooser.choice((1, 2))]
         if len({one.place.name for one in defects}) < len(defects):
             del defects[1]
         drawn.append(Case(Moment(NAME, round(1e3 * at_s), step, f"at {at_s:.1f} s"), tuple(defects)))
