@@ -84,7 +84,8 @@ PRESS_SPRING_SHARE: Final = Parameter(
 
 PRESS_SPRING: Final[Row] = Interlock(
     name="press spring",
-    cause="the press's torque is not its lifting spring's: its gain or zero, perhaps with the load cell's, or screw.spring",
+    cause="the press's torque is not its lifting spring's: its gain or zero, perhaps with the load cell's, or"
+    " screw.spring",
     watch=at_most(
         "in free travel the press's torque, mean of both ways, off that of the screw's spring by > {}",
         lambda v: v.free.off_share,
