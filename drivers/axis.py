@@ -19,6 +19,11 @@ from drivers.screw import Screw
 _I32_MAX, _U32_MAX = 0x7FFF_FFFF, 0xFFFF_FFFF
 LEAST_COUNTS = 100
 """Counts of 0x60FF at the greatest speed: with fewer a step of speed is more than 1 % of it [A]."""
+_I16_MAX = 0x7FFF
+_RPM = 30.0 / math.pi
+"""r/min of one rad/s."""
+UNIT_SHARE = 0.01
+"""Relative difference within which an inverter's counts follow from gear and unit [A]: they are entered rounded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +32,8 @@ class AxisConfig:
 
     ``unit`` is the axis' engineering unit: a speed for "rad/s", "m/s" and "mm/s" (positions are then rad,
     m, mm), and "deg" for the yaw axes (speeds deg/s). ``velocity_increments`` are counts of 0x60FF, 0x606C, 0x6080,
-    0x6081 and 0x6083-85 per unit of speed or acceleration; ``position_increments`` are counts of 0x6064 and 0x607A
+    0x6081 and 0x6083-85 (of an inverter 0x6042 to 0x604A) per unit of speed or acceleration;
+    ``position_increments`` are counts of 0x6064 and 0x607A
     per unit of position; 0 = not used. ``feedback`` names the 32-bit field of TPDO1. Torque: 0x6077 is per mille of
     ``rated_torque_nm`` (0x6076). ``vendor_id``, ``product_code`` and ``serial_number`` are compared with
     0x1018 at connect; 0 = not compared. [A] marks an assumption: check it against the drive's manual.
@@ -99,9 +105,13 @@ class AxisConfig:
             problems.append("position mode needs position feedback")
         if self.software_limits is not None and not self.software_limits[0] < self.software_limits[1]:
             problems.append(f"software_limits {self.software_limits} are not in ascending order")
-        if not LEAST_COUNTS <= self.max_speed * self.velocity_increments <= _I32_MAX:
+        most, bits = (_I32_MAX, "32 bits of 0x60FF")
+        if not problems and self.drive.inverter:
+            most, bits = (_I16_MAX, "16 bits of 0x6042")
+            self._check_inverter(problems)
+        if not LEAST_COUNTS <= self.max_speed * self.velocity_increments <= most:
             problems.append(f"max_speed x velocity_increments is {self.max_speed * self.velocity_increments:g} counts:"
-                            f" expected {LEAST_COUNTS} (steps of 1 %) to 2^31 - 1, the 32 bits of 0x60FF")
+                            f" expected {LEAST_COUNTS} (steps of 1 %) to {most}, the {bits}")
         if not problems:
             self._check_counts(problems)
         for name in ("heartbeat_s", "consumer_heartbeat_s"):
@@ -117,6 +127,18 @@ class AxisConfig:
         if self.digital_io and not 0.01 <= self.inputs_period_s <= 65.535:
             problems.append(f"inputs_period is {self.inputs_period_s} s, possible are 0.01..65.535 s")
         return problems
+
+    def _check_inverter(self, problems: list[str]) -> None:
+        """Note what a frequency inverter cannot do, and counts that contradict its unit."""
+        needs = {"mode": self.mode == "position", "feedback": self.feedback == "position",
+                 "screw": self.screw is not None}
+        for name, needed in needs.items():
+            if needed:
+                problems.append(f"{name}: {self.drive.title} knows velocity mode only, and no position")
+        counts = _RPM * self.gear / self.drive.units.target_rpm
+        if self.unit == "rad/s" and abs(self.velocity_increments / counts - 1.0) > UNIT_SHARE:
+            problems.append(f"velocity_increments is {self.velocity_increments:g}: gear {self.gear:g} and"
+                            f" {self.drive.units.target_rpm:g} r/min a count of 0x6042 make {counts:.6g} per rad/s")
 
     def _check_counts(self, problems: list[str]) -> None:
         """Note values that do not fit the objects of the drive that they are written to."""

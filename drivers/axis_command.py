@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Callable
 from typing import Final
 
 from drivers import cia402
@@ -11,8 +12,9 @@ from drivers.axis import AxisConfig
 from drivers.canopen.node import CanNode
 from drivers.cia402 import Goal, State
 
-# All axes share this layout (drivers.canopen.pdo): controlword, target velocity or target position.
+# Two layouts (drivers.canopen.pdo): controlword, and 32 bits of target velocity or position, or an inverter's 16.
 _RPDO1: Final = struct.Struct("<Hi").pack
+_RPDO1_INVERTER: Final = struct.Struct("<Hh").pack
 _INF: Final = math.inf
 _I32_MAX: Final = 0x7FFF_FFFF
 _IO_MAX: Final = 0xFFFF_FFFF
@@ -40,15 +42,18 @@ class AxisCommand(CanNode):
     before ENABLED counts again, so that nothing restarts by itself.
     """
 
-    __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low",
-                 "_new_set_point", "_outputs", "_per_unit", "_position_mode", "_raw", "_remote_bit", "_resetting",
-                 "_rpdo", "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans", "inhibited",
-                 "news", "state", "statusword")
+    __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low", "_motion_bits",
+                 "_new_set_point", "_outputs", "_pack", "_per_unit", "_position_mode", "_raw", "_remote_bit",
+                 "_resetting", "_rpdo", "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans",
+                 "inhibited", "news", "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config.name, config.node_id, config.heartbeat_s, config.digital_io)
         self.config = config
         self._position_mode = config.mode == "position"
+        inverter = config.drive.inverter
+        self._pack: Callable[[int, int], bytes] = _RPDO1_INVERTER if inverter else _RPDO1
+        self._motion_bits: int = cia402.RAMP if inverter else 0
         self._remote_bit = cia402.REMOTE if config.drive.remote else 0
         self._per_unit = config.position_increments if self._position_mode else config.velocity_increments
         reach = _I32_MAX / self._per_unit
@@ -230,7 +235,7 @@ class AxisCommand(CanNode):
             self._rpdo = self._compose_motion(word | cia402.HALT if self._halt else word)
             return
         self._at_rest = True
-        self._rpdo = _RPDO1(word, self._raw if self._position_mode else 0)
+        self._rpdo = self._pack(word, self._raw if self._position_mode else 0)
 
     def _compose_motion(self, word: int) -> bytes:
         """Return RPDO1 of an axis in operation."""
@@ -242,7 +247,7 @@ class AxisCommand(CanNode):
             return _RPDO1(word, self._raw if self._position_mode else 0)
         if not self._position_mode:
             self._at_rest = False
-            return _RPDO1(word, self._target_counts)
+            return self._pack(word | self._motion_bits, self._target_counts)
         if self._at_rest:
             self._at_rest = False
             self._new_set_point = False

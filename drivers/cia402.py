@@ -54,6 +54,7 @@ QUICK_STOP: Final = 0x0002
 SHUTDOWN: Final = 0x0006
 SWITCH_ON: Final = 0x0007                # from SWITCHED_ON downwards: disable operation
 ENABLE_OPERATION: Final = 0x000F
+RAMP: Final = 0x0070                     # velocity mode: enable ramp, unlock ramp, reference ramp
 NEW_SET_POINT: Final = 0x0010            # profile position
 HOMING_START: Final = 0x0010             # homing
 CHANGE_IMMEDIATELY: Final = 0x0020       # profile position

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Final
 
 from drivers.axis import AxisConfig
@@ -22,6 +23,8 @@ from drivers.drives.drive_model import Key, Substitute
 ABORT_CONNECTION_QUICK_STOP: Final = 3     # 0x6007: heartbeat lost -> quick stop
 NO_STATE_CHANGE: Final = 1                 # 0x1029:01: a communication error leaves the NMT state as it is
 STATUS_INHIBIT_100_US: Final = 50          # 0x1801:03: 5 ms between two statuswords sent by themselves [A]
+UNIT_DENOMINATOR: Final = 1000
+"""Greatest denominator of 0x604C [A]: units are whole r/min, or tenths to thousandths of it."""
 RATED_TORQUE_SHARE: Final = 0.02
 """Greatest relative difference of 0x6076 from the rig file: it is entered rounded, from a nameplate [A]."""
 
@@ -36,6 +39,10 @@ LOST: Final[Mapping[Key, str]] = {
     (o.SHUTDOWN_OPTION, 0): "",         # never sent from operation
     (o.DISABLE_OPERATION_OPTION, 0): "how the axis slows down when it is disabled is the drive's own",
     (o.HALT_OPTION, 0): "how the axis slows down on halt is the drive's own",
+    (o.VL_MIN_MAX, 1): "the drive's own setting decides below which speed the axis does not turn",
+    (o.VL_MIN_MAX, 2): "the drive limits its speed by its own setting only; the PC limits what it asks for",
+    (o.VL_DIMENSION_FACTOR, 1): "",     # its speeds are in the profile's target_rpm by themselves
+    (o.VL_DIMENSION_FACTOR, 2): "",
     (o.MAX_MOTOR_SPEED, 0): "the drive limits its speed by its own setting only; the PC limits what it asks for",
     (o.SOFTWARE_LIMIT, 1): "the drive has no least position; the PC limits what it asks for",
     (o.SOFTWARE_LIMIT, 2): "the drive has no greatest position; the PC limits what it asks for",
@@ -103,7 +110,23 @@ class DrivePlan:
 
 def mode_of(config: AxisConfig) -> OperationMode:
     """Return the mode of operation of an axis."""
-    return OperationMode.PROFILE_POSITION if config.mode == "position" else OperationMode.PROFILE_VELOCITY
+    if config.mode == "position":
+        return OperationMode.PROFILE_POSITION
+    return OperationMode.VELOCITY if config.drive.inverter else OperationMode.PROFILE_VELOCITY
+
+
+def target_of(config: AxisConfig) -> Key:
+    """Return the object of an axis' target."""
+    if config.mode == "position":
+        return o.TARGET_POSITION, 0
+    return (o.VL_TARGET_VELOCITY if config.drive.inverter else o.TARGET_VELOCITY), 0
+
+
+def actual_of(config: AxisConfig) -> Key:
+    """Return the object of an axis' reading in TPDO1."""
+    if config.feedback == "position":
+        return o.POSITION_ACTUAL, 0
+    return (o.VL_VELOCITY_ACTUAL if config.drive.inverter else o.VELOCITY_ACTUAL), 0
 
 
 def plan(config: AxisConfig, absent: Collection[Key] = ()) -> DrivePlan:
@@ -199,7 +222,10 @@ class _Planner:
     def _torque(self) -> None:
         """Refuse a press without a torque limit, because it caps the force whatever the load cell shows."""
         key = o.MAX_TORQUE, 0
-        if self.lacks(o.RATED_TORQUE, 0):
+        if not self.profile.torque:
+            self.made.rated_torque = False
+            self._lose((o.TORQUE_ACTUAL, 0), "the drive does not report its torque")
+        elif self.lacks(o.RATED_TORQUE, 0):
             self.made.rated_torque = False
             self._lose((o.RATED_TORQUE, 0), LOST[o.RATED_TORQUE, 0])
         if not self.lacks(*key) or key in self.profile.substitutes:
@@ -214,8 +240,7 @@ class _Planner:
             self.made.without.append("no statusword bit 9: that a person has taken the drive into local control at its "
                                      "keypad is not seen")
         if self.config.speed_zero and not self.profile.standstill:
-            self.made.without.append("no statusword bit 12 in profile velocity: standstill is seen with the "
-                                     "next SYNC, not at once")
+            self.made.without.append("no statusword bit 12 for standstill: it is seen with the next SYNC, not at once")
 
     def _pdos(self) -> Iterator[PdoSetting]:
         limits = self.profile.pdo
@@ -243,11 +268,15 @@ def _settings(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
     yield o.DISABLE_OPERATION_OPTION, 0, 1      # slow down ramp, then power off
     yield o.HALT_OPTION, 0, 1                   # slow down ramp, stay enabled
     yield o.FAULT_REACTION_OPTION, 0, 2         # quick stop ramp
-    yield o.PROFILE_ACCELERATION, 0, round(config.acceleration * rate)
-    yield o.PROFILE_DECELERATION, 0, round(config.deceleration * rate)
-    yield o.QUICK_STOP_DECELERATION, 0, round(config.quick_stop_deceleration * rate)
+    if config.drive.inverter:
+        yield from _velocity_mode(config)
+    else:
+        yield o.PROFILE_ACCELERATION, 0, round(config.acceleration * rate)
+        yield o.PROFILE_DECELERATION, 0, round(config.deceleration * rate)
+        yield o.QUICK_STOP_DECELERATION, 0, round(config.quick_stop_deceleration * rate)
     yield o.MAX_TORQUE, 0, round(config.max_torque_per_mille * config.drive.units.torque)
-    yield o.MAX_MOTOR_SPEED, 0, round(config.max_speed * config.max_speed_counts)
+    if not config.drive.inverter:
+        yield o.MAX_MOTOR_SPEED, 0, round(config.max_speed * config.max_speed_counts)
     if config.mode == "position":
         yield o.PROFILE_VELOCITY, 0, round(config.max_speed * config.profile_speed_counts)
         if config.software_limits is not None:
@@ -271,6 +300,24 @@ def _settings(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
         yield o.RPDO_COMMUNICATION, 5, round(config.rpdo_deadline_s * 1000)
 
 
+def _velocity_mode(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
+    """Yield (index, sub-index, value) of an inverter's unit, limits and ramps; a ramp is counts in one second."""
+    unit = Fraction(config.drive.units.target_rpm).limit_denominator(UNIT_DENOMINATOR)
+    yield o.VL_DIMENSION_FACTOR, 1, unit.numerator
+    yield o.VL_DIMENSION_FACTOR, 2, unit.denominator
+    # With a least speed above 0 the axis would turn at a target of 0.
+    yield o.VL_MIN_MAX, 1, 0
+    yield o.VL_MIN_MAX, 2, round(config.max_speed * config.max_speed_counts)
+    rate = config.acceleration_counts
+    ramps = (
+        (o.VL_ACCELERATION, config.acceleration), (o.VL_DECELERATION, config.deceleration),
+        (o.VL_QUICK_STOP, config.quick_stop_deceleration),
+    )  # fmt: skip
+    for index, value in ramps:
+        yield index, 1, round(value * rate)
+        yield index, 2, 1
+
+
 def _homing(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
     """Yield (index, sub-index, value) of the homing parameters."""
     per = config.profile_speed_counts
@@ -281,11 +328,19 @@ def _homing(config: AxisConfig) -> Iterator[tuple[int, int, int]]:
     yield o.HOME_OFFSET, 0, round(config.home_offset * config.position_increments)
 
 
+def tpdo1_of(config: AxisConfig) -> PdoMap:
+    """Return the map of an axis' readings."""
+    if config.drive.inverter:
+        return pdo.TPDO1_INVERTER if config.drive.torque else pdo.TPDO1_NO_TORQUE
+    return pdo.TPDO1_POSITION if config.feedback == "position" else pdo.TPDO1_VELOCITY
+
+
 def pdo_settings(config: AxisConfig, *, inputs_with_sync: bool = False) -> list[PdoSetting]:
     """Return the axis' PDOs; ``inputs_with_sync``: the digital inputs come with every SYNC, not by event."""
     node = config.node_id
     rpdo1 = pdo.RPDO1_POSITION if config.mode == "position" else pdo.RPDO1_VELOCITY
-    tpdo1 = pdo.TPDO1_POSITION if config.feedback == "position" else pdo.TPDO1_VELOCITY
+    if config.drive.inverter:
+        rpdo1 = pdo.RPDO1_INVERTER
     io = config.digital_io
     tpdo2 = pdo.TPDO2_INPUTS if io else pdo.TPDO2_STATUS if config.standstill_by_pdo else None
     kind2 = pdo.SYNCHRONOUS if io and inputs_with_sync else pdo.EVENT_DRIVEN
@@ -293,6 +348,7 @@ def pdo_settings(config: AxisConfig, *, inputs_with_sync: bool = False) -> list[
         PdoSetting(o.RPDO_COMMUNICATION, o.RPDO_MAPPING, o.RPDO1_BASE + node, pdo.SYNCHRONOUS, rpdo1),
         PdoSetting(o.RPDO_COMMUNICATION + 1, o.RPDO_MAPPING + 1, o.RPDO2_BASE + node, pdo.EVENT_DRIVEN,
                    pdo.RPDO2_OUTPUTS if io else None),
-        PdoSetting(o.TPDO_COMMUNICATION, o.TPDO_MAPPING, o.COB_NO_RTR | o.TPDO1_BASE + node, pdo.SYNCHRONOUS, tpdo1),
+        PdoSetting(o.TPDO_COMMUNICATION, o.TPDO_MAPPING, o.COB_NO_RTR | o.TPDO1_BASE + node, pdo.SYNCHRONOUS,
+                   tpdo1_of(config)),
         PdoSetting(o.TPDO_COMMUNICATION + 1, o.TPDO_MAPPING + 1, o.COB_NO_RTR | o.TPDO2_BASE + node, kind2, tpdo2),
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Callable
 from typing import Final
 
 from drivers import cia402
@@ -16,9 +17,12 @@ from drivers.canopen.messages import Emergency, decode_emergency
 from drivers.cia402 import Goal, State
 from drivers.drive_settings import DrivePlan
 
-# All axes share this layout (drivers.canopen.pdo): statusword, velocity or position, torque.
+# Layouts (drivers.canopen.pdo): statusword, velocity or position, torque; an inverter's velocity has 16 bits.
 _TPDO1: Final = struct.Struct("<Hih").unpack
 _TPDO1_SIZE: Final = 8
+_INVERTER_UNPACK: Final = struct.Struct("<Hhh").unpack
+_INVERTER_SIZE: Final = 6
+_NO_TORQUE_SIZE: Final = 4
 _IO_PACK: Final = struct.Struct("<I").pack
 _IO_UNPACK: Final = struct.Struct("<I").unpack
 _IO_SIZE: Final = 4
@@ -30,13 +34,20 @@ _HOMING_SCANS: Final = 3         # until the statusword surely answers the start
 _HOMED: Final = cia402.HOMING_ATTAINED | cia402.TARGET_REACHED
 
 
+def _no_torque(data: bytes) -> tuple[int, int, int]:
+    """Return the fields of an inverter that reports no torque, with a torque of 0 counts."""
+    fields: tuple[int, int, int] = _INVERTER_UNPACK(data + b"\0\0")
+    return fields
+
+
 class ServoAxis(AxisCommand):
     """One drive: readings as of the last frames, commands for the next scan.
 
     Torque is in N m. ``target`` and ``actual`` have the unit ``config.unit``: a speed, or with position feedback a
     position in rad, m, mm, deg (``actual`` is TPDO1's field). ``stamp_s`` is the arrival of the last TPDO1, -inf before
     the first; the user of a reading decides how old it may be. ``changed_s`` is the arrival of the last TPDO1 with
-    another ``actual``. ``actual`` and ``torque_nm`` are NaN before the first reading.
+    another ``actual``, or of an inverter, whose speeds are coarse, with anything else. ``actual`` and ``torque_nm`` are
+    NaN before the first reading; so is the torque of a drive without 0x6077 always.
 
     ``online``: configured, OPERATIONAL and with a heartbeat. ``lost``: the heartbeat stopped, or the drive booted while
     in use (``rebooted``). This stays until the next connect, and until then the drive is sent a quick stop unless
@@ -52,16 +63,24 @@ class ServoAxis(AxisCommand):
     The master calls the methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds``.
     """
 
-    __slots__ = ("_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "actual", "changed_s",
-                 "diagnosis", "emergencies_dropped", "emergency", "emergency_log", "homed", "identity", "inputs",
-                 "inputs_stamp_s", "machine_late", "outputs_unanswered", "parameters", "plan", "rebooted", "stands",
-                 "torque_nm")
+    __slots__ = ("_coarse", "_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "_size", "_unpack",
+                 "actual", "changed_s", "diagnosis", "emergencies_dropped", "emergency", "emergency_log", "homed",
+                 "identity", "inputs", "inputs_stamp_s", "machine_late", "outputs_unanswered", "parameters", "plan",
+                 "rebooted", "stands", "torque_nm")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config)
         by_position = config.feedback == "position"
         self._raw_per_unit = config.position_increments if by_position else config.velocity_increments
         self._nm_per_mille = config.rated_torque_nm / 1000.0 / config.drive.units.torque
+        self._coarse = False
+        self._size: int = _TPDO1_SIZE
+        self._unpack: Callable[[bytes], tuple[int, int, int]] = _TPDO1
+        if config.drive.inverter:
+            torque = self._coarse = config.drive.torque
+            self._size = _INVERTER_SIZE if torque else _NO_TORQUE_SIZE
+            self._unpack = _INVERTER_UNPACK if torque else _no_torque
+            self._nm_per_mille = self._nm_per_mille if torque else math.nan
         self.diagnosis: Diagnosis | None = None
         self.emergency_log: list[Emergency] = []
         self.emergencies_dropped = 0
@@ -138,16 +157,16 @@ class ServoAxis(AxisCommand):
         """Decode a TPDO1 that arrived at ``t``; one of a wrong length is counted and ignored."""
         if not self.connected:
             return
-        if len(data) != _TPDO1_SIZE:
+        if len(data) != self._size:
             self.malformed += 1
             return
-        fields: tuple[int, int, int] = _TPDO1(data)
+        fields: tuple[int, int, int] = self._unpack(data)
         statusword, raw, torque = fields
         if statusword != self.statusword:
             self.take_statusword(statusword)
         if self._at_rest and self._position_mode:
             self.dirty = True
-        if raw != self._raw:
+        if raw != self._raw or (self._coarse and data != self.tpdo1_data):
             self.changed_s = t
         self._raw = raw
         self.actual = raw / self._raw_per_unit

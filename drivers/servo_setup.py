@@ -30,7 +30,17 @@ from drivers.canopen.messages import state_name
 from drivers.canopen.objects import NmtCommand
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX, TIMED_OUT
 from drivers.cia402 import State
-from drivers.drive_settings import NO_STATE_CHANGE, RATED_TORQUE_SHARE, DrivePlan, PdoSetting, mode_of, plan, tried
+from drivers.drive_settings import (
+    NO_STATE_CHANGE,
+    RATED_TORQUE_SHARE,
+    DrivePlan,
+    PdoSetting,
+    actual_of,
+    mode_of,
+    plan,
+    target_of,
+    tried,
+)
 from drivers.drives.drive_model import Key
 from drivers.servo_axis import ServoAxis
 from drivers.servo_talk import (
@@ -157,7 +167,7 @@ def _configure(drive: ServoAxis, pc_node_id: int) -> Step:
     if config.mode == "position":
         yield from _collect(refused, _aim_where_it_stands(drive))
     else:
-        yield from _collect(refused, write(drive, o.TARGET_VELOCITY, 0, 0))
+        yield from _collect(refused, write(drive, *target_of(config), 0))
     for one in made.pdos:
         yield from _collect(refused, _map(drive, one))
     yield from _collect(refused, write(drive, o.PRODUCER_HEARTBEAT, 0, round(config.heartbeat_s * 1000)))
@@ -247,7 +257,7 @@ def _start(drive: ServoAxis) -> Step:
         last = f"the heartbeat reports {state_name(drive.nmt_state)}" if drive.nmt_state >= 0 else "no heartbeat"
         raise SetupRefusedError(f"not OPERATIONAL within {START_TIMEOUT_S:g} s of NMT start: {last}")
     statusword = yield from _await(_is_off, START_TIMEOUT_S)
-    raw = yield from read_number(o.POSITION_ACTUAL if config.feedback == "position" else o.VELOCITY_ACTUAL)
+    raw = yield from read_number(*actual_of(config))
     inputs = 0
     if config.digital_io:
         inputs = config.io.from_drive((yield from read_number(o.DIGITAL_INPUTS)))

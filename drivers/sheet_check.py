@@ -9,9 +9,9 @@ from typing import Final
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.canopen.data_sheet import DataSheet, SheetEntry
-from drivers.canopen.dictionary import DICTIONARY, describe
+from drivers.canopen.dictionary import KNOWN, describe
 from drivers.canopen.objects import BITS, DataType
-from drivers.drive_settings import USED, DrivePlan, PdoSetting, Setting, mode_of, plan, tried
+from drivers.drive_settings import USED, DrivePlan, PdoSetting, Setting, actual_of, mode_of, plan, target_of, tried
 from drivers.drives.drive_model import Key
 
 _READ: Final = ((o.DEVICE_TYPE, 0), (o.IDENTITY, 1), (o.SUPPORTED_MODES, 0), (o.STATUSWORD, 0), (o.MODE_DISPLAY, 0),
@@ -54,13 +54,12 @@ def _identity(config: AxisConfig, sheet: DataSheet) -> Iterator[str]:
 
 def _objects(config: AxisConfig, sheet: DataSheet, made: DrivePlan) -> Iterator[str]:
     position = config.mode == "position"
-    actual = o.POSITION_ACTUAL if config.feedback == "position" else o.VELOCITY_ACTUAL
-    read = [*_READ, (actual, 0), *([(o.RATED_TORQUE, 0)] if made.rated_torque else [])]
+    read = [*_READ, actual_of(config), *([(o.RATED_TORQUE, 0)] if made.rated_torque else [])]
     for key in read:
         yield from _readable(sheet, key)
     for setting in (*made.settings, *(made.homing if position else ())):
         yield from _setting(sheet, setting)
-    written = [(o.CONTROLWORD, 0), (o.MODE, 0), (o.TARGET_POSITION if position else o.TARGET_VELOCITY, 0),
+    written = [(o.CONTROLWORD, 0), (o.MODE, 0), target_of(config),
                (o.PRODUCER_HEARTBEAT, 0), *([(o.CONSUMER_HEARTBEAT, 1)] if made.watched else [])]
     for key in written:
         yield from _writable(sheet, key)
@@ -83,7 +82,7 @@ def _writable(sheet: DataSheet, key: Key, kind: DataType | None = None) -> Itera
         return
     if not entry.writable:
         yield f"{describe(*key)}: it cannot be written (access {entry.access})"
-    known = DICTIONARY.get(key)
+    known = KNOWN.get(key)
     due = kind or (known.type if known is not None else None)
     if due is not None and BITS.get(due) != _bits(entry):
         yield f"{describe(*key)}: it has {_bits(entry) or 'an unknown number of'} bits, {BITS.get(due)} are written"

@@ -14,7 +14,7 @@ from enum import Enum, auto
 from typing import Protocol
 
 from drivers.canopen import objects as o
-from drivers.canopen.dictionary import DICTIONARY, describe
+from drivers.canopen.dictionary import KNOWN, describe
 from drivers.canopen.messages import encode_nmt
 from drivers.canopen.objects import DataType, NmtCommand
 from drivers.canopen.sdo import SdoClient, SdoError
@@ -107,7 +107,7 @@ Send = Callable[[int, bytes], None]
 def _type_of(request: SdoRead | SdoWrite) -> DataType:
     if request.type is not None:
         return request.type
-    return DICTIONARY[(request.index, request.sub)].type
+    return KNOWN[(request.index, request.sub)].type
 
 
 class Dialogue:

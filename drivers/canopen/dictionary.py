@@ -1,4 +1,4 @@
-"""The servo drive's object dictionary, described once.
+"""The object dictionaries of a servo drive and of a frequency inverter, described once.
 
 The client takes the types of its SDO requests from here, the simulated drive takes its objects and defaults, and
 the EDS writer takes its text. Contents: CiA 301, CiA 402-2. Defaults are those of a new drive:
@@ -7,7 +7,7 @@ no heartbeat, no consumer, PDO 1 mapped for profile velocity, PDO 2 off.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from drivers.canopen import objects as o
@@ -192,14 +192,61 @@ def _motion() -> list[Entry]:
     ]
 
 
-DICTIONARY: dict[tuple[int, int], Entry] = {
-    (entry.index, entry.sub): entry
-    for entry in sorted([*_communication(), *_state_machine(), *_motion()], key=lambda e: (e.index, e.sub))
-}
-"""Every object by (index, sub-index), ascending. Read only."""
+def _velocity_mode() -> list[Entry]:
+    """Return the objects of mode 2 (CiA 402-2, 18), in r/min; 0x604C = 1/1."""
+    ramps = (o.VL_ACCELERATION, "acceleration"), (o.VL_DECELERATION, "deceleration"), (o.VL_QUICK_STOP, "quick stop")
+    entries = [
+        Entry(o.VL_TARGET_VELOCITY, 0, _I16, "rw", 0, "vl target velocity", mappable=True),
+        Entry(o.VL_VELOCITY_DEMAND, 0, _I16, "ro", 0, "vl velocity demand", mappable=True),
+        Entry(o.VL_VELOCITY_ACTUAL, 0, _I16, "ro", 0, "vl velocity actual value", mappable=True),
+        Entry(o.VL_MIN_MAX, 0, _U8, "const", 2, "vl velocity min max amount: highest sub-index"),
+        Entry(o.VL_MIN_MAX, 1, _U32, "rw", 0, "vl velocity min amount"),
+        Entry(o.VL_MIN_MAX, 2, _U32, "rw", 0x7FFF, "vl velocity max amount"),
+        Entry(o.VL_DIMENSION_FACTOR, 0, _U8, "const", 2, "vl dimension factor: highest sub-index"),
+        Entry(o.VL_DIMENSION_FACTOR, 1, _I32, "rw", 1, "vl dimension factor: numerator"),
+        Entry(o.VL_DIMENSION_FACTOR, 2, _I32, "rw", 1, "vl dimension factor: denominator"),
+    ]
+    for index, name in ramps:
+        entries.append(Entry(index, 0, _U8, "const", 2, f"vl velocity {name}: highest sub-index"))
+        entries.append(Entry(index, 1, _U32, "rw", 1000, f"vl velocity {name}: delta speed"))
+        entries.append(Entry(index, 2, _U16, "rw", 1, f"vl velocity {name}: delta time (s)"))
+    return entries
+
+
+def _by_address(entries: list[Entry]) -> dict[tuple[int, int], Entry]:
+    return {(entry.index, entry.sub): entry for entry in sorted(entries, key=lambda e: (e.index, e.sub))}
+
+
+DICTIONARY: dict[tuple[int, int], Entry] = _by_address([*_communication(), *_state_machine(), *_motion()])
+"""Every object of a servo drive by (index, sub-index), ascending. Read only."""
+
+_PROFILE_MOTION = frozenset((
+    o.POSITION_ACTUAL, o.FOLLOWING_ERROR_WINDOW, o.FOLLOWING_ERROR_TIME, o.POSITION_WINDOW, o.POSITION_WINDOW_TIME,
+    o.VELOCITY_DEMAND, o.VELOCITY_ACTUAL, o.VELOCITY_WINDOW, o.VELOCITY_WINDOW_TIME, o.VELOCITY_THRESHOLD,
+    o.VELOCITY_THRESHOLD_TIME, o.TARGET_POSITION, o.HOME_OFFSET, o.SOFTWARE_LIMIT, o.MAX_PROFILE_VELOCITY,
+    o.MAX_MOTOR_SPEED, o.PROFILE_VELOCITY, o.PROFILE_ACCELERATION, o.PROFILE_DECELERATION, o.QUICK_STOP_DECELERATION,
+    o.HOMING_METHOD, o.HOMING_SPEED, o.HOMING_ACCELERATION, o.FOLLOWING_ERROR, o.MAX_SLIPPAGE, o.TARGET_VELOCITY,
+))
+"""Objects of the modes that a frequency inverter does not have."""
+
+
+def _inverter() -> list[Entry]:
+    """Return the objects of an inverter; PDO 1 is mapped for velocity mode."""
+    mapped = {
+        (o.RPDO_MAPPING, 2): mapping(o.VL_TARGET_VELOCITY, 0, 16),
+        (o.TPDO_MAPPING, 2): mapping(o.VL_VELOCITY_ACTUAL, 0, 16),
+    }
+    kept = (entry for entry in DICTIONARY.values() if entry.index not in _PROFILE_MOTION)
+    return [replace(entry, default=mapped.get((entry.index, entry.sub), entry.default)) for entry in kept]
+
+
+INVERTER: dict[tuple[int, int], Entry] = _by_address([*_inverter(), *_velocity_mode()])
+"""Every object of a frequency inverter by (index, sub-index), ascending. Read only."""
+KNOWN: dict[tuple[int, int], Entry] = INVERTER | DICTIONARY
+"""Every object that this program knows, by (index, sub-index). Read only."""
 
 
 def describe(index: int, sub: int) -> str:
     """Return an object's address and name for messages: ``0x1016:01 (consumer heartbeat ...)``."""
-    entry = DICTIONARY.get((index, sub))
+    entry = KNOWN.get((index, sub))
     return f"0x{index:04X}:{sub:02X}" + (f" ({entry.name})" if entry else "")

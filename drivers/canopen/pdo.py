@@ -9,7 +9,7 @@ import struct
 from collections.abc import Sequence
 
 from drivers.canopen import objects as o
-from drivers.canopen.dictionary import DICTIONARY, mapping
+from drivers.canopen.dictionary import KNOWN, mapping
 from drivers.canopen.sdo import NOT_MAPPABLE, PDO_TOO_LONG
 
 MAX_BITS = 64
@@ -35,7 +35,7 @@ class PdoMap:
         code = "<"
         total = 0
         for index, sub, bits in fields:
-            entry = DICTIONARY.get((index, sub))
+            entry = KNOWN.get((index, sub))
             if entry is None or not entry.mappable or entry.bits != bits:
                 text = f"0x{index:04X}:{sub:02X} ({bits} bits) cannot be mapped"
                 raise PdoMapError(NOT_MAPPABLE, text)
@@ -52,7 +52,7 @@ class PdoMap:
     @classmethod
     def of(cls, *objects: tuple[int, int]) -> PdoMap:
         """Return the map of these (index, sub-index) in this order; raises PdoMapError."""
-        return cls([(index, sub, DICTIONARY[(index, sub)].bits) for index, sub in objects])
+        return cls([(index, sub, KNOWN[(index, sub)].bits) for index, sub in objects])
 
     @classmethod
     def from_parameters(cls, values: Sequence[int]) -> PdoMap:
@@ -81,8 +81,11 @@ class PdoMap:
 
 RPDO1_VELOCITY = PdoMap.of((o.CONTROLWORD, 0), (o.TARGET_VELOCITY, 0))
 RPDO1_POSITION = PdoMap.of((o.CONTROLWORD, 0), (o.TARGET_POSITION, 0))
+RPDO1_INVERTER = PdoMap.of((o.CONTROLWORD, 0), (o.VL_TARGET_VELOCITY, 0))
 TPDO1_VELOCITY = PdoMap.of((o.STATUSWORD, 0), (o.VELOCITY_ACTUAL, 0), (o.TORQUE_ACTUAL, 0))
 TPDO1_POSITION = PdoMap.of((o.STATUSWORD, 0), (o.POSITION_ACTUAL, 0), (o.TORQUE_ACTUAL, 0))
+TPDO1_INVERTER = PdoMap.of((o.STATUSWORD, 0), (o.VL_VELOCITY_ACTUAL, 0), (o.TORQUE_ACTUAL, 0))
+TPDO1_NO_TORQUE = PdoMap.of((o.STATUSWORD, 0), (o.VL_VELOCITY_ACTUAL, 0))
 RPDO2_OUTPUTS = PdoMap.of((o.DIGITAL_OUTPUTS, 1))
 TPDO2_INPUTS = PdoMap.of((o.DIGITAL_INPUTS, 0))
 TPDO2_STATUS = PdoMap.of((o.STATUSWORD, 0))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from drivers.canopen import objects as o
-from drivers.canopen.dictionary import DICTIONARY, describe
+from drivers.canopen.dictionary import KNOWN, describe
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX, TIMED_OUT, SdoClient
 from drivers.ports import CanFrame, CanPort
 
@@ -57,7 +57,7 @@ class ObjectAnswer:
         """The value as a number: by its type in the dictionary, else unsigned; None if it is no number."""
         if self.error or not 1 <= len(self.data) <= 4:
             return None
-        entry = DICTIONARY.get(self.key)
+        entry = KNOWN.get(self.key)
         if entry is not None and entry.type in o.CODEC and len(self.data) == o.CODEC[entry.type].size:
             value = o.decode(entry.type, self.data)
             return value if isinstance(value, int) else None
@@ -66,7 +66,7 @@ class ObjectAnswer:
     @property
     def text(self) -> str:
         """The value for people: a text, a number, or bytes."""
-        entry = DICTIONARY.get(self.key)
+        entry = KNOWN.get(self.key)
         if entry is not None and entry.type is o.DataType.TEXT:
             return self.data.rstrip(b"\0").decode("latin-1")
         number = self.number
@@ -74,7 +74,7 @@ class ObjectAnswer:
 
     def describe(self) -> str:
         """Return the object's name."""
-        return describe(*self.key) if self.key in DICTIONARY else f"0x{self.key[0]:04X}:{self.key[1]:02X}"
+        return describe(*self.key) if self.key in KNOWN else f"0x{self.key[0]:04X}:{self.key[1]:02X}"
 
 
 class _Node:

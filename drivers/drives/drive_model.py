@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from drivers.canopen.dictionary import DICTIONARY, Access, Entry
+from drivers.canopen import objects as o
+from drivers.canopen.dictionary import DICTIONARY, INVERTER, Access, Entry
 from drivers.canopen.objects import DataType
 
 Key = tuple[int, int]
@@ -67,6 +68,8 @@ class Units:
     """0x606F."""
     torque: float = 1.0
     """Counts of 0x6072 and 0x6077 per mille of the rated torque."""
+    target_rpm: float = 1.0
+    """Velocity mode: r/min of the motor for each count of 0x6042; 0x604C, where the drive has it, is set to it."""
     rated_torque_nm: float = 0.001
     """N m per count of 0x6076."""
 
@@ -100,6 +103,8 @@ class DriveProfile:
     substitutes: Mapping[Key, Substitute] = field(default_factory=dict[Key, Substitute])
     options: Mapping[Key, int] = field(default_factory=dict[Key, int])
     """Values of option objects that replace the usual values."""
+    velocity_mode: Literal["pv", "vl"] = "pv"
+    """Mode of an axis of speed: profile velocity (3), or the velocity mode of frequency inverters (2)."""
     parameters: Mapping[str, FurtherObject] = field(default_factory=dict[str, FurtherObject])
     units: Units = field(default_factory=Units)
     pdo: PdoLimits = field(default_factory=PdoLimits)
@@ -118,9 +123,20 @@ class DriveProfile:
         """Return whether the drive lacks an object; an object missing at sub-index 0 lacks all its sub-indices."""
         return key in self.missing or (key[0], 0) in self.missing
 
+    @property
+    def inverter(self) -> bool:
+        """Whether the drive is a frequency inverter: it turns an axis in velocity mode, and has no other mode."""
+        return self.velocity_mode == "vl"
+
+    @property
+    def torque(self) -> bool:
+        """Whether the drive reports a torque (0x6077)."""
+        return not self.lacks((o.TORQUE_ACTUAL, 0))
+
     def dictionary(self) -> dict[Key, Entry]:
         """Return the drive's objects that are used here, by address."""
-        found = {key: self._entry(entry) for key, entry in DICTIONARY.items() if not self.lacks(key)}
+        known = INVERTER if self.inverter else DICTIONARY
+        found = {key: self._entry(entry) for key, entry in known.items() if not self.lacks(key)}
         for key, one in self.substitutes.items():
             found[one.key] = Entry(*one.key, one.type, "rw", 0, f"in place of {address(key)}")
             if one.per_mille_of is not None:

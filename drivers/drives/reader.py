@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from drivers.canopen import objects as o
 from drivers.canopen.objects import DataType
 from drivers.drives.drive_model import DriveProfile, FurtherObject, Key, PdoLimits, Substitute, Units
 from drivers.profiles.model import ProfileError
@@ -102,11 +103,13 @@ def read_drive_profile(name: str, text: str) -> DriveProfile:
     options = objects.table("options")
     instead = objects.table("instead")
     writes = table.table("writes")
+    inverter = table.choice("velocity_mode", ("pv", "vl"), "pv") == "vl"
     profile = DriveProfile(
         name=name,
         title=table.text("title"),
         checked=table.text("checked"),
         vendor_id=table.integer("vendor_id", 0, _MOST, 0),
+        velocity_mode="vl" if inverter else "pv",
         missing=_keys(objects, "missing"),
         optional=_keys(objects, "optional"),
         substitutes={_key(instead, key): _substitute(instead.table(key)) for key in instead.keys()},  # noqa: SIM118
@@ -115,7 +118,7 @@ def read_drive_profile(name: str, text: str) -> DriveProfile:
         units=_section(table, "units", Units),
         pdo=_section(table, "pdo", PdoLimits),
         remote=status.flag("remote", True),
-        standstill=status.flag("standstill", True),
+        standstill=status.flag("standstill", not inverter) and not inverter,
     )
     for one in (objects, status, table):
         one.end()
@@ -123,6 +126,9 @@ def read_drive_profile(name: str, text: str) -> DriveProfile:
         if value not in _OPTIONS.get(key, ()):
             known = ", ".join(map(str, _OPTIONS.get(key, ()))) or "no value"
             raise ProfileError(f"{name}.toml: objects.options: {key[0]:04X} = {value} (a profile may choose {known})")
+    if profile.inverter and (o.TORQUE_ACTUAL, 0) in profile.optional:
+        raise ProfileError(f"{name}.toml: objects.optional: 6077 (the process data of velocity mode follow from it:"
+                           " state in objects.missing whether these drives lack it)")
     for key in profile.substitutes:
         if not profile.lacks(key):
             raise ProfileError(f"{name}.toml: objects.instead: {key[0]:04X}:{key[1]:02X} is not among objects.missing")

@@ -16,8 +16,9 @@ from drivers.canopen import objects as o
 from drivers.canopen.objects import OperationMode
 from drivers.canopen.pdo import RPDO1_VELOCITY, TPDO1_POSITION, TPDO1_VELOCITY
 from drivers.cia402 import State
+from drivers.drive_settings import mode_of
 from sim.nodes import drive_objects
-from sim.nodes.drive_modes import ProfileVelocity
+from sim.nodes.drive_modes import InverterVelocity, ProfileVelocity
 from sim.nodes.drive_objects import clamped_i16, wrapped_i32
 from sim.nodes.drive_positioning import Homing, ProfilePosition
 from sim.nodes.drive_power import FAULTY, Axis, DrivePower
@@ -54,7 +55,7 @@ class Cia402Slave(DrivePower):
 
     __slots__ = (
         "_by_position", "_increments", "_mode_bits", "_offset", "_per_mille", "_remote_bit", "_sent_data",
-        "_sent_status", "_sent_torque", "_sent_value", "_velocity", "encoder_error", "homed", "homing",
+        "_sent_status", "_sent_torque", "_sent_value", "_velocity", "homed", "homing",
     )  # fmt: skip
 
     def __init__(
@@ -85,7 +86,6 @@ class Cia402Slave(DrivePower):
         super().__init__(config, wire, store, axis, boot_s, turnaround_s, now)
         self.unpowered_velocity = unpowered_velocity
         self.coast_deceleration = config.deceleration if coast_deceleration is None else coast_deceleration
-        self.encoder_error = 0.0
         self.homed = False
         self.homing: Homing | None = None
         self._velocity: ProfileVelocity | None = None
@@ -108,8 +108,9 @@ class Cia402Slave(DrivePower):
                 OperationMode.HOMING: self.homing,
             }
         else:
-            self._velocity = ProfileVelocity(self, axis)
-            self.modes = {OperationMode.PROFILE_VELOCITY: self._velocity}
+            made = InverterVelocity if self.config.drive.inverter else ProfileVelocity
+            self._velocity = made(self, axis)
+            self.modes = {mode_of(self.config): self._velocity}
 
     # time ----------------------------------------------------------------------------------------------------
 

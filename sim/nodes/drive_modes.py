@@ -14,11 +14,13 @@ from drivers import cia402
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from sim.nodes.motion import VelocityAxis
-from sim.nodes.object_store import ObjectStore
+from sim.nodes.object_store import Key, ObjectStore
 
 _UNLIMITED: Final = 0xFFFF_FFFF
 ROUNDING_S: Final = 1e-9
-_TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
+_ENABLE: Final = 0x10
+_UNLOCK: Final = 0x20
+"""Two of the three bits of ``cia402.RAMP``: enable the ramp, and let it follow its reference."""
 
 
 class Ramps:
@@ -35,14 +37,22 @@ class Ramps:
         self.acceleration = values[(o.PROFILE_ACCELERATION, 0)] / rate
         self.deceleration = values[(o.PROFILE_DECELERATION, 0)] / rate
         self.quick_stop = values[(o.QUICK_STOP_DECELERATION, 0)] / rate
+        if config.drive.inverter:
+            self.acceleration = values[(o.VL_ACCELERATION, 1)] / values[(o.VL_ACCELERATION, 2)] / rate
+            self.deceleration = values[(o.VL_DECELERATION, 1)] / values[(o.VL_DECELERATION, 2)] / rate
+            self.quick_stop = values[(o.VL_QUICK_STOP, 1)] / values[(o.VL_QUICK_STOP, 2)] / rate
         self.halt = self.quick_stop if values[(o.HALT_OPTION, 0)] == 2 else self.deceleration
         greatest = min(values[(o.MAX_MOTOR_SPEED, 0)], values[(o.MAX_PROFILE_VELOCITY, 0)])
+        if config.drive.inverter:
+            greatest = values[(o.VL_MIN_MAX, 2)]
         self.limit = greatest / config.max_speed_counts
         self.max_slippage = values[(o.MAX_SLIPPAGE, 0)] / per
         self.velocity_window = values[(o.VELOCITY_WINDOW, 0)] / per
         self.velocity_window_s = values[(o.VELOCITY_WINDOW_TIME, 0)] * 1e-3
         self.velocity_threshold = values[(o.VELOCITY_THRESHOLD, 0)] / threshold
         self.velocity_threshold_s = values[(o.VELOCITY_THRESHOLD_TIME, 0)] * 1e-3
+        if config.drive.inverter:
+            self.velocity_window = self.velocity_threshold = 1.0 / per
         self.position_window = values[(o.POSITION_WINDOW, 0)] / per_position
         self.position_window_s = values[(o.POSITION_WINDOW_TIME, 0)] * 1e-3
         window = values[(o.FOLLOWING_ERROR_WINDOW, 0)]
@@ -100,6 +110,7 @@ class ProfileVelocity:
     def __init__(self, drive: ModeOwner, axis: VelocityAxis) -> None:
         self._drive = drive
         self._axis = axis
+        self._target_key: Key = (o.TARGET_VELOCITY, 0)
         self._target: int | None = None
         self._halt = 0
         self._reached_at = inf
@@ -117,7 +128,7 @@ class ProfileVelocity:
 
     def follow(self, controlword: int, t: float) -> None:
         """Aim at the target velocity, or at standstill during a halt."""
-        target = self._drive.store.values[_TARGET_VELOCITY]
+        target = self._drive.store.values[self._target_key]
         halt = controlword & cia402.HALT
         if target == self._target and halt == self._halt:
             return
@@ -178,4 +189,40 @@ class ProfileVelocity:
         if enabled and (self.limited or self.at_torque_limit):
             bits |= cia402.INTERNAL_LIMIT
         self.bits = bits
+        return waiting
+
+
+class InverterVelocity(ProfileVelocity):
+    """Mode 2: ramp to 0x6042 with controlword bits 4 to 6 set. Bit 10 target reached, 11 limit of speed or torque.
+
+    Without bit 5 the ramp holds its speed; without bit 6 or bit 4 it leads to standstill (for bit 4 the maker's choice
+    [A]).
+    """
+
+    def __init__(self, drive: ModeOwner, axis: VelocityAxis) -> None:
+        super().__init__(drive, axis)
+        self._target_key = (o.VL_TARGET_VELOCITY, 0)
+        self._ramp = 0
+
+    def follow(self, controlword: int, t: float) -> None:
+        """Act on the ramp's bits, then on the target."""
+        ramp = controlword & cia402.RAMP
+        if ramp != self._ramp:
+            self._ramp = ramp
+            self._target = None
+        super().follow(controlword, t)
+
+    def retarget(self, target: int) -> None:
+        """Aim at a target in counts as far as the ramp's bits allow."""
+        if self._ramp == cia402.RAMP:
+            super().retarget(target)
+        elif self._ramp & _UNLOCK or not self._ramp & _ENABLE:
+            super().retarget(0)
+        elif not self._halt:
+            self._axis.aim(self._axis.demand)
+
+    def watch(self, t: float, enabled: bool) -> bool:
+        """Update the status bits: this mode has neither bit 12 nor 13."""
+        waiting = super().watch(t, enabled)
+        self.bits &= ~(cia402.SPEED_ZERO | cia402.MAX_SLIPPAGE)
         return waiting

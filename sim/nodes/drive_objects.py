@@ -10,6 +10,7 @@ from drivers.canopen import sdo
 from drivers.canopen.dictionary import DICTIONARY, Entry
 from drivers.canopen.objects import OperationMode
 from drivers.cia402 import State
+from drivers.drive_settings import mode_of
 from drivers.drives.drive_model import Substitute
 from drivers.drives.reader import GENERIC
 from sim.nodes.drive_power import DrivePower
@@ -27,23 +28,21 @@ _OPTIONS: dict[int, tuple[int, ...]] = {
 }
 """Accepted values; drives support subsets of the standard's."""
 
-_MODES: dict[str, tuple[OperationMode, ...]] = {
-    "velocity": (OperationMode.PROFILE_VELOCITY,),
-    "position": (OperationMode.PROFILE_POSITION, OperationMode.HOMING),
-}
-"""Modes of a drive, by the configured mode of its axis."""
-
 _RATES = (
     o.PROFILE_ACCELERATION,
     o.PROFILE_DECELERATION,
     o.QUICK_STOP_DECELERATION,
     o.HOMING_ACCELERATION,
+    o.VL_ACCELERATION,
+    o.VL_DECELERATION,
+    o.VL_QUICK_STOP,
 )
 _RAMP_OBJECTS = (
     *_RATES,
     o.HALT_OPTION,
     o.MAX_MOTOR_SPEED,
     o.MAX_PROFILE_VELOCITY,
+    o.VL_MIN_MAX,
     o.MAX_SLIPPAGE,
     o.VELOCITY_WINDOW,
     o.VELOCITY_WINDOW_TIME,
@@ -54,7 +53,7 @@ _RAMP_OBJECTS = (
     o.FOLLOWING_ERROR_WINDOW,
     o.FOLLOWING_ERROR_TIME,
 )
-_COMMANDS = (o.CONTROLWORD, o.MODE, o.TARGET_VELOCITY, o.TARGET_POSITION, o.DIGITAL_OUTPUTS)
+_COMMANDS = (o.CONTROLWORD, o.MODE, o.TARGET_VELOCITY, o.VL_TARGET_VELOCITY, o.TARGET_POSITION, o.DIGITAL_OUTPUTS)
 
 
 def entries(config: AxisConfig) -> Mapping[Key, Entry]:
@@ -64,9 +63,9 @@ def entries(config: AxisConfig) -> Mapping[Key, Entry]:
 
 def overrides(config: AxisConfig, serial_number: int) -> dict[Key, int | str]:
     """Return the dictionary values of this axis' drive: identity, ratings, modes."""
-    modes = 0
-    for mode in _MODES[config.mode]:
-        modes |= 1 << (mode - 1)
+    modes = 1 << (mode_of(config) - 1)
+    if config.mode == "position":
+        modes |= 1 << (OperationMode.HOMING - 1)
     return {
         (o.IDENTITY, 1): config.vendor_id,
         (o.IDENTITY, 2): config.product_code,
@@ -102,6 +101,8 @@ class _Objects:
                 (o.FOLLOWING_ERROR, 0): self._following_error,
                 (o.VELOCITY_DEMAND, 0): self._demand,
                 (o.VELOCITY_ACTUAL, 0): self._velocity,
+                (o.VL_VELOCITY_DEMAND, 0): self._inverter_demand,
+                (o.VL_VELOCITY_ACTUAL, 0): self._inverter_velocity,
                 (o.TORQUE_ACTUAL, 0): self._torque,
                 (o.CURRENT_ACTUAL, 0): self._torque,
                 (o.DIGITAL_INPUTS, 0): self._inputs,
@@ -146,6 +147,13 @@ class _Objects:
     def _velocity(self) -> int:
         drive = self._drive
         return wrapped_i32(drive.axis.value * drive.config.velocity_increments)
+
+    def _inverter_demand(self) -> int:
+        return clamped_i16(self._demand())
+
+    def _inverter_velocity(self) -> int:
+        drive = self._drive
+        return clamped_i16((drive.axis.value + drive.encoder_error) * drive.config.velocity_increments)
 
     def _torque(self) -> int:
         drive = self._drive

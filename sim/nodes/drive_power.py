@@ -42,7 +42,7 @@ class DrivePower(CanopenDevice):
     """
 
     __slots__ = (
-        "_causes", "_controlword", "_leaving", "_steady", "axis", "coast_deceleration", "config", "io",
+        "_causes", "_controlword", "_leaving", "_steady", "axis", "coast_deceleration", "config", "encoder_error", "io",
         "local", "mode", "modes", "origin", "ramps", "state", "statusword", "torque_gain", "torque_nm",
         "torque_off", "torque_offset_nm", "unpowered_velocity", "watching",
     )  # fmt: skip
@@ -65,6 +65,7 @@ class DrivePower(CanopenDevice):
         self.origin = 0.0
         self.statusword = 0
         self.torque_nm = 0.0
+        self.encoder_error = 0.0
         self.torque_gain = 1.0
         self.torque_offset_nm = 0.0
         self.state = State.NOT_READY

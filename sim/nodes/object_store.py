@@ -12,7 +12,7 @@ from copy import deepcopy
 
 from drivers.canopen import objects as o
 from drivers.canopen import sdo
-from drivers.canopen.dictionary import DICTIONARY, Entry
+from drivers.canopen.dictionary import DICTIONARY, KNOWN, Entry
 from drivers.canopen.objects import DataType
 
 Key = tuple[int, int]
@@ -47,7 +47,7 @@ class ObjectStore:
         """
         self.node_id = node_id
         self.entries = entries
-        self._all: Mapping[Key, Entry] = DICTIONARY if entries is DICTIONARY else {**DICTIONARY, **entries}
+        self._all: Mapping[Key, Entry] = DICTIONARY if entries is DICTIONARY else {**KNOWN, **entries}
         self.guards: dict[int, Guard] = {}
         self.hooks: dict[int, Guard] = {}
         self.readers: dict[Key, Reader] = {}

@@ -80,7 +80,7 @@ def sdo(node: str, name: str, rig_name: str, overrides: tuple[str, ...], value: 
 
 
 def _accessed(rig: Rig, wires: Wires, number: int, key: tuple[int, int], value: str | None, kind: str | None) -> int:
-    from drivers.canopen.dictionary import DICTIONARY
+    from drivers.canopen.dictionary import KNOWN
     from drivers.canopen.objects import DataType
     from tester.doctor.sdo_reads import NodeAccess, WriteRefusedError
 
@@ -88,7 +88,7 @@ def _accessed(rig: Rig, wires: Wires, number: int, key: tuple[int, int], value: 
     before = access.read(key)
     if value is None:
         return _told(before, before.error)
-    known = DICTIONARY.get(key)
+    known = KNOWN.get(key)
     if kind is None and known is None:
         raise click.UsageError(f"--type: the type of {before.describe()} is not known here (expected one of {TYPES})")
     data_type = DataType[kind.upper()] if kind is not None else known.type if known is not None else DataType.TEXT

@@ -94,16 +94,23 @@ def _axes_of(rig_name: str, axis: str, profile: str) -> dict[str, AxisConfig]:
 
 
 def _usual_axes(profile: str) -> dict[str, AxisConfig]:
-    """Return an axis of each sort for no particular machine: identities are not compared, numbers are of usual size."""
+    """Return an axis of each sort for no particular machine: identities are not compared, numbers are of usual size.
+
+    A frequency inverter turns an axis of speed and no other.
+    """
     from drivers.axis import AxisConfig
+    from drivers.drives.reader import drive_profile
     from drivers.screw import Screw
 
+    drive = drive_profile(profile)
     speed = AxisConfig(
-        name="speed axis", node_id=1, mode="velocity", unit="rad/s", velocity_increments=95.49,
+        name="speed axis", node_id=1, mode="velocity", unit="rad/s", velocity_increments=95.49 / drive.units.target_rpm,
         position_increments=0.0, feedback="velocity", rated_torque_nm=2.0, max_speed=25.0, acceleration=40.0,
         deceleration=40.0, quick_stop_deceleration=200.0, speed_zero=0.2, vendor_id=0, product_code=0,
-        rpdo_deadline_s=0.2, profile=profile,
+        rpdo_deadline_s=0.2, gear=10.0, profile=profile,
     )  # fmt: skip
+    if drive.inverter:
+        return {speed.name: speed}
     lifted = replace(speed, speed_zero=0.0, position_increments=1000.0, feedback="position")
     press = replace(lifted, name="press", unit="mm/s", digital_io=True, screw=Screw(5.0, 0.87, 0.93, 0.01, 0.02, 40.0))
     position = replace(

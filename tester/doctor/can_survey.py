@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.canopen.scan import ANSWER_S, PATIENCE_S, Key, ObjectAnswer, SdoScan
+from drivers.drive_settings import actual_of
 from drivers.ports import BusLost, CanFrame, CanPort
 from tester.doctor.open_wires import Wires
 from tester.inputs.rig import Rig
@@ -146,7 +147,7 @@ def listen(port: CanPort, wires: Wires, seconds: float, own_node: int) -> Listen
 
 def objects_of(config: AxisConfig) -> list[Key]:
     """Return every object to read from an axis' drive, each once: the identity and everything that a set-up writes."""
-    return list(dict.fromkeys((*IDENTITY, *STATE, *KEPT, *written(config), *mapped(config))))
+    return list(dict.fromkeys((*IDENTITY, *STATE, actual_of(config), *KEPT, *written(config), *mapped(config))))
 
 
 def scanned(port: CanPort, wires: Wires, wanted: Mapping[int, Sequence[Key]], timeout_s: float = ANSWER_S) -> SdoScan:

@@ -12,6 +12,7 @@ from struct import pack
 from typing import Final
 
 from drivers.canopen import objects as o
+from drivers.drive_settings import actual_of, tpdo1_of
 from drivers.ports import CanFrame, CanWatcher, LineWatcher, Unwatch
 from drivers.temperature_controller import TemperatureController
 from tester.doctor.examination import Examination
@@ -29,7 +30,6 @@ from tester.store.recorder import NullRecorder
 
 MOST_S: Final = 20.0
 """The longest time that is rehearsed, s [A]: every delay of an interlock that needs no motion is shorter."""
-_ACTUAL: Final = {"position": o.POSITION_ACTUAL, "velocity": o.VELOCITY_ACTUAL}
 
 
 class NoLine:
@@ -124,10 +124,11 @@ class _Rehearsal:
         for drive in devices.drives:
             node, io = drive.config.node_id, drive.config.digital_io
             state = e.can.number(node, (o.STATUSWORD, 0)) or 0
-            actual = e.can.number(node, (_ACTUAL[drive.config.feedback], 0)) or 0
+            actual = e.can.number(node, actual_of(drive.config)) or 0
             inputs = e.can.number(node, (o.DIGITAL_INPUTS, 0)) or 0
             drive.finish_connect(state, actual, drive.config.io.from_drive(inputs) if io else 0)
-            can.frames.append((o.TPDO1_BASE + node, pack("<Hih", state, actual, 0)))
+            mapped = tpdo1_of(drive.config)
+            can.frames.append((o.TPDO1_BASE + node, mapped.pack(*(state, actual, 0)[: len(mapped.fields)])))
             can.frames.append((o.HEARTBEAT_BASE + node, bytes((o.NmtState.OPERATIONAL,))))
             if io:
                 can.frames.append((o.TPDO2_BASE + node, pack("<I", inputs & 0xFFFF_FFFF)))

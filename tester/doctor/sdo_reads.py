@@ -17,8 +17,11 @@ from tester.doctor.open_wires import Wires
 BOOT_S = 0.5
 """Time of listening after the bus is opened, s: simulated drives boot in 0.2 s."""
 COMMANDS: Final = frozenset(
-    {(o.CONTROLWORD, 0), (o.DIGITAL_OUTPUTS, 1), (o.TARGET_VELOCITY, 0), (o.TARGET_POSITION, 0)}
-)
+    {
+        (o.CONTROLWORD, 0), (o.DIGITAL_OUTPUTS, 1), (o.VL_TARGET_VELOCITY, 0), (o.TARGET_VELOCITY, 0),
+        (o.TARGET_POSITION, 0),
+    }
+)  # fmt: skip
 """Objects that command a drive or switch an output, which only a run may write."""
 _OFF = (State.NOT_READY, State.SWITCH_ON_DISABLED, State.READY_TO_SWITCH_ON, State.FAULT)
 """States in which a drive has no power."""

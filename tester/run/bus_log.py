@@ -13,6 +13,7 @@ from typing import TextIO
 
 import can
 
+from drivers.drive_settings import actual_of, target_of
 from drivers.ports import CanPort, LinePort
 from tester.inputs.rig import Rig
 
@@ -84,9 +85,6 @@ class BusLog:
             line.close()
 
 
-_FEEDBACK = {"velocity": "606C velocity", "position": "6064 position"}
-
-
 def _axes(rig: Rig) -> dict[str, dict[str, object]]:
     """Return each drive's PDO contents and counts per unit."""
     return {
@@ -96,8 +94,10 @@ def _axes(rig: Rig) -> dict[str, dict[str, object]]:
             "mode": axis.mode,
             "velocity_counts_per_unit": axis.velocity_increments,
             "position_counts_per_unit": axis.position_increments,
-            "tpdo1": ["6041 statusword", _FEEDBACK[axis.feedback], "6077 torque"],
-            "rpdo1": ["6040 controlword", "60FF velocity" if axis.mode == "velocity" else "607A position"],
+            "tpdo1": [
+                "6041 statusword", f"{actual_of(axis)[0]:04X} {axis.feedback}", *["6077 torque"] * axis.drive.torque,
+            ],
+            "rpdo1": ["6040 controlword", f"{target_of(axis)[0]:04X} {axis.mode}"],
         }
         for name, axis in rig.drives().items()
     }  # fmt: skip

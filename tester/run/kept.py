@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from drivers.canopen import objects as o
-from drivers.canopen.dictionary import DICTIONARY
+from drivers.canopen.dictionary import KNOWN
 from drivers.canopen.scan import Key, SdoScan
 from drivers.ports import BusLost
 from tester.inputs.rig import Rig
@@ -65,7 +65,7 @@ def object_key(key: Key) -> str:
 
 def object_name(key: Key) -> str:
     """Return an object's title; "" if the dictionary does not contain it."""
-    return DICTIONARY[key].name if key in DICTIONARY else ""
+    return KNOWN[key].name if key in KNOWN else ""
 
 
 def record_kept(rig: Rig, ports: Ports, world: TickedWorld | None, now_s: float, recorder: Recorder) -> None:

@@ -15,7 +15,9 @@ HEAD = 'title = "x"\nchecked = "y"\n'
 
 
 def test_the_profiles_that_come_with_the_program() -> None:
-    assert drive_profile_names() == ["cia402", "elmo_gold", "elmo_simpliq", "kinco_fd", "maxon_epos4", "nanotec"]
+    assert drive_profile_names() == [
+        "cia402", "cia402_inverter", "elmo_gold", "elmo_simpliq", "kinco_fd", "maxon_epos4", "nanotec",
+    ]
 
 
 def test_a_missing_index_takes_its_sub_indices_along() -> None:
@@ -49,7 +51,7 @@ def test_a_wrong_profile_names_file_and_key(text: str, said: str) -> None:
 
 
 def test_an_unknown_profile_names_those_there_are() -> None:
-    with pytest.raises(ProfileError, match=r"no drive profile 'epos' \(there are cia402, elmo_gold"):
+    with pytest.raises(ProfileError, match=r"no drive profile 'epos' \(there are cia402, cia402_inverter"):
         drive_profile("epos")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal
 
-from drivers.axis import AxisConfig
+from drivers.axis import LEAST_COUNTS, AxisConfig
 from sim.physics.track import TrackParameters
 from tester.base.config_reader import Range
 from tester.base.quantities import Quantities
@@ -226,6 +226,10 @@ class TrackConfig(Rig):
             yield ("limits", "slowest"), "is not below limits.track_speed"
         if limits.air_low_c >= limits.air_high_c:
             yield ("limits", "air_low"), "is not below limits.air_high"
+        slowest = limits.slowest_m_s / self.metres * track.velocity_increments
+        if track.drive.inverter and slowest < LEAST_COUNTS:
+            message = f"is {slowest:.3g} counts of 0x6042 (expected {LEAST_COUNTS} or more: steps of 1 %)"
+            yield ("limits", "slowest"), f"{message}: raise it, more motor turns, or target_rpm below 1"
         if not track.digital_io:
             yield ("axes", "track", "digital_io"), "the track's drive carries the safety inputs (expected true)"
         if self.linear and track.feedback != "position":

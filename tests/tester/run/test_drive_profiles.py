@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from drivers.drives.reader import GENERIC, drive_profile_names
+from drivers.drives.reader import GENERIC, drive_profile, drive_profile_names
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig
 from tester.machine.run import Outcome
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
 
-PROFILES = drive_profile_names()
+PROFILES = [name for name in drive_profile_names() if not drive_profile(name).inverter]
 NOT_FOR_A_PRESS = ("elmo_simpliq", "kinco_fd")
 """They have no usable digital outputs, or no limit of torque: the press keeps the generic drive."""
 

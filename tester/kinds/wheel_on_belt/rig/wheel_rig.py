@@ -19,8 +19,10 @@ from tester.inputs.rig.profiles import profile_of
 from tester.kinds.wheel_on_belt import KIND
 from tester.kinds.wheel_on_belt.image.axes import POSITIONED
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
+from tester.kinds.wheel_on_belt.interlocks.friction import BELT_CAUGHT, BELT_TORQUE, SHAFT_POWER
 from tester.kinds.wheel_on_belt.interlocks.hub import STALE_JACKET_S
 from tester.kinds.wheel_on_belt.interlocks.load import STALE_CELL_S
+from tester.kinds.wheel_on_belt.interlocks.motion import BELT_TORN
 from tester.kinds.wheel_on_belt.interlocks.surface import STALE_IR_S
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.kinds.wheel_on_belt.rig.loop_sections import GatesConfig, LoopsConfig
@@ -89,6 +91,28 @@ def _units(rig: RigConfig) -> _Found:
     if rig.interlocks.stale_inputs_s < 2.0 * rig.axes.press.inputs_period_s:
         message = "is less than two of axes.press.inputs_period: a single lost frame would stop the rig"
         yield ("interlocks", "stale_inputs"), message
+
+
+NEED_TORQUE: Final = {"wheel": (SHAFT_POWER, BELT_TORN), "belt": (SHAFT_POWER, BELT_TORQUE, BELT_CAUGHT)}
+"""Interlocks that watch an axis' torque."""
+STEP_MM_S: Final = 1.0
+"""Greatest step of a frequency inverter's speed at the contact [A]: slip is asked for within 3 mm/s, and target and
+reading of each of two axes are off by half a step."""
+
+
+def _inverters(rig: RigConfig) -> _Found:
+    """Yield what a frequency inverter does not report, or too coarsely."""
+    for name, metres in (("wheel", 0.5e-3 * rig.geometry.wheel_diameter_mm), ("belt", 1.0)):
+        axis = rig.axes.driven()[name]
+        if not axis.drive.inverter:
+            continue
+        if not axis.drive.torque:
+            needed = ", ".join(row.name for row in NEED_TORQUE[name])
+            yield ("axes", name, "profile"), f"{axis.drive.title} reports no torque (0x6077), as needed for {needed}"
+        step = 1e3 * metres / axis.velocity_increments
+        if step > STEP_MM_S:
+            message = f"a count of 0x6042 is {step:.3g} mm/s at the contact (expected {STEP_MM_S:g} mm/s at most)"
+            yield ("axes", name, "velocity_increments"), f"{message}: more motor turns, or target_rpm below 1"
 
 
 def _sizes(rig: RigConfig) -> _Found:
@@ -268,5 +292,5 @@ class RigConfig(Rig):
 
     def problems(self) -> Iterator[tuple[Location, str]]:
         """Yield inconsistencies between the kind's sections, with their places."""
-        for check in (_speeds, _decelerations, _units, _sizes, _press, _temperatures, _skew, _heat_off):
+        for check in (_speeds, _decelerations, _units, _inverters, _sizes, _press, _temperatures, _skew, _heat_off):
             yield from check(self)
