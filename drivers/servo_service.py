@@ -10,7 +10,7 @@ from drivers.canopen import objects as o
 from drivers.canopen.conversation import AwaitedCondition, Conversation, RequestError, SendNmt, Until, read_number
 from drivers.canopen.objects import NmtCommand, OperationMode
 from drivers.cia402 import Goal, State
-from drivers.drive_settings import mode_of
+from drivers.process_data import mode_of
 from drivers.servo_axis import ServoAxis
 from drivers.servo_setup import START_TIMEOUT_S, STOP_TIMEOUT_S
 from drivers.servo_talk import SetupRefusedError, Step, apply, set_mode, write

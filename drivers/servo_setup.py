@@ -30,18 +30,9 @@ from drivers.canopen.messages import state_name
 from drivers.canopen.objects import NmtCommand
 from drivers.canopen.sdo import NO_OBJECT, NO_SUB_INDEX, TIMED_OUT
 from drivers.cia402 import State
-from drivers.drive_settings import (
-    NO_STATE_CHANGE,
-    RATED_TORQUE_SHARE,
-    DrivePlan,
-    PdoSetting,
-    actual_of,
-    mode_of,
-    plan,
-    target_of,
-    tried,
-)
+from drivers.drive_settings import NO_STATE_CHANGE, RATED_TORQUE_SHARE, DrivePlan, plan, tried
 from drivers.drives.drive_model import Key
+from drivers.process_data import PdoSetting, actual_of, mode_of, target_of
 from drivers.servo_axis import ServoAxis
 from drivers.servo_talk import (
     POLL_S,

@@ -11,8 +11,9 @@ from drivers.canopen import objects as o
 from drivers.canopen.data_sheet import DataSheet, SheetEntry
 from drivers.canopen.dictionary import KNOWN, describe
 from drivers.canopen.objects import BITS, DataType
-from drivers.drive_settings import USED, DrivePlan, PdoSetting, Setting, actual_of, mode_of, plan, target_of, tried
+from drivers.drive_settings import USED, DrivePlan, Setting, plan, tried
 from drivers.drives.drive_model import Key
+from drivers.process_data import PdoSetting, actual_of, mode_of, target_of
 
 _READ: Final = ((o.DEVICE_TYPE, 0), (o.IDENTITY, 1), (o.SUPPORTED_MODES, 0), (o.STATUSWORD, 0), (o.MODE_DISPLAY, 0),
                 (o.ERROR_CODE, 0), (o.ERROR_REGISTER, 0))

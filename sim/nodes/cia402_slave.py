@@ -16,7 +16,7 @@ from drivers.canopen import objects as o
 from drivers.canopen.objects import OperationMode
 from drivers.canopen.pdo import RPDO1_VELOCITY, TPDO1_POSITION, TPDO1_VELOCITY
 from drivers.cia402 import State
-from drivers.drive_settings import mode_of
+from drivers.process_data import mode_of
 from sim.nodes import drive_objects
 from sim.nodes.drive_modes import InverterVelocity, ProfileVelocity
 from sim.nodes.drive_objects import clamped_i16, wrapped_i32

@@ -10,9 +10,9 @@ from drivers.canopen import sdo
 from drivers.canopen.dictionary import DICTIONARY, Entry
 from drivers.canopen.objects import OperationMode
 from drivers.cia402 import State
-from drivers.drive_settings import mode_of
 from drivers.drives.drive_model import Substitute
 from drivers.drives.reader import GENERIC
+from drivers.process_data import mode_of
 from sim.nodes.drive_power import DrivePower
 from sim.nodes.motion import PositionAxis, VelocityAxis
 from sim.nodes.object_store import Key, SdoAbortError

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from drivers.axis import AxisConfig
 from drivers.canopen import objects as o
 from drivers.canopen.scan import ANSWER_S, PATIENCE_S, Key, ObjectAnswer, SdoScan
-from drivers.drive_settings import actual_of
 from drivers.ports import BusLost, CanFrame, CanPort
+from drivers.process_data import actual_of
 from tester.doctor.open_wires import Wires
 from tester.inputs.rig import Rig
 from tester.run.kept import IDENTITY, KEPT

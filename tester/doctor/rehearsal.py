@@ -12,8 +12,8 @@ from struct import pack
 from typing import Final
 
 from drivers.canopen import objects as o
-from drivers.drive_settings import actual_of, tpdo1_of
 from drivers.ports import CanFrame, CanWatcher, LineWatcher, Unwatch
+from drivers.process_data import actual_of, tpdo1_of
 from drivers.temperature_controller import TemperatureController
 from tester.doctor.examination import Examination
 from tester.doctor.finding import Finding, fault, ok, warning

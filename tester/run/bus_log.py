@@ -13,8 +13,8 @@ from typing import TextIO
 
 import can
 
-from drivers.drive_settings import actual_of, target_of
 from drivers.ports import CanPort, LinePort
+from drivers.process_data import actual_of, target_of
 from tester.inputs.rig import Rig
 
 CHANNEL = "can0"
