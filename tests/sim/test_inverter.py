@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import struct
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from drivers.cia402 import Goal, State
-from drivers.drives import reader
+from drivers.drives.reader import read_drive_profile
+from drivers.profiles.model import ProfileError
 from tests.sim.drive_bench import DISABLED, ENABLED, WHEEL, DriveBench, SdoRefusedError
 from tests.sim.test_master_meets_drives import Bus
 
@@ -118,17 +120,20 @@ def test_it_refuses_another_mode_and_a_ramp_of_no_time() -> None:
     assert bench.drive.statusword & 0x4F == DISABLED
 
 
-def without(*missing: str) -> str:
-    """Return the path-free name of a profile that lacks objects."""
-    text = "\n".join((
-        'title = "Inverter"', 'checked = "here"', 'velocity_mode = "vl"', "[objects]", f"missing = {list(missing)}",
-    ))  # fmt: skip
-    reader.look_up_with(lambda name: text)
-    return f"inverter_without_{'_'.join(missing)}"
+def written(folder: Path, text: str) -> str:
+    """Write a profile of velocity mode; return its path."""
+    path = folder / "inverter.toml"
+    path.write_text(f'title = "Inverter"\nchecked = "here"\nvelocity_mode = "vl"\n{text}\n', encoding="utf-8")
+    return str(path)
 
 
-def test_without_a_torque_there_are_two_fields_and_no_number() -> None:
-    bus = Bus((replace(INVERTER, profile=without("6077", "6076")),)).connect().enable()
+def without(folder: Path, *missing: str) -> str:
+    """Write a profile that lacks objects; return its path."""
+    return written(folder, f"[objects]\nmissing = {list(missing)}")
+
+
+def test_without_a_torque_there_are_two_fields_and_no_number(tmp_path: Path) -> None:
+    bus = Bus((replace(INVERTER, profile=without(tmp_path, "6077", "6076")),)).connect().enable()
     drive = bus.drives[0]
     drive.target = 8.0
     bus.tick(120)
@@ -141,14 +146,18 @@ def test_without_a_torque_there_are_two_fields_and_no_number() -> None:
 
 
 @pytest.mark.parametrize("index", ["6048", "6049", "604A", "6042", "6044", "6007", "605A", "605E"])
-def test_an_inverter_without_what_turns_and_stops_it_is_refused_by_name(index: str) -> None:
-    drive = Bus((replace(INVERTER, profile=without(index)),)).connect().drives[0]
+def test_an_inverter_without_what_turns_and_stops_it_is_refused_by_name(tmp_path: Path, index: str) -> None:
+    drive = Bus((replace(INVERTER, profile=without(tmp_path, index)),)).connect().drives[0]
     assert f"0x{index}:0" in (drive.refused or "")
 
 
-def test_a_unit_of_a_tenth_is_written_as_the_dimension_factor() -> None:
-    text = 'title = "T"\nchecked = "here"\nvelocity_mode = "vl"\n[units]\ntarget_rpm = 0.1\n'
-    reader.look_up_with(lambda name: text)
-    config = replace(INVERTER, profile="inverter_of_tenths", velocity_increments=10.0 * COUNTS)
-    read = Bus((config,)).connect().drives[0].parameters
+def test_a_unit_of_a_tenth_is_written_as_the_dimension_factor(tmp_path: Path) -> None:
+    tenths = written(tmp_path, "[units]\ntarget_rpm = 0.1")
+    read = Bus((replace(INVERTER, profile=tenths, velocity_increments=10.0 * COUNTS),)).connect().drives[0].parameters
     assert (read[0x604C, 1], read[0x604C, 2]) == (1, 10)
+
+
+def test_whether_there_is_a_torque_is_not_asked_for_at_connect() -> None:
+    text = 'title = "Inverter"\nchecked = "here"\nvelocity_mode = "vl"\n[objects]\noptional = ["6077"]\n'
+    with pytest.raises(ProfileError, match="whether these drives lack it"):
+        read_drive_profile("inverter", text)
