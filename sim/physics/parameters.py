@@ -146,12 +146,14 @@ class DriveParameters:
     screw_efficiency_spread: Annotated[float, "1"] = 0.03  # of a session: lubrication, temperature, torque reading
     screw_drag: Annotated[float, "N m"] = 0.015  # of nut and seals, whatever the force
     screw_presliding: Annotated[float, "mm"] = 0.02  # press travel from friction one way to friction the other way
-    press_spring: Annotated[float, "N"] = 40.0  # lifts the press without power; none where a brake holds it
+    press_spring: Annotated[float, "N"] = 40.0  # lifts the press without power, at 0 mm; none where a brake holds it
+    press_spring_rate: Annotated[float, "N/mm"] = 0.0  # more of it per mm of travel
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
         _refuse_below_zero(self, frozenset({
             "wheel_friction", "belt_friction", "torque_gain", "screw_efficiency_spread", "screw_drag", "press_spring",
+            "press_spring_rate",
         }))  # fmt: skip
         if self.belt_creep > 1.0:
             raise ValueError("DriveParameters.belt_creep is a share of the belt's speed, 0 to 1")

@@ -33,6 +33,14 @@ def test_a_torque_less_than_drag_and_spring_presses_nothing() -> None:
     assert SCREW.pushed_n(0.005) == SCREW.reached_n(0.005) == 0.0
 
 
+def test_a_spring_whose_force_grows_leaves_less_of_a_torque_for_the_wheel() -> None:
+    grows = replace(SCREW, spring_rate_n_per_mm=0.5)
+    assert grows.lifts_n(10.0) == 45.0
+    assert grows.torque_nm(435.0, 10.0) == SCREW.torque_nm(440.0)
+    assert grows.pushed_n(0.46, 10.0) == pytest.approx(SCREW.pushed_n(0.46) - 5.0)
+    assert grows.reached_n(0.46, 10.0) == pytest.approx(SCREW.reached_n(0.46) - 5.0)
+
+
 @pytest.mark.parametrize(
     ("wrong", "told"),
     [
@@ -42,6 +50,8 @@ def test_a_torque_less_than_drag_and_spring_presses_nothing() -> None:
         ({"efficiency_most": 1.1}, "efficiency"),
         ({"drag_least_nm": 0.03}, "drag_least"),
         ({"spring_n": -1.0}, "spring_n"),
+        ({"spring_rate_n_per_mm": -0.1}, "spring_rate"),
+        ({"spring_n": 0.0, "spring_rate_n_per_mm": 0.1}, "spring_rate"),
         ({"lead_mm": float("nan")}, "lead_mm"),
     ],
 )

@@ -69,7 +69,8 @@ class WheelRig(SimRig):
         self.devices |= {f"load cell {force}": _measuring(self.cells, force) for force in FORCES}
         drives = parameters.drives
         self.wheel_shaft, self.belt_shaft, efficiency = shafts(drives, parameters.noise, seed)
-        self._screw = PressScrew(drives, efficiency, drives.press_spring if self._spring_mm_s else 0.0)
+        spring_n, rate = (drives.press_spring, drives.press_spring_rate) if self._spring_mm_s else (0.0, 0.0)
+        self._screw = PressScrew(drives, efficiency, spring_n, rate)
         self._roller_m = 0.0005 * drives.belt_roller_diameter
         self._slip_nm = capstan_n(drives) * self._roller_m
         self._belt_creep = drives.belt_creep
@@ -229,14 +230,15 @@ class WheelRig(SimRig):
         """Limit the press to its drive's torque: it stalls; a greater load drives it back."""
         limit_nm, plant = drive.torque_limit_nm, self.plant
         if not drive.energised and self._spring_mm_s:
-            # The spring alone makes coast_deceleration of the screw's inertia; the load pushes the same way.
-            axis = drive.axis
-            rate = drive.coast_deceleration * (1.0 + plant.force_z_n / self._screw.spring_n)
+            # The spring at 0 mm makes coast_deceleration of the screw's inertia; the load pushes the same way.
+            axis, screw = drive.axis, self._screw
+            grown_n = screw.rate_n_per_mm * axis.position
+            rate = drive.coast_deceleration * (1.0 + (plant.force_z_n + grown_n) / screw.spring_n)
             axis.acceleration = axis.deceleration = rate
-        if limit_nm != self._limit_nm:
-            self._limit_nm = limit_nm
-            self._pushed_n = max(0.0, self._screw.pushed_n(limit_nm))
-            self._held_n = max(0.0, self._screw.held_n(limit_nm))
+        if limit_nm != self._limit_nm or self._screw.rate_n_per_mm:
+            self._limit_nm, place_mm = limit_nm, drive.axis.position
+            self._pushed_n = max(0.0, self._screw.pushed_n(limit_nm, place_mm))
+            self._held_n = max(0.0, self._screw.held_n(limit_nm, place_mm))
         if plant.force_z_n > _NEAR_LIMIT * self._pushed_n and drive.energised:
             place_mm = drive.axis.position
             reached_mm = max(self._pressed_mm, plant.press_at_mm(self._pushed_n))
@@ -253,7 +255,7 @@ class WheelRig(SimRig):
 
     def ruler(self, axis: str) -> float:
         """Return the true position of an axis: the wheel's shaft in deg, belt and press in mm, others in deg;
-        "diameter" of the cold wheel, mm."""
+        "diameter" of the cold wheel, mm, and force of the "spring" that lifts the press, N."""
         if axis == "wheel":
             return math.degrees(self._turned_rad)
         if axis == "belt":
@@ -266,6 +268,8 @@ class WheelRig(SimRig):
     def hang(self, fx: float, fy: float, fz: float) -> None:
         """Hang a weight on the load cell: forces in N besides those of the contact; zeros remove it."""
         self.plant.hung = (fx, fy, fz) if fx or fy or fz else None
+        if axis == "spring":
+            return self._screw.lifts_n(self._press.axis.position)
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""

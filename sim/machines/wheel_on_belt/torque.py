@@ -57,13 +57,16 @@ class PressScrew:
     without sliding in its nut, and at rest it keeps the friction with which it stopped.
     """
 
-    def __init__(self, parameters: DriveParameters, efficiency: float, spring_n: float) -> None:
-        """Take the session's ``efficiency`` (above 0.5: it can be driven back) and the force of the lifting spring."""
+    def __init__(self, parameters: DriveParameters, efficiency: float, spring_n: float, rate_n_per_mm: float = 0.0
+                 ) -> None:  # fmt: skip
+        """Take the session's ``efficiency`` (above 0.5: it can be driven back), and the force of the lifting spring
+        with the press at 0 mm, N, with its growth per mm of travel.
+        """
         self._m = 1e-3 * parameters.screw_lead / (2.0 * pi)
         self._excess = 1.0 / efficiency - 1.0
         self._drag_nm = parameters.screw_drag
         self._per_mm = 2.0 / parameters.screw_presliding
-        self.spring_n = spring_n
+        self.spring_n, self.rate_n_per_mm = spring_n, rate_n_per_mm
         self._way = 0.0
         self._place_mm = 0.0
 
@@ -72,15 +75,20 @@ class PressScrew:
         way = self._way + (press_mm - self._place_mm) * self._per_mm
         self._way = way = 1.0 if way > 1.0 else -1.0 if way < -1.0 else way
         self._place_mm = press_mm
-        return self._m * (force_n + self.spring_n) * (1.0 + way * self._excess) + way * self._drag_nm
+        spring_n = self.lifts_n(press_mm)
+        return self._m * (force_n + spring_n) * (1.0 + way * self._excess) + way * self._drag_nm
 
-    def pushed_n(self, torque_nm: float) -> float:
+    def lifts_n(self, press_mm: float) -> float:
+        """Return the force of the lifting spring with the press at ``press_mm``, N."""
+        return self.spring_n + self.rate_n_per_mm * press_mm
+
+    def pushed_n(self, torque_nm: float, press_mm: float = 0.0) -> float:
         """Return the greatest force on the wheel that a torque can reach by pressing, N."""
-        return (torque_nm - self._drag_nm) / (self._m * (1.0 + self._excess)) - self.spring_n
+        return (torque_nm - self._drag_nm) / (self._m * (1.0 + self._excess)) - self.lifts_n(press_mm)
 
-    def held_n(self, torque_nm: float) -> float:
+    def held_n(self, torque_nm: float, press_mm: float = 0.0) -> float:
         """Return the greatest force against which a torque can hold the press, N."""
-        return (torque_nm + self._drag_nm) / (self._m * (1.0 - self._excess)) - self.spring_n
+        return (torque_nm + self._drag_nm) / (self._m * (1.0 - self._excess)) - self.lifts_n(press_mm)
 
 
 def shafts(parameters: DriveParameters, noise: float, seed: int) -> tuple[ShaftTorque, ShaftTorque, float]:

@@ -21,6 +21,7 @@ _KIND: Final = Held("the kind of the machine: the mode and the unit of each axis
 _HOMED: Final = Held("the zero that a person reads in the commissioning; an axis homes unloaded")
 _RAMP: Final = Held("what the drive reads back; a stop that takes longer than its ramp loses its power")
 _FORCE: Final = Held("the load cell: the press's torque is compared with it in every contact")
+_SPRING: Final = Held("torque and balance in the commissioning; the torque in free travel before every contact")
 
 AXIS: Final[Mapping[str, Classes]] = {
     "name": _ANSWER, "node_id": _ANSWER, "vendor_id": _ANSWER, "product_code": _ANSWER, "serial_number": _ANSWER,
@@ -31,7 +32,12 @@ AXIS: Final[Mapping[str, Classes]] = {
     "rated_torque": Held("0x6076 of the drive, within 2 %"),
     "max_speed": _RAMP, "acceleration": _RAMP, "deceleration": _RAMP, "quick_stop_deceleration": _RAMP,
     "max_torque_per_mille": Bounded(LOWER, "4000", "no servo gives more, even for a second [A]", own=True),
-    "screw": _FORCE,
+    "screw": {
+        **dict.fromkeys(
+            ("lead", "efficiency_least", "efficiency_most", "drag_least", "drag_most"), _FORCE
+        ),
+        "spring": _SPRING, "spring_rate": _SPRING,
+    },
     "software_limits": Held("the limits and the geometry of the machine"),
     "home_offset": _HOMED, "homing_method": _HOMED, "homing_speed": _HOMED, "homing_zero_speed": _HOMED,
     "home_timeout": Free("an axis that homes for longer is unloaded, and ends at its limits"),

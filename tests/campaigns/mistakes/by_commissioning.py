@@ -111,6 +111,11 @@ def grow(share: float, world: WheelRig) -> None:
     world.plant.set_size(share)
 
 
+def misread(gain: float, world: WheelRig) -> None:
+    """Let the press's drive measure its torque with another gain."""
+    world.axes["press"].misread_torque(gain, 0.0)
+
+
 def deafen(name: str, world: WheelRig) -> None:
     """Let a drive take its heartbeat consumer and not watch it."""
     drive = world.axes[name]
@@ -178,6 +183,11 @@ def _mistakes() -> tuple[Mistake, ...]:
                 lambda seed: look(seed, steps=("cell",), person=Mistypes())),
         Mistake("a ruler read in centimetres", r"scale of the belt axis",
                 lambda seed: look(seed, steps=("jog belt",), person=Uncalibrated())),
+        *(Mistake(f"lifting spring: {key}", r"lifting spring of the press: .*screw.spring",
+                  partial(look, steps=("spring",), machine=believed(f"sim.drives.press_spring{key}")))
+          for key in ("=43.5 N", "=52 N", "_rate=0.8 N/mm")),
+        Mistake("torque of the press's drive 10 % low", r"gain of the press's torque",
+                partial(look, steps=("spring",), built=partial(misread, 0.9))),
         Mistake("wheel diameter 5 % off", r"wheel diameter",
                 partial(look, steps=("touch",), built=partial(grow, 1.05))),
         Mistake("belt roller 0.9 % off, within the jog's tolerance", r"speed ratio",

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Final
 
 from sim.physics.friction import KNOWN
-from tester.kinds.wheel_on_belt.commission import first, jog, readings, thermometer, touch, watchdogs, weights
+from tester.kinds.wheel_on_belt.commission import first, jog, readings, spring, thermometer, touch, watchdogs, weights
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
@@ -42,12 +42,14 @@ STEPS: Final = (
     *(_jog(axis) for axis in jog.AXES),
     CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _QUIET, weights.calibrate,
          readings=readings.of_cell),
+    CommissionStep("spring", "lifting spring of the press", ("axes.press", "geometry", "press"), ("jog press",), _QUIET,
+         spring.measure_spring, readings=readings.of_axis(jog.AXES[2])),
     CommissionStep("home", "homing, and whether zero is straight", (*_HOMED, "can", "arming"),
          _JOGGED, ArmedSeat, touch.home, readings=readings.of_positions),
     CommissionStep("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED,
          watchdogs.TrialSeat, watchdogs.watchdogs, readings=readings.of_armed(readings.SPEEDS, readings.PRESS)),
-    CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "home"), ArmedSeat,
-         touch.touch, readings=readings.of_armed(readings.PRESS, readings.FORCES, readings.SPEEDS)),
+    CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "spring", "home"),
+         ArmedSeat, touch.touch, readings=readings.of_armed(readings.PRESS, readings.FORCES, readings.SPEEDS)),
     CommissionStep("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), ArmedSeat,
          touch.roll, readings=readings.of_armed(readings.SPEEDS, readings.FORCES)),
     CommissionStep("directions", "crosstalk and misalignment by both directions of slip", _ALL, ("rolling",),

@@ -1,9 +1,8 @@
 """A rig with untested scales: connected, with every drive off except the drive that a person jogs.
 
 This comes before arming, and so before the interlock table: most of its rows depend on scales. The checks are those of
-the connection before every run (tester.machine.connect): safety chain and guard, heartbeats, faults, age of the inputs,
-a second master. Here the load cell must also stay constant. Two bounds need no scale: a jog lasts at most ``PRESS_S``
-for each key press, and the drive has only a share of its torque.
+the connection before every run (tester.machine.connect), and the load cell must stay constant. Two bounds need no
+scale: a jog lasts at most ``PRESS_S`` for each key press, and the drive has only a share of its torque.
 """
 
 from __future__ import annotations
@@ -67,15 +66,14 @@ def jog_rig(rig: RigConfig, speeds: dict[str, JogSpeeds]) -> RigConfig:
 
 @dataclass(slots=True)
 class JogMove:
-    """Motion for one key press: an axis moves ``way`` (signed, its unit) at ``speed``, for at most ``PRESS_S``."""
+    """Motion for one key press: an axis moves ``way`` (signed, its unit) at ``speed``, for at most ``most_s``."""
 
     axis: str
     way: float
     speed: float
-    holds: bool = False
-    """The axis keeps its power at rest: a spring would move an unpowered press."""
-    moved: float = 0.0
-    """Distance that the drive itself reports."""
+    most_s: float = PRESS_S  # longer once the scale is known
+    holds: bool = False  # keeps its power at rest: a spring would move an unpowered press
+    moved: float = 0.0  # as the drive itself reports it
     over: bool = False
     read: bool = False
     """The way was read while the axis was held: a spring that takes it back changes nothing."""
@@ -120,10 +118,10 @@ class Jogging(Moving):
         """Whether a drive has power, or is about to."""
         return (self.jog is not None and not self.jog.over) or has_power(self.devices)
 
-    def begin(self, axis: str, way: float, speed: float, *, holds: bool = False) -> JogMove:
+    def begin(self, axis: str, way: float, speed: float, *, holds: bool = False, most_s: float = PRESS_S) -> JogMove:
         """Begin a jog."""
         self._earlier = self.moved
-        self.jog = JogMove(axis, way, speed, holds)
+        self.jog = JogMove(axis, way, speed, most_s, holds)
         self._enter("enable", inf)
         self._rest = tuple(self.devices.cell.raw)
         return self.jog
@@ -184,7 +182,7 @@ class Jogging(Moving):
         if not jog.read:
             jog.moved = drive.actual - self._from if by_position else jog.moved + drive.actual * dt
         if self._phase == "move":
-            if self._arrived(drive, jog) or elapsed >= PRESS_S:
+            if self._arrived(drive, jog) or elapsed >= jog.most_s:
                 self._halt(drive)
                 self._enter("still", now)
         elif self._phase == "still":

@@ -96,6 +96,8 @@ class TwinPerson(Person):
             return "1#"
         if words[0] == "diameter":
             return f"{self.hands.ruler('diameter'):.2f}"
+        if words[0] == "spring":
+            return f"{self.hands.ruler('spring'):.1f}"
         if question.asks is Asks.CHOICE:
             return question.choices[0]
         if question.asks is Asks.TEXT:

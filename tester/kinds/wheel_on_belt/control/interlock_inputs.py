@@ -220,13 +220,18 @@ def _press_band(rig: RigConfig) -> PressBand:
     screw = rig.axes.press.screw
     if screw is None:
         return PressBand(known=False)
-    return PressBand(True, screw.drag_most_nm, screw.spring_n, screw.reached_n_per_nm, screw.held_n_per_nm)
+    return PressBand(
+        True, screw.drag_most_nm, screw.spring_n, screw.spring_rate_n_per_mm, screw.reached_n_per_nm,
+        screw.held_n_per_nm,
+    )  # fmt: skip
 
 
 def _free_travel(rig: RigConfig) -> FreeTravel:
-    press = rig.axes.press
-    spring_nm = press.screw.spring_nm if press.screw is not None else 0.0
-    return FreeTravel(spring_nm, 0.5e-3 * press.rated_torque_nm)
+    press, screw = rig.axes.press, rig.axes.press.screw
+    digit_nm = 0.5e-3 * press.rated_torque_nm
+    if screw is None:
+        return FreeTravel(0.0, 0.0, digit_nm)
+    return FreeTravel(screw.spring_nm, screw.nm_per_n * screw.spring_rate_n_per_mm, digit_nm)
 
 
 def _heat_balance(rig: RigConfig, p: Values) -> HeatBalance:

@@ -61,17 +61,18 @@ class PressBand:
     """The rig file has ``axes.press.screw``."""
     drag_nm: float = 0.0
     spring_n: float = 0.0
+    spring_rate_n_per_mm: float = 0.0
     least_n_per_nm: float = 0.0
     most_n_per_nm: float = 0.0
 
-    def least_n(self, torque_nm: float) -> float:
-        """Return the least force, N; NaN for an unknown torque."""
-        least = (torque_nm - self.drag_nm) * self.least_n_per_nm - self.spring_n
+    def least_n(self, torque_nm: float, press_mm: float) -> float:
+        """Return the least force with the press at ``press_mm``, N; NaN for an unknown torque."""
+        least = (torque_nm - self.drag_nm) * self.least_n_per_nm - self.spring_n - self.spring_rate_n_per_mm * press_mm
         return 0.0 if least < 0.0 else least
 
-    def most_n(self, torque_nm: float) -> float:
-        """Return the greatest force, N; NaN for an unknown torque."""
-        most = (torque_nm + self.drag_nm) * self.most_n_per_nm - self.spring_n
+    def most_n(self, torque_nm: float, press_mm: float) -> float:
+        """Return the greatest force with the press at ``press_mm``, N; NaN for an unknown torque."""
+        most = (torque_nm + self.drag_nm) * self.most_n_per_nm - self.spring_n - self.spring_rate_n_per_mm * press_mm
         return 0.0 if most < 0.0 else most
 
 

@@ -179,13 +179,16 @@ class FreeTravel:
     """
 
     spring_nm: float
-    """Torque that the spring takes without friction; 0 without a spring."""
+    """Torque that the spring takes without friction, with the press at 0 mm; 0 without a spring."""
+    rate_nm_per_mm: float
+    """More of it per mm of travel."""
     digit_nm: float
     """Half the last digit of the drive's torque."""
     off_share: float = 0.0
     """How far the half sum is off the spring's torque beyond a digit, a share of it; 0 until both ways are known."""
     at_s: float = -inf
     down_nm: float = nan
+    """Mean torque of the last way down, and of the last way up, less what the rate makes of the places."""
     up_nm: float = nan
     _down: bool = False
     _up: bool = False
@@ -215,7 +218,8 @@ class FreeTravel:
             return
         self._count += 1
         before_nm = self._mean_nm if self._count > 1 else 0.0
-        self._mean_nm = mean = before_nm + (r.press_torque_nm - before_nm) / self._count
+        grown_nm = self.rate_nm_per_mm * r.press_mm
+        self._mean_nm = mean = before_nm + (r.press_torque_nm - grown_nm - before_nm) / self._count
         if self._count < LEAST_READINGS:
             return
         if self._way_mm > 0.0:
@@ -225,7 +229,7 @@ class FreeTravel:
         if not (self._down and self._up):
             return
         off_nm = abs(0.5 * (self.down_nm + self.up_nm) - self.spring_nm) - self.digit_nm
-        self.off_share = 0.0 if off_nm < 0.0 else off_nm / self.spring_nm
+        self.off_share = 0.0 if off_nm < 0.0 else off_nm / (self.spring_nm + grown_nm)
 
 
 @dataclass(slots=True)

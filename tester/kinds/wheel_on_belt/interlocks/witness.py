@@ -61,8 +61,9 @@ TORQUE_DELAY_S: Final = Parameter(
 
 
 def _torque_allows_n(v: Inputs) -> tuple[float, float, float]:
-    band, margin, torque_nm = v.press_band, v.parameters[TORQUE_MARGIN_N], v.readings.press_torque_nm
-    return band.least_n(torque_nm) - margin, v.readings.force_z_n, band.most_n(torque_nm) + margin
+    band, margin, r = v.press_band, v.parameters[TORQUE_MARGIN_N], v.readings
+    least_n, most_n = band.least_n(r.press_torque_nm, r.press_mm), band.most_n(r.press_torque_nm, r.press_mm)
+    return least_n - margin, r.force_z_n, most_n + margin
 
 
 PRESS_TORQUE: Final[Row] = Interlock(

@@ -190,7 +190,8 @@ def with_torque_limit(rig: RigConfig) -> RigConfig:
     press = rig.axes.press
     if press.screw is None:
         return rig
-    needed = ceil(1000.0 * press.screw.torque_nm(rig.limits.load_n) / press.rated_torque_nm)
+    worn_mm = rig.geometry.touch_at_mm(rig.interlocks.least_diameter_mm)
+    needed = ceil(1000.0 * press.screw.torque_nm(rig.limits.load_n, worn_mm) / press.rated_torque_nm)
     limited = replace(press, max_torque_per_mille=min(press.max_torque_per_mille, needed))
     return replace(rig, axes=replace(rig.axes, press=limited))
 
@@ -201,7 +202,8 @@ def torque_problem(rig: RigConfig) -> str:
     if press.screw is None:
         return ""
     torque_nm = 1e-3 * press.max_torque_per_mille * press.rated_torque_nm
-    most_n, least_n = press.screw.pushed_n(torque_nm), press.screw.reached_n(torque_nm)
+    most_n = press.screw.pushed_n(torque_nm, rig.geometry.touch_mm)
+    least_n = press.screw.reached_n(torque_nm, rig.geometry.touch_at_mm(rig.interlocks.least_diameter_mm))
     if most_n + RIPPLE_N > HARMFUL_N:
         return (
             f"{torque_nm:.3f} N m (0x6072), which {rig.limits.load_n:g} N take with the most friction, press with"

@@ -16,8 +16,12 @@ DIGIT_NM = 1e-3
 class Travel:
     """A press that moves to and fro, 0.1 mm a reading."""
 
-    def __init__(self, gain: float = 1.0, drag_nm: float = 0.015, efficiency: float = 0.9) -> None:
-        self.free = FreeTravel(SPRING_NM, DIGIT_NM)
+    def __init__(
+        self, gain: float = 1.0, drag_nm: float = 0.015, efficiency: float = 0.9, rate: float = 0.0,
+        believed_rate: float = 0.0,
+    ) -> None:  # fmt: skip
+        self.free = FreeTravel(SPRING_NM, believed_rate, DIGIT_NM)
+        self.rate = rate
         self.gain, self.drag_nm, self.excess = gain, drag_nm, 1.0 / efficiency - 1.0
         self.now_s, self.press_mm = 0.0, 5.0
 
@@ -27,7 +31,8 @@ class Travel:
         for _ in range(round(abs(way_mm) / 0.1)):
             self.now_s += 0.05
             self.press_mm += 0.1 * way
-            torque_nm = SPRING_NM * (1.0 + way * self.excess) + way * self.drag_nm
+            spring_nm = SPRING_NM + self.rate * self.press_mm
+            torque_nm = spring_nm * (1.0 + way * self.excess) + way * self.drag_nm
             readings = Readings(press_at_s=self.now_s, press_mm=self.press_mm, press_torque_nm=self.gain * torque_nm)
             self.free.update(readings, clear)
         return self.free.off_share
@@ -39,6 +44,22 @@ def test_friction_cancels_whatever_it_is(drag_nm: float, efficiency: float) -> N
     travel = Travel(drag_nm=drag_nm, efficiency=efficiency)
     assert travel.go(2.0) == 0.0 and travel.go(-2.0) == 0.0
     assert 0.5 * (travel.free.down_nm + travel.free.up_nm) == pytest.approx(SPRING_NM)
+
+
+def test_a_spring_whose_force_grows_is_that_of_its_place() -> None:
+    travel = Travel(rate=8e-4, believed_rate=8e-4)
+    travel.go(2.0)
+    assert travel.go(-2.0) == 0.0
+    travel = Travel(rate=8e-4)
+    travel.go(2.0)
+    assert travel.go(-2.0) == pytest.approx((8e-4 * 6.0 - DIGIT_NM) / SPRING_NM, rel=0.1)
+
+
+@pytest.mark.parametrize("gain", [0.9, 1.1])
+def test_a_gain_shows_with_a_spring_whose_force_grows(gain: float) -> None:
+    travel = Travel(gain, rate=8e-4, believed_rate=8e-4)
+    travel.go(2.0)
+    assert travel.go(-2.0) == pytest.approx(0.1 - DIGIT_NM / (SPRING_NM + 8e-4 * 6.0), abs=0.005)
 
 
 @pytest.mark.parametrize(("gain", "off"), [(0.9, 0.1), (1.1, 0.1), (0.98, 0.0)])
