@@ -272,6 +272,7 @@ class SimParameters:
     belt_conductance: Annotated[float, "W/K"] = 0.06  # rubber to belt in contact; 0.3 = hot rig
     ambient: Annotated[float, "degC"] = 23.0
     press_on_power_loss: PowerLoss = "retract"
+    standstill_relay: bool = True  # takes the torque off wheel and belt once one stands and the other turns
     mirrored: bool = False  # errors of a session's sensors with the other sign: two runs of a seed are off both ways
     stick_slip: Annotated[float, "1"] = 0.0  # friction swings by this share of it to either side ...
     stick_slip_frequency: Annotated[float, "Hz"] = 4.0  # ... so often a second [A]

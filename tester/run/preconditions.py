@@ -81,7 +81,7 @@ def unmeasured(rig: Rig, runs: Path) -> str:
 
 
 def _has(rig: Rig, section: str) -> bool:
-    return value_at(rig, tuple(section.split("."))) is not None
+    return value_at(rig, tuple(section.split("."))) not in (None, False)
 
 
 def not_measured(options: SessionOptions, rig: Rig) -> str:

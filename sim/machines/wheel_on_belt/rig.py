@@ -14,6 +14,7 @@ from typing import Final
 from drivers.axis import AxisConfig
 from sim.machines.wheel_on_belt.plant import Plant
 from sim.machines.wheel_on_belt.rubbing import WheelSetting
+from sim.machines.wheel_on_belt.standstill_relay import StandstillRelay
 from sim.machines.wheel_on_belt.torque import PressScrew, capstan_n, shafts
 from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.controller_slave import ControllerSlave
@@ -79,6 +80,7 @@ class WheelRig(SimRig):
         self._limit_nm = self._pushed_n = self._held_n = 0.0
         self._pressed_mm = 0.0
         self._stalled = self._yields = False
+        self.relay = StandstillRelay() if parameters.standstill_relay else None
         self.swapped = False
         """Whether the drives of wheel and belt are swapped: each moves the other's part."""
         self.turned: set[str] = set()
@@ -123,6 +125,10 @@ class WheelRig(SimRig):
             self._turned_rad += self.wheel_rad_s * dt
             self._travelled_m += self.belt_m_s * dt
         self._seen_s = t1
+        relay = self.relay
+        if relay is not None and (not still or relay.off) and relay.look(self.rim_m_s, self.belt_m_s, t1):
+            for name in relay.reaches:
+                self.axes[name].set_torque_off(relay.off)
         elapsed = t1 - self.plant_s
         if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
             return  # only temperatures change, and slowly
@@ -262,14 +268,14 @@ class WheelRig(SimRig):
             return 1e3 * self._travelled_m
         if axis == "diameter":
             return self.plant.cold_mm
+        if axis == "spring":
+            return self._screw.lifts_n(self._press.axis.position)
         place = self.axes[axis].axis.position if axis in self.axes else 0.0
         return -place if axis in self.turned else place
 
     def hang(self, fx: float, fy: float, fz: float) -> None:
         """Hang a weight on the load cell: forces in N besides those of the contact; zeros remove it."""
         self.plant.hung = (fx, fy, fz) if fx or fy or fz else None
-        if axis == "spring":
-            return self._screw.lifts_n(self._press.axis.position)
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""

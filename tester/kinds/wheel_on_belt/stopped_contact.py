@@ -33,6 +33,8 @@ CELL_S: Final = 0.02
 """Friction is read so much later than a drive's torque, s [A] (``interlocks.belt_torque_delay``)."""
 STEP_S: Final = 1e-3
 """Of the sum over a stop, s."""
+RELAY_S: Final = 0.05
+"""Longest time of the relay from standstill to torque off, s [A]: 800 W of friction are 40 J then."""
 RELAY: Final = "arming.standstill_relay: true"
 _CAUSES: Final = (
     "beside a scan that is just not late enough to trip", "where something holds the belt fast", "without brakes",

@@ -116,6 +116,12 @@ def misread(gain: float, world: WheelRig) -> None:
     world.axes["press"].misread_torque(gain, 0.0)
 
 
+def weld(world: WheelRig) -> None:
+    """Let the standstill relay see everything and switch nothing."""
+    assert world.relay is not None
+    world.relay.works = False
+
+
 def deafen(name: str, world: WheelRig) -> None:
     """Let a drive take its heartbeat consumer and not watch it."""
     drive = world.axes[name]
@@ -202,6 +208,10 @@ def _mistakes() -> tuple[Mistake, ...]:
                 lambda seed: look(seed, steps=("watchdogs",), person=Silences("watchdog setpoints"))),
         Mistake("lease of the jacket not armed", r"jacket's lease did not end its heat",
                 lambda seed: look(seed, steps=("watchdogs",), person=Silences("watchdog heat"))),
+        Mistake("standstill relay stuck", r"standstill relay: .*not confirmed",
+                partial(look, steps=("relay",), built=weld)),
+        Mistake("no standstill relay", r"standstill relay: .*not confirmed",
+                partial(look, steps=("relay",), machine=believed("sim.standstill_relay=false"))),
         Mistake("no deadline for setpoints", r"no deadline for setpoints.*belt",
                 lambda seed: look(seed, steps=("watchdogs",), rig=without_deadline("belt"))),
     ]  # fmt: skip

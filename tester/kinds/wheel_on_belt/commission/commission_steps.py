@@ -6,7 +6,17 @@ from functools import partial
 from typing import Final
 
 from sim.physics.friction import KNOWN
-from tester.kinds.wheel_on_belt.commission import first, jog, readings, spring, thermometer, touch, watchdogs, weights
+from tester.kinds.wheel_on_belt.commission import (
+    first,
+    jog,
+    readings,
+    relay,
+    spring,
+    thermometer,
+    touch,
+    watchdogs,
+    weights,
+)
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
@@ -47,7 +57,10 @@ STEPS: Final = (
     CommissionStep("home", "homing, and whether zero is straight", (*_HOMED, "can", "arming"),
          _JOGGED, ArmedSeat, touch.home, readings=readings.of_positions),
     CommissionStep("watchdogs", "drives stop by themselves", ("axes", "can", "arming", "devices.jacket"), _JOGGED,
-         watchdogs.TrialSeat, watchdogs.watchdogs, readings=readings.of_armed(readings.SPEEDS, readings.PRESS)),
+         watchdogs.TrialSeat, watchdogs.watchdogs, readings=readings.of_trial),
+    CommissionStep("relay", "standstill relay, provoked",
+         ("arming.standstill_relay", "axes.wheel", "axes.belt", "geometry", "arming"), ("watchdogs",),
+         watchdogs.TrialSeat, relay.provoke, readings=readings.of_trial, required=True),
     CommissionStep("touch", "first touch and tare", ("axes", "geometry", "loops", *_CELL), ("cell", "spring", "home"),
          ArmedSeat, touch.touch, readings=readings.of_armed(readings.PRESS, readings.FORCES, readings.SPEEDS)),
     CommissionStep("rolling", "speed ratio by rolling", ("axes.wheel", "axes.belt", "geometry"), ("touch",), ArmedSeat,

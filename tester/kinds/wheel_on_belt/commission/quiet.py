@@ -32,6 +32,9 @@ TORQUE_SHARE: Final = 0.3
 PRESS_LOAD_N: Final = 60.0
 """Load that the press must still be able to produce, N [A]: its spring pulls back with 40 N."""
 
+RELAY: Final = {name: f"; by a standstill relay: the scale of the {name} axis is wrong" for name in ("wheel", "belt")}
+"""Why a jogged drive loses its torque: the relay acts from 0.1 m/s on, twice the speed of a jog at the right scale."""
+
 
 @dataclass(frozen=True, slots=True)
 class JogSpeeds:
@@ -177,7 +180,7 @@ class Jogging(Moving):
                 self.failure = f"the {jog.axis} drive is not enabled after {ENABLE_S:g} s"
             return
         if drive.state is not State.OPERATION_ENABLED and self._phase != "off":
-            self.failure = f"the {jog.axis} drive left operation while it was jogged"
+            self.failure = f"the {jog.axis} drive left operation while it was jogged{RELAY.get(jog.axis, '')}"
             return
         if not jog.read:
             jog.moved = drive.actual - self._from if by_position else jog.moved + drive.actual * dt

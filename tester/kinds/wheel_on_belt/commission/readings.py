@@ -9,7 +9,7 @@ from typing import Any, Final
 from drivers.cia402 import State
 from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat
 from tester.kinds.wheel_on_belt.commission.jog import JoggedAxis
-from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
+from tester.kinds.wheel_on_belt.commission.quiet import JogSeat, QuietSeat
 from tester.machine.commission.commission_step import Dialogue, Notes, StepReading, StepRefused, choose
 from tester.machine.commission.stages import in_stages
 
@@ -76,6 +76,17 @@ def of_armed(*tables: Table) -> Callable[[ArmedSeat], Sequence[StepReading]]:
         )
 
     return readings
+
+
+def of_trial(seat: QuietSeat) -> Sequence[StepReading]:
+    """Return the speeds of wheel and belt, and the press's position, as their drives report them."""
+    axes = seat.devices.axes
+    radius_m = 0.5e-3 * seat.rig.geometry.wheel_diameter_mm
+    shown = ((axes.wheel, radius_m, "m/s", 3), (axes.belt, 1.0, "m/s", 3), (axes.press, 1.0, "mm", 2))
+    return tuple(
+        StepReading(drive.config.name, scale * drive.actual, unit, decimals, STATES.get(drive.state, "no power"))
+        for drive, scale, unit, decimals in shown
+    )
 
 
 def of_positions(seat: ArmedSeat) -> Sequence[StepReading]:

@@ -177,7 +177,7 @@ class ArmingConfig:
     At most 50 N: a greater contact force must not be taken for the cell's zero.
     """
     standstill_relay: Annotated[
-        bool, Held("a person who tries it once it is wired; a run names the contacts that only it holds")
+        bool, Held("the commissioning, which halts wheel and belt; a run names the contacts that only it holds")
     ]
     """A relay takes the torque off wheel and belt, without this program, once one stands and the other turns."""
 

@@ -33,14 +33,17 @@ def watched(monkeypatch: pytest.MonkeyPatch, look: Callable[[WheelRig], None]) -
 
 
 def scaled(rig: RigConfig, name: str, factor: float) -> RigConfig:
-    """Return a machine whose axis moves ``factor`` times as far as the rig file says: it needs fewer counts."""
+    """Return a machine whose axis moves ``factor`` times as far as the rig file says: it needs fewer counts.
+
+    No standstill relay takes the torque of what is too fast.
+    """
     axis = getattr(rig.axes, name)
     new = replace(
         axis,
         velocity_increments=axis.velocity_increments / factor,
         position_increments=axis.position_increments / factor,
     )
-    return replace(rig, axes=replace(rig.axes, **{name: new}))
+    return replace(rig, axes=replace(rig.axes, **{name: new}), sim=replace(rig.sim, standstill_relay=False))
 
 
 def turned(name: str) -> Callable[[WheelRig], None]:
@@ -106,6 +109,15 @@ def test_a_scale_ten_times_wrong_is_found_before_anything_is_faster_than_a_perso
     assert fastest[0] <= 0.25
     assert deepest[0] < rig.geometry.touch_mm
     assert bench.world is not None and bench.world.plant.force_z_n == 0.0
+
+
+@pytest.mark.parametrize("name", ["wheel", "belt"])
+def test_a_scale_ten_times_wrong_is_named_where_the_standstill_relay_cuts_the_jog(tmp_path: Path, name: str) -> None:
+    rig = believed()
+    machine = replace(scaled(rig, name, 10.0), sim=rig.sim)
+    outcome = Bench(tmp_path / "r.jsonl", rig=rig, machine=machine, steps=named(f"jog {name}")).run()
+    assert outcome.ended is Ended.FAILED
+    assert f"by a standstill relay: the scale of the {name} axis is wrong" in outcome.text
 
 
 def test_a_key_press_moves_for_two_seconds_at_most_and_power_is_off_in_between(tmp_path: Path) -> None:

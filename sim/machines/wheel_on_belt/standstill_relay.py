@@ -1,0 +1,40 @@
+"""A relay beside the program: safe torque off of wheel and belt once one of them stands and the other turns."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Final
+
+TURNS_M_S: Final = 0.1
+"""Speed from which wheel or belt turns, m/s [A]."""
+STANDS_M_S: Final = 0.01
+"""Speed below which it stands, m/s [A]."""
+REACTS_S: Final = 0.02
+"""Time from the condition to the torque off, s [A]: a standstill monitor and a contactor's coil."""
+
+
+class StandstillRelay:
+    """The relay, with speed sensors of its own on the wheel's shaft and on the belt."""
+
+    def __init__(self) -> None:
+        """The relay works, and torque is on."""
+        self.works = True
+        self.reaches = ["wheel", "belt"]
+        """Axes whose drives have its contacts in their safe torque off."""
+        self.off = False
+        """Whether it has taken the torque off; both have to stand before it comes back."""
+        self._since_s = inf
+
+    def look(self, wheel_m_s: float, belt_m_s: float, now_s: float) -> bool:
+        """Read the speeds of tread and belt at ``now_s``; return whether ``off`` has changed."""
+        slow, fast = sorted((abs(wheel_m_s), abs(belt_m_s)))
+        before = self.off
+        if self.off:
+            self.off = fast >= STANDS_M_S
+        elif not (slow < STANDS_M_S and fast > TURNS_M_S):
+            self._since_s = inf
+        elif self._since_s == inf:
+            self._since_s = now_s
+        else:
+            self.off = self.works and now_s - self._since_s >= REACTS_S
+        return self.off is not before
