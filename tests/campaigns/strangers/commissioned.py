@@ -20,10 +20,13 @@ from tests.campaigns.strangers.trial import STANDS, Outcome
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench
 
 NAME = "commissioning"
-LASTS_S = {"cell": 260.0, "thermometer": 300.0, "watchdogs": 20.0}
+LASTS_S = {"cell": 260.0, "thermometer": 300.0, "watchdogs": 20.0, "spring": 20.0, "relay": 15.0}
 """How long a step takes on a sound machine, s; others USUAL_S."""
 USUAL_S = 35.0
-OF_STEP = {"cell": "load cell", "home": "press", "touch": "press", "rolling": "belt", "thermometer": "thermometer"}
+OF_STEP = {
+    "cell": "load cell", "spring": "press", "home": "press", "relay": "belt", "touch": "press", "rolling": "belt",
+    "thermometer": "thermometer",
+}  # fmt: skip
 """What a step looks at: the first defect of a case is of it. A jog looks at its own axis, the others at any part."""
 PLANNED_W = 120.0
 """Slip speed times load that commissioning asks for at most, W: 200 N at 0.6 m/s."""

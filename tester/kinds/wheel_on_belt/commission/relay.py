@@ -7,7 +7,7 @@ on each part, so each part is halted once.
 from __future__ import annotations
 
 from functools import partial
-from math import nan
+from math import isfinite, nan
 from typing import Final
 
 from drivers.cia402 import State
@@ -41,7 +41,8 @@ class RelayTrial(WatchdogProof):
         super().__init__(devices, follow=True, watchdog=True, withhold_s=WATCHED_S)
         self.axes, self.halted = devices.axes, halted
         self.radius_m = 0.5e-3 * rig.geometry.wheel_diameter_mm
-        self._stood_s = nan
+        self.stood_s = nan
+        """When it stood: until then a failure is not the relay's."""
 
     @property
     def speeds_m_s(self) -> dict[str, float]:
@@ -71,19 +72,19 @@ class RelayTrial(WatchdogProof):
         return all(abs(speed) < STANDS_SHARE * TURNS_M_S for speed in self.speeds_m_s.values())
 
     def _withhold(self, now: float, elapsed: float) -> None:
-        if self._stood_s != self._stood_s:
+        if self.stood_s != self.stood_s:
             if abs(self.speeds_m_s[self.halted]) < STANDS_SHARE * TURNS_M_S:
-                self._stood_s = now
+                self.stood_s = now
             elif elapsed > WATCHED_S:
                 self.failure = f"the {self.halted} was not halted within {WATCHED_S:g} s"
             return
         for drive in (self.axes.wheel, self.axes.belt):
             if drive.state is not State.OPERATION_ENABLED:
-                self.reported.setdefault(drive.config.name, now - self._stood_s)
+                self.reported.setdefault(drive.config.name, now - self.stood_s)
         if len(self.reported) == len(PARTS):
             self.stop()
             self.enter(ProofStage.STILL, now)
-        elif now - self._stood_s > WATCHED_S:
+        elif now - self.stood_s > WATCHED_S:
             self.failure = self.ran_on(self.halted)
 
     def ran_on(self, name: str) -> str:
@@ -116,7 +117,8 @@ def _halted(seat: TrialSeat, notes: Notes, part: str) -> Dialogue:
     seat.trials.proof = trial
     yield lambda now_s: trial.done
     if trial.failure:
-        raise _unconfirmed(trial.failure)
+        missed = StepRefused(f"standstill relay not provoked: {trial.failure}")
+        raise _unconfirmed(trial.failure) if isfinite(trial.stood_s) else missed
     after_s = max(trial.reported.values())
     if not after_s <= RELAY_S + MORE_S:
         raise _unconfirmed(f"it took {1e3 * after_s:.0f} ms after the {part} stood, {1e3 * RELAY_S:.0f} ms are allowed")

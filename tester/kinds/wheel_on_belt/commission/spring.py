@@ -30,6 +30,10 @@ WEIGHED_AGAIN: Final = 1.2
 PARTS: Final = 3
 """Parts of the travel that are compared: a spring whose force grows differs at the ends."""
 LEAST_TRAVEL_SHARE: Final = 0.9
+FRICTION_SHARE: Final = 0.2
+"""Share of a growth by which both ways may differ: a screw of 83 % [A]."""
+ROUNDED: Final = 4.0
+"""... and standard uncertainties of the growth: digits of a torque that hardly changes [A]."""
 
 
 class SpringForce(NamedTuple):
@@ -43,6 +47,8 @@ class SpringForce(NamedTuple):
     """Place, mm, and force, N, of each part of the travel."""
     friction_nm: float
     """Half the difference of both ways' torques."""
+    apart_n_per_mm: float
+    """Half the difference of both ways' growths: the screw's friction explains a share of the growth."""
 
     @property
     def words(self) -> str:
@@ -75,8 +81,9 @@ def spring_of(down: Way, up: Way, nm_per_n: float, digit_nm: float) -> SpringFor
         parts.append((mm, torque_nm / nm_per_n))
     rate = rate if abs(rate) > standard_rate else 0.0
     return SpringForce(
-        force_n - rate * middle_mm, rate, standard_n, standard_rate, tuple(parts), 0.5 * (down_nm - up_nm)
-    )
+        force_n - rate * middle_mm, rate, standard_n, standard_rate, tuple(parts), 0.5 * (down_nm - up_nm),
+        0.5 * (down_rate - up_rate) / nm_per_n,
+    )  # fmt: skip
 
 
 def _line(way: Way, at_mm: float) -> tuple[float, float, float]:
@@ -198,6 +205,11 @@ def _sound(spring: SpringForce) -> None:
         raise StepRefused(
             f"press's torque in free travel: half the sum of both ways means a spring of {spring.at_rest_n:.1f} N that"
             " lifts it: does the drive report its torque (0x6077), and with the right sign? Is the spring there?"
+        )
+    if not abs(spring.apart_n_per_mm) <= FRICTION_SHARE * spring.rate_n_per_mm + ROUNDED * spring.standard_rate:
+        raise StepRefused(
+            f"press's torque in free travel: down it grows by {2.0 * spring.apart_n_per_mm:.2f} N per mm more than up:"
+            " it drifts, or something bears on the press; measure again"
         )
     if spring.rate_n_per_mm < 0.0:
         raise StepRefused(

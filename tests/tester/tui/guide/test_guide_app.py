@@ -44,7 +44,7 @@ def test_three_steps_are_done_with_real_keys_and_stand_when_the_screen_is_opened
         assert "moved in all" in on.text() and "guard, safety chain" in on.text()
         assert "✔ jog wheel" in on.text() and "▶ jog belt" in on.text() and "▸ jog press" in on.text()
         await on.answer_until("begin jog press")
-        assert "3 of 14 steps stand" in on.text()
+        assert "3 of 16 steps stand" in on.text()
         await on.type("n")
         await on.ended()
         assert "left before the end" in on.text()
@@ -56,7 +56,7 @@ def test_three_steps_are_done_with_real_keys_and_stand_when_the_screen_is_opened
 
     async def look(on: TwinStage) -> None:
         await on.asked("begin jog press")
-        assert "3 of 14 steps stand" in on.text() and on.twin.hands is None
+        assert "3 of 16 steps stand" in on.text() and on.twin.hands is None
         await on.press("tab", "home", "down", "enter")
         assert "On record: jog wheel" in on.text() and "scale_error" in on.text()
 

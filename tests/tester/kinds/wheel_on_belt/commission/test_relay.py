@@ -95,6 +95,15 @@ def test_a_screen_shows_readings_throughout(tmp_path: Path, step: str) -> None:
     assert shown
 
 
+def test_a_belt_that_does_not_turn_is_not_the_relays_fault(tmp_path: Path) -> None:
+    def look(world: WheelRig) -> None:
+        if world.rim_m_s > 0.01:
+            world.axes["belt"].block(True)
+
+    text = tried(tmp_path, look=look)[1].text
+    assert "not provoked: the belt turns at 0.000 m/s" in text and "not confirmed" not in text
+
+
 def test_a_person_who_saw_no_relay_is_believed(tmp_path: Path) -> None:
     class Sees(TwinPerson):
         def answer(self, question: Question) -> str:

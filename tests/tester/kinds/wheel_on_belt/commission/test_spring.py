@@ -120,6 +120,14 @@ def test_a_torque_that_no_spring_takes_is_named(tmp_path: Path, gain: float, off
     assert "press's torque in free travel" in outcome.text
 
 
+def test_a_torque_that_drifts_on_the_way_is_no_growing_spring(tmp_path: Path) -> None:
+    def look(world: WheelRig) -> None:
+        world.axes["press"].misread_torque(1.0, 2e-3 * world.now_s)
+
+    outcome = Bench(tmp_path / "r.jsonl", steps=STEPS, look=look).run()
+    assert "it drifts" in outcome.text and not ADVICE.search(outcome.text)
+
+
 @pytest.mark.parametrize(("typed", "named_by"), [("400", "unit, zero and hook"), ("4.1", "unit, zero and hook")])
 def test_nonsense_of_the_balance_changes_nothing(tmp_path: Path, typed: str, named_by: str) -> None:
     class Mistypes(TwinPerson):
