@@ -166,7 +166,7 @@ class ServoAxis(AxisCommand):
             self.take_statusword(statusword)
         if self._at_rest and self._position_mode:
             self.dirty = True
-        if raw != self._raw or (self._coarse and data != self.tpdo1_data):
+        if raw != self._raw or self._coarse:
             self.changed_s = t
         self._raw = raw
         self.actual = raw / self._raw_per_unit

@@ -229,7 +229,11 @@ def _map(drive: ServoAxis, one: PdoSetting) -> Step:
     if limits.mapping == "free":
         yield from write(drive, one.mapping, 0, 0)
         for sub, entry in enumerate(entries, start=1):
-            yield from write(drive, one.mapping, sub, entry)
+            try:
+                yield from write(drive, one.mapping, sub, entry)
+            except RequestError as error:
+                index, inner, _ = one.mapped.fields[sub - 1]
+                raise RequestError(f"{error}: {describe(index, inner)}", error.code) from error
         yield from write(drive, one.mapping, 0, len(entries))
     else:
         yield from compare(drive, one.mapping, 0, len(entries))

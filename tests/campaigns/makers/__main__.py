@@ -4,7 +4,8 @@ Each device is a slave built from its maker's table alone, by another hand than 
 Numbers drawn over the whole range of every channel must be read within one step of the register. Each write must arrive
 as the table wants it. What the table forbids must be refused by name: values out of range, exceptions 1 to 3; while a
 device fails or is busy (4, 6) nothing is believed. No number is believed in any fault of the table, nor of a device
-that is silent; all are, once it is over. A device that begins anew, and missed a reply, is set up again.
+that is silent; all are, once it is over. A device that begins anew, and missed a reply, is set up again. A frequency
+inverter on CAN, from the pages of five makers, is judged alike.
 Prints a line a figure; exit status 1 where one misses.
 """
 
@@ -32,6 +33,7 @@ from tests.campaigns.makers import (
 )
 from tests.campaigns.makers.cases import Cases
 from tests.campaigns.makers.controllers import ControllerCases
+from tests.campaigns.makers.inverter_cases import InverterCases
 from tests.campaigns.makers.seat import Tally, placed
 
 SENSORS = (
@@ -62,6 +64,8 @@ def figures(rounds: int, seed: int) -> Iterator[Figure]:
             source = random.Random(f"{table.profile} {seed}")
             made(place, load_profile(table.profile), source, tally).conduct(rounds)
         devices += 1
+    InverterCases(random.Random(f"inverter {seed}"), tally).conduct(rounds)
+    devices += 1
     for text in tally.wrong[:MOST_PRINTED]:
         print(f"     {text}")
     yield at_least("devices", devices, LEAST_DEVICES)

@@ -12,6 +12,7 @@ from drivers.profiles import load_profile, read_profile
 from tests.campaigns.makers.__main__ import CONTROLLERS, SENSORS
 from tests.campaigns.makers.cases import Cases
 from tests.campaigns.makers.controllers import ControllerCases
+from tests.campaigns.makers.inverter_cases import PROFILE, InverterCases
 from tests.campaigns.makers.seat import Tally, placed
 
 PROFILES = Path(drivers.profiles.__file__).parent
@@ -56,3 +57,23 @@ def test_a_wrong_line_of_a_profile_is_found(name: str, right: str, mutant: str, 
     text = (PROFILES / f"{name}.toml").read_text(encoding="utf-8")
     assert right in text
     assert any(found in line for line in wrong(name, text.replace(right, mutant)))
+
+
+def wrong_inverter(profile: str) -> str:
+    tally = Tally()
+    InverterCases(random.Random(3), tally, profile).conduct(rounds=11)
+    return "\n".join(tally.wrong)
+
+
+def test_the_profile_of_inverters_fits_the_makers_pages() -> None:
+    assert not wrong_inverter(PROFILE)
+
+
+@pytest.mark.parametrize(("lost", "found"), [
+    ("6077", "per mille"), ("1016:01", "is refused: 0x1016:01"), ("604A", "is refused: 0x604A:01"),
+])
+def test_an_object_that_a_profile_of_an_inverter_leaves_out_is_found(tmp_path: Path, lost: str, found: str) -> None:
+    text = (PROFILES / "drives" / f"{PROFILE}.toml").read_text(encoding="utf-8")
+    path = tmp_path / "lost.toml"
+    path.write_text(text.replace("[objects]\n", f'[objects]\nmissing = ["{lost}"]\n'), encoding="utf-8")
+    assert found in wrong_inverter(str(path))
