@@ -28,6 +28,14 @@ def _stops(v: Any) -> bool:
     return v.stopped_s >= 0.0 and not v.stop.creeps
 
 
+def keeps_power(v: Any) -> bool:
+    """Return whether a drive reports power although the last scan disabled the voltage of every drive.
+
+    It repeats old data, or does not obey: only its own watchdog takes the power then.
+    """
+    return v.voltage_off and not v.readings.drives_disabled
+
+
 DRIVE_DATA_STALE: Final[Interlock[Any]] = Interlock(
     name="drive data stale",
     cause="no fresh drive data",

@@ -11,6 +11,7 @@ from tester.machine.drive_rows import (
     ACK_WAIT_S,
     DRIVE_DATA_STALE,
     drive_dropped_out,
+    keeps_power,
     not_stopping,
     quick_stop_failed,
     stop_not_ended,
@@ -163,7 +164,7 @@ REST_AFTER_S: Final = Parameter(
 def _moving_at_rest(v: AnyInputs) -> bool:
     r = v.readings
     known = r.now_s - r.drives_at_s <= v.parameters[REST_AFTER_S]
-    if v.voltage_off and not r.drives_disabled:
+    if keeps_power(v):
         return True
     if v.resting or v.demand.enabled:
         return not (known and r.standing)

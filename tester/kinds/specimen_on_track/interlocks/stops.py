@@ -7,7 +7,7 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import SPEEDS_OLD_S, STANDING_SHARE, Row, TrackInputs, standing
 from tester.kinds.specimen_on_track.interlocks.motion import DROPPED_DELAY_S
-from tester.machine.drive_rows import ACK_WAIT_S, not_stopping, quick_stop_failed, stop_not_ended
+from tester.machine.drive_rows import ACK_WAIT_S, keeps_power, not_stopping, quick_stop_failed, stop_not_ended
 from tester.machine.row import ENDING, POWER_OFF, Interlock
 from tester.machine.watches import condition
 
@@ -78,7 +78,7 @@ STOP_NOT_ENDED: Final = stop_not_ended(
 
 def _moving(v: TrackInputs) -> bool:
     r = v.readings
-    if v.voltage_off and not r.drives_disabled:
+    if keeps_power(v):
         return True
     if v.resting or v.demand.enabled:
         return not standing(v)
@@ -91,7 +91,8 @@ MOVING_AT_REST: Final[Row] = Interlock(
     cause="the track moves, or a drive has power, although everything should be at rest",
     watch=condition("speed >= standing_share or unknown; in a run: power that is not wanted", _moving),
     parameters=(STANDING_SHARE, SPEEDS_OLD_S),
-    applies=lambda v: v.resting or v.unpowered,
+    # A stop that still waits for its chamber has disabled the voltage already.
+    applies=lambda v: v.resting or v.unpowered or keeps_power(v),
     delay=DROPPED_DELAY_S,
     when=ENDING,
     at_rest=lambda v: not v.readings.drives_disabled,

@@ -149,7 +149,16 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         """Return whether the rig is at rest, lifted, unloaded and without heat, or has timed out ("stop not ended")."""
         view = self.view
         late = view.readings.now_s - self.state.mode_since_s > view.parameters[STOP_TIMEOUT_S]
-        return late or (self.motion_over() and heat_off(view))
+        return late or (self.motion_over() and (heat_off(view) or self._heat_given_up()))
+
+    def _heat_given_up(self) -> bool:
+        """Return whether a stop under power has waited long enough for a heater whose failure has tripped.
+
+        The wheel turns on if it is hot, and every other axis loses its power. A fast stop waits without power.
+        """
+        state, view = self.state, self.view
+        waited = view.stopped_s > view.parameters[HEAT_OFF_S]
+        return waited and state.mode is Mode.STOPPING and state.trip is not None
 
     def must_cool(self) -> str:
         """Return why the wheel must turn on after a controlled stop: a hot hub bakes one spot of a standing wheel."""

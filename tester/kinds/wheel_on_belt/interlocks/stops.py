@@ -19,7 +19,7 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import (
     unloaded,
 )
 from tester.kinds.wheel_on_belt.interlocks.motion import DROPPED_DELAY_S
-from tester.machine.drive_rows import not_stopping, quick_stop_failed, stop_not_ended
+from tester.machine.drive_rows import keeps_power, not_stopping, quick_stop_failed, stop_not_ended
 from tester.machine.row import CONTROLLED, ENDING, POWER_OFF, REFUSE, Compared, Interlock, always
 from tester.machine.watches import at_most, condition
 
@@ -201,7 +201,7 @@ CONTACTOR_WELDED: Final[Row] = Interlock(
 )
 
 def _moving(v: Inputs) -> bool:
-    if v.voltage_off and not v.readings.drives_disabled:
+    if keeps_power(v):
         return True
     if v.resting:
         r = v.readings

@@ -119,6 +119,17 @@ def test_a_stop_leaves_the_arm_where_it_is_and_the_chamber_off(sliding: TrackBen
     assert chamber is not None and not chamber.running and sliding.world.track_m_s == 0.0
 
 
+def test_a_drive_in_local_mode_loses_its_power_although_the_stop_waits_for_the_chamber(sliding: TrackBench) -> None:
+    chamber, track = sliding.world.chamber, sliding.world.axes["track"]
+    assert chamber is not None
+    chamber.stuck_output = 100.0
+    track.set_local(True)
+    began_s = sliding.now
+    sliding.until(lambda one: not track.energised, began_s + 2.0)
+    state = sliding.run.engine.control.state
+    assert state.mode is Mode.FAST_STOP and state.setpoints.power_off
+
+
 def test_a_speed_that_reads_zero_ends_no_stop_before_its_ramp_can_be_over() -> None:
     bench = TrackBench("pin-on-disc").phase("settle")
     control = bench.run.engine.control

@@ -104,6 +104,26 @@ def test_a_contactor_that_stays_closed_is_said_and_latched(bench: Bench) -> None
     assert bench.state.trip is not None and bench.state.trip.name == "contactor welded"
 
 
+@pytest.mark.parametrize(("hub_c", "mode"), [(30.0, Mode.LATCHED), (65.0, Mode.COOLDOWN)])
+def test_a_stop_under_power_ends_although_the_heat_is_not_known_to_be_off(
+    bench: Bench, hub_c: float, mode: Mode
+) -> None:
+    bench.control.view.jacket.forget(bench.readings.now_s)
+    bench.control.view.heat.forget()
+    bench.readings.hub_c, bench.readings.heat_percent = hub_c, 0.0
+    bench.scan()
+    bench.stale.add("jacket_at_s")  # silent, and the contactor stays closed
+    bench.readings.jacket_at_s -= 5.0
+    bench.control.request_stop(bench.readings.now_s, "test")
+    lift(bench)
+    stand(bench)
+    bench.scans(0.9)
+    assert bench.state.mode is Mode.STOPPING
+    out = bench.scans(0.2)
+    assert bench.state.mode is mode and bench.state.trip is not None
+    assert (out.enable, out.creeps) == (mode is Mode.COOLDOWN, mode is Mode.COOLDOWN)
+
+
 def test_speeds_that_are_old_do_not_end_a_stop(bench: Bench) -> None:
     stop(bench)
     lift(bench)
