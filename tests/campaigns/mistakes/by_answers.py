@@ -142,6 +142,7 @@ QUESTIONS: Final = (
     *((f"jog {axis}", f"jog {axis} {part} read") for axis in ("wheel", "belt", "press", "sideslip", "camber")
       for part in ("first", "whole")),
     *(("cell", f"hang {channel} 100.0") for channel in "zxy"),
+    ("spring", "spring weighed"),
     ("home", "angle sideslip"),
     ("touch", "diameter"),
 )  # fmt: skip
