@@ -89,6 +89,7 @@ HOT = (
     "tester/machine/image.py",
     "tester/machine/inputs.py",
     "tester/machine/interlock_table.py",
+    "tester/machine/leaps.py",
     "tester/machine/manual.py",
     "tester/machine/measured.py",
     "tester/machine/modbus_health.py",

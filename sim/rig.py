@@ -88,7 +88,7 @@ class SimRig:
 
     ``can`` and ``lines`` are the ports that a program opens. ``axes`` and ``devices`` have names for people as keys,
     ``sensors`` (beyond the machine's own) those of the wiring. ``now_s``: time to which everything has been advanced,
-    s; ``plant_s``: time of the plant, which a kind advances.
+    s; ``plant_s``: time of the plant, which a kind advances. Both are times on the wires, which stand still in a leap.
     """
 
     def __init__(self, spec: RigSpec, plant: object, can_wire: type[CanWire]) -> None:
@@ -107,6 +107,9 @@ class SimRig:
         """Every Modbus device, by the names of the wiring."""
         self.lines = lines_of(spec, every)
         self.now_s = self.plant_s = 0.0
+        self.leapt_s = 0.0
+        """Rig time that has passed without the wires; ``now_s`` and ``plant_s`` are times on the wires."""
+        self._served: dict[str, dict[bytes, int]] = {}
         self._drives = tuple(self.axes.values())
         self._timed = tuple(slave for slave in every.values() if slave.due_s < inf)
         self._dithered = tuple(
@@ -142,11 +145,12 @@ class SimRig:
 
     @property
     def urgent_s(self) -> float:
-        """Arrival of the next frame that a scan should not wait for, s."""
-        return self.can.urgent_s
+        """Arrival of the next frame that a scan should not wait for, rig s."""
+        return self.can.urgent_s + self.leapt_s
 
     def advance(self, now: float) -> None:
-        """Advance everything to ``now`` (s); a step shorter than a millisecond waits for the next one."""
+        """Advance everything to ``now`` (rig s); a step shorter than a millisecond waits for the next one."""
+        now -= self.leapt_s
         elapsed = now - self.now_s
         if elapsed < SHORTEST_STEP_S - 1e-9:
             return
@@ -154,6 +158,46 @@ class SimRig:
         start = self.now_s
         for i in range(1, steps + 1):
             self._step(self.now_s, now if i == steps else start + elapsed * i / steps)
+
+    # leaps -----------------------------------------------------------------------------------------------------
+
+    def count_readings(self) -> None:
+        """Begin to count how often each device is read."""
+        self._served = {name: slave.served() for name, slave in self.wired.items()}
+
+    def readings_since(self) -> dict[str, dict[bytes, int]]:
+        """Return how often each device was read since ``count_readings``: its requests and their numbers."""
+        return {
+            name: {frame: count - self._served[name].get(frame, 0) for frame, count in slave.served().items()}
+            for name, slave in self.wired.items()
+        }
+
+    def leap(self, seconds: float, step_s: float, each: Mapping[str, Mapping[bytes, int]]) -> None:
+        """Let time pass in which drives and wires do not change: heat flows, and controllers run their loops.
+
+        ``seconds``: a multiple of the controllers' cycles and of ``step_s``, the plant's step, which is that of the
+        scans. ``each``: how often each device would have been read in this time; the noise of these readings is drawn.
+        """
+        steps = round(seconds / step_s)
+        still = all(drive.axis.still for drive in self._drives)
+        begin = self.now_s
+        for i in range(1, steps + 1):
+            t1 = begin + i * step_s
+            for device in self._timed:
+                if device.due_s <= t1:
+                    device.leap(t1, begin)
+            self.follow(t1, still)
+        for name, requests in each.items():
+            for frame, count in requests.items():
+                self.wired[name].draw(frame, count, begin)
+        for device in self._timed:
+            device.due_s -= seconds
+        self.put_back(seconds)
+        self.leapt_s += seconds
+
+    def put_back(self, seconds: float) -> None:
+        """Put the plant's clock back to that of the wires, after a leap of ``seconds``."""
+        self.plant_s -= seconds
 
     def follow(self, t1: float, still: bool) -> None:
         """Advance the plant to ``t1`` s with the drives as they are then, and load their shafts; ``still``: no drive

@@ -88,6 +88,10 @@ class ModbusLink(LineType):
         self._schedule.renew(request, urgent)
         self._backlog_s = self.wants_s = -inf
 
+    def periods_s(self) -> list[float]:
+        """Return the periods of the reads that have one, s."""
+        return self._schedule.periods_s()
+
     def retime(self, request: Request, period_s: float) -> None:
         """Change the period (s) of a read; 0 = with every scan."""
         self._schedule.retime(request, period_s)

@@ -71,6 +71,10 @@ class Schedule:
             self._plan(request, request.sent_s + period_s)
         self.look_again()
 
+    def periods_s(self) -> list[float]:
+        """Return the periods of the reads that have one, s."""
+        return [one.period_s for one in self._requests if not one.writes and 0.0 < one.period_s < inf]
+
     def look_again(self) -> None:
         """Forget the time of the next request after a change."""
         self._soonest_s = self.wants_s = -inf

@@ -55,7 +55,10 @@ class RegisterWindow:
 
 
 class _Read:
-    """A decoded read request with its last reply; ``block`` is the device's number of exactly these registers."""
+    """A decoded read request with its last reply; ``block`` is the device's number of exactly these registers.
+
+    ``served`` counts its replies.
+    """
 
     def __init__(self, window: RegisterWindow, address: int, count: int, head: bytes, block: int) -> None:
         self.window = window
@@ -65,6 +68,7 @@ class _Read:
         self.head = head
         self.payload = b""
         self.reply = b""
+        self.served = 0
 
 
 class ModbusSlave:
@@ -92,10 +96,28 @@ class ModbusSlave:
         self.blocks: dict[tuple[int, int], int] = {}
         """Block numbers by (address, count) of usual read requests: ``sample`` is called for these."""
 
+    # leaps -----------------------------------------------------------------------------------------------------
+
+    def served(self) -> dict[bytes, int]:
+        """Return how many replies each read request has had."""
+        return {frame: read.served for frame, read in self._reads.items()}
+
+    def draw(self, frame: bytes, count: int, t: float) -> None:
+        """Take ``count`` readings as if the request had come as often: their noise is used up."""
+        read = self._reads[frame]
+        for _ in range(count):
+            if read.block >= 0:
+                self.sample(read.block, t)
+            else:
+                self.refresh(t)
+
     # hooks for a device ----------------------------------------------------------------------------------------
 
     def advance(self, t0: float, t1: float) -> None:
         """Advance from ``t0`` to ``t1`` s: run the cycles that are due (``due_s``)."""
+
+    def leap(self, until_s: float, now: float) -> None:
+        """Run the cycles due by ``until_s`` at the moment ``now`` of the wires: leases do not age in a leap."""
 
     def power(self, on: bool) -> None:
         """Switch the supply; a device without supply is silent."""
@@ -154,6 +176,7 @@ class ModbusSlave:
             return None
         read = self._reads.get(frame)
         if read is not None:
+            read.served += 1
             payload = self.sample(read.block, t) if read.block >= 0 else self._look_up(read, t)
             if payload != read.payload:
                 read.payload = payload

@@ -26,7 +26,7 @@ from tester.cli.stored_runs import run_folder
 
 NOT_DETACHED = {
     "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",
-    "accept_risk": "--accept-risk",
+    "no_leaps": "--no-leaps", "accept_risk": "--accept-risk",
 }  # fmt: skip
 """Options that the service has no command for, or chooses itself."""
 
@@ -44,6 +44,10 @@ NOT_DETACHED = {
 )
 @bus_log_option
 @click.option(
+    "--no-leaps", is_flag=True,
+    help="Simulated rig: make every scan, also while only heat flows; the results are the same.",
+)
+@click.option(
     "--fault", "faults", multiple=True, metavar="TEXT",
     help='Simulated rig: let something fail, e.g. "t=130 s: belt drive heartbeat lost for 3 s". May be given again.',
 )
@@ -54,7 +58,8 @@ NOT_DETACHED = {
 @click.pass_context
 def run(
     context: click.Context, recipe: str, rig: RigChoice, out: Path, yes: bool, seed: int, speed: float | None,
-    jobs: int, bus_log: Path | None, faults: tuple[str, ...], operator: str, detach: bool, take: bool, as_json: bool,
+    jobs: int, bus_log: Path | None, no_leaps: bool, faults: tuple[str, ...], operator: str, detach: bool, take: bool,
+    as_json: bool,
 ) -> int:  # fmt: skip
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
 
@@ -83,7 +88,8 @@ def run(
     from tester.run.session_options import SessionOptions
 
     options = SessionOptions(
-        recipe, *rig, out=out, seed=seed, lapse=speed, bus_log=bus_log, operator=operator, jobs=jobs, faults=faults
+        recipe, *rig, out=out, seed=seed, lapse=speed, bus_log=bus_log, operator=operator, jobs=jobs, faults=faults,
+        leaps=not no_leaps,
     )
     return _carried_out(Session(options, Console(as_json=as_json, answer_yes=yes)).run)
 

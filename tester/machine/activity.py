@@ -28,5 +28,14 @@ class Resumable(Protocol):
         ...
 
 
+@runtime_checkable
+class Waits(Protocol):
+    """An activity that may do nothing but wait. Any other activity is stepped in every scan."""
+
+    def waits_s(self, ctx: Any) -> float:
+        """Return the rig time for which it surely waits, s: noise of readings allowed for; 0 if it may act."""
+        ...
+
+
 class MoveFailedError(Exception):
     """A move has exceeded its time limit. The run stops in a controlled way and reports this error as the reason."""

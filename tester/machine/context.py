@@ -103,6 +103,14 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
     def after_control(self) -> None:
         """Read what control has just made of the demand."""
 
+    def calm(self) -> tuple[float, ...]:
+        """Return the temperatures of a machine on which only heat flows, degC; () while anything else may happen.
+
+        Every axis is then at rest and unloaded. By default every scan is made: a kind takes part whose results do not
+        depend on readings in such a time (``tester.machine.leaps``), and whose readings can be moved (``later``).
+        """
+        return ()
+
     def touching(self) -> bool:
         """Return whether contact is demanded or measured; every scan is then recorded."""
         return False

@@ -61,6 +61,12 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         self._rows = RigTable(table, view.parameters)
         self._delays = table.delays_s(view.parameters)
         state.pending_s = table.nothing_pending()
+        self._leapt_s = 0.0
+
+    def leap(self, seconds: float) -> None:
+        """Let rig time pass without scans (``tester.machine.leaps``): the next scan is not late."""
+        self.state.last_s += seconds
+        self._leapt_s += seconds
 
     def step(self, demand: DemandT, readings: ReadingsT, scan_s: float) -> None:
         """Compute ``state.setpoints`` for this scan; journal ``state.events`` before the setpoints leave."""
@@ -75,7 +81,11 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         dt = now - state.last_s
         if not (0.0 <= dt <= 0.2):
             dt = 0.2 if dt > 0.2 else 0.0
-        self._watch(demand, readings, scan_s, dt)
+        if self._leapt_s:
+            self._watch(demand, readings, scan_s, dt + self._leapt_s)  # sums and averages count the whole time
+            self._leapt_s = 0.0
+        else:
+            self._watch(demand, readings, scan_s, dt)
         mode = state.mode
         state.last_late_s = max(0.0, now - state.last_s - scan_s) if state.last_s > -inf else 0.0
         state.last_s = now

@@ -258,6 +258,10 @@ class DeviceList:
                 channels[place] = value if fresh else nan
                 place += 1
 
+    def periods_s(self) -> list[float]:
+        """Return the periods in which devices are read, s, without those read in every scan."""
+        return [period_s for _, link in self.lines for period_s in link.periods_s()]
+
     def busy(self) -> bool:
         """Return whether an exchange with a node of the CAN bus is under way."""
         return any(self.master.busy(node) for node in self.master.nodes)

@@ -21,6 +21,8 @@ _HOLD: Final = Mode.HOLD
 _STOPPING: Final = Mode.STOPPING
 _FAST_STOP: Final = Mode.FAST_STOP
 _EMERGENCY: Final = Mode.EMERGENCY
+LONGEST_S: Final = 1.0
+"""Longest time that a late scan counts for, s; a leap counts whole."""
 HOLD_MOVES_S: Final = 3.0
 """Time within which a hold has opened the contact, s [A]: until then scans run at the sliding rate."""
 SEVERITIES: Final = {"trip": "trip", "alarm": "alarm", "warning": "warning"}
@@ -49,20 +51,55 @@ class Engine:
         self.last_scan_s = -inf
         self.scans = 0
         self.finished = False
+        self.leapt_s = 0.0
+        """Rig time that passed without the wires: what they and the drivers call now is so much earlier."""
+        self._renew_by_s = -inf
+        """Time of the first scan after a leap, rig s; before it the wires renew every reading, nothing is judged."""
+        self._leaps = False
         self._trip = 0
         """Number of the latched trip in the record."""
 
     def tick(self, now: float) -> float:
         """Do everything due at ``now`` (s) and return the latest time of the next tick."""
         devices: DeviceList = self.devices
-        devices.receive(now)
+        leapt_s = self.leapt_s
+        devices.receive(now - leapt_s)
         scan = now >= self.next_scan_s - 1e-7 or self._urgent()
         if scan:
-            self._scan(now)
-        deadline = devices.transmit(now, scan=scan, next_scan_s=self.next_scan_s)
+            if self._renew_by_s > -inf and not self._renewed(now):
+                self.next_scan_s += self.period_s
+            else:
+                self._scan(now)
+        deadline = devices.transmit(now - leapt_s, scan=scan, next_scan_s=self.next_scan_s - leapt_s) + leapt_s
         if deadline >= self.next_scan_s:
             return self.next_scan_s
         return min(self.next_scan_s, max(deadline, now + SOONEST_S))
+
+    def leap(self, seconds: float, renew_s: float) -> None:
+        """Let rig time pass without scans, after a scan; the next scan follows when readings were renewed for
+        ``renew_s`` s.
+        """
+        self.leapt_s += seconds
+        self.next_scan_s += seconds
+        self.ctx.now += seconds  # requests that come before the next scan are dated after the leap
+        self._renew_by_s = self.last_scan_s + seconds + renew_s
+
+    @property
+    def renewing(self) -> bool:
+        """Whether readings are renewed after a leap."""
+        return self._renew_by_s > -inf
+
+    def _renewed(self, now: float) -> bool:
+        """Return whether the first scan after a leap is due: then every device has reported anew."""
+        devices: DeviceList = self.devices
+        quiet = not devices.lost and not devices.alarm() and self.control.state.mode is _RUN
+        if quiet and now < self._renew_by_s - 1e-7:
+            return False
+        self._renew_by_s = -inf
+        self._leaps = True
+        control: AnyControl = self.control
+        control.leap(now - self.last_scan_s - self.period_s)
+        return True
 
     def abandon(self) -> None:
         """Command a safe state at once and send it; send nothing afterwards.
@@ -74,7 +111,7 @@ class Engine:
         control: AnyControl = self.control
         control.safe_outputs()
         devices.apply(control.state.setpoints)
-        devices.transmit(self.ctx.now, scan=True)
+        devices.transmit(self.ctx.now - self.leapt_s, scan=True)
 
     def _urgent(self) -> bool:
         """Return whether a drive reports a fault or an emergency that should not wait until the next regular scan."""
@@ -86,12 +123,17 @@ class Engine:
         control: AnyControl = self.control
         devices: DeviceList = self.devices
         readings, state = ctx.readings, control.state
-        ctx.dt = min(now - self.last_scan_s, 1.0) if self.scans else 0.0
+        dt = now - self.last_scan_s
+        ctx.dt = (dt if dt <= LONGEST_S or self._leaps else LONGEST_S) if self.scans else 0.0
+        self._leaps = False
         self.last_scan_s = now
         ctx.now = now
         self.scans += 1
         ctx.before_reading()
-        devices.fill(readings, now)
+        leapt_s = self.leapt_s
+        devices.fill(readings, now - leapt_s)
+        if leapt_s:
+            readings.later(leapt_s)
         ctx.after_reading()
         ctx.moving = False
         events = state.events
@@ -139,7 +181,7 @@ class Engine:
             if drive.emergency_log:
                 for emergency in drive.take_emergencies():
                     text = f"{drive.config.name} drive: {emergency.text} (0x{emergency.code:04X})"
-                    self.ctx.journal.event(emergency.t, "emergency", text, "alarm")
+                    self.ctx.journal.event(emergency.t + self.leapt_s, "emergency", text, "alarm")
 
     def _choose_rate(self, now: float) -> None:
         """Set the period of the next scan, which depends on the state (docs/decisions/0003)."""

@@ -51,6 +51,12 @@ class BaseReadings:
     channels: list[float] = field(default_factory=list[float])
     """Readings of the rig's further sensors, in the order of the rig file; NaN = not fresh and valid."""
 
+    def later(self, seconds: float) -> None:
+        """Move every time stamp by the rig time that was leapt (``tester.machine.leaps``), from the wires' clock."""
+        self.now_s += seconds
+        self.can_heard_s += seconds
+        self.inputs_at_s += seconds
+
     def drive_stamps_s(self) -> tuple[float, ...]:
         """Return the time stamps of the drives' data, s; the kind knows its drives."""
         return ()

@@ -80,10 +80,26 @@ def next_tick(now: float, wanted: float, urgent: float) -> float:
     return (due if due > soonest else soonest) / 1e6
 
 
-def run_simulated(engine: Ticked, world: TickedWorld, *, lapse: float | None, poll: Callable[[float], None]) -> float:
+class Leaping(Protocol):
+    """Something that leaps time in which only heat flows (``tester.machine.leaps``)."""
+
+    def after(self, now: float, later: float) -> float:
+        """Return the time of the next tick after that at ``now``, ``later`` or, after a leap, a time after it."""
+        ...
+
+
+def run_simulated(
+    engine: Ticked,
+    world: TickedWorld,
+    *,
+    lapse: float | None,
+    poll: Callable[[float], None],
+    leaps: Leaping | None = None,
+) -> float:
     """Tick to the end in simulated time; return the rig seconds.
 
-    ``lapse``: rig seconds per second of wall time; None: as fast as possible. ``poll`` is called about every ``POLL_S``
+    ``lapse``: rig seconds per second of wall time; None: as fast as possible. ``leaps``: leaps quiet time; only
+    without ``lapse``. ``poll`` is called about every ``POLL_S``
     of wall time (display, commands), also between two ticks; it must not block for long.
     """
     now = 0.0
@@ -106,6 +122,8 @@ def run_simulated(engine: Ticked, world: TickedWorld, *, lapse: float | None, po
                 origin += clock.monotonic() - asked  # do not catch up on the time a person took
             if lapse is not None:
                 poll_due = _wait(origin + later / lapse, now, poll, poll_due)
+            elif leaps is not None:
+                later = leaps.after(now, later)
             now = later
     return now
 

@@ -48,6 +48,8 @@ class Job:
     """Facts about the rig from earlier runs, the same for every part; None if there are none."""
     good: GoodRun | None = field(default=None, compare=False)
     """The last good run on the rig, for comparison with the parameters read while connecting."""
+    leaps: bool = True
+    """Whether a simulated rig leaps time in which only heat flows."""
 
 
 @dataclass(frozen=True, slots=True)

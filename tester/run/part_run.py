@@ -12,6 +12,7 @@ from tester.base import clock
 from tester.base.clock import Pace
 from tester.base.trouble import in_words
 from tester.inputs.rig.further_sensors import quantities_on
+from tester.machine.leaps import Leaps
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.run import Outcome, Run
@@ -183,10 +184,12 @@ def _execute(
         run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be part of a larger plan
         watch.track.begin_part(part.plan)
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
+        may_leap = job.leaps and world is not None and not faults and log is None and job.lapse is None
+        leaps = Leaps(run.engine, world) if may_leap and world is not None else None
         with collector_at_rest():  # before the first tick: STOP must not wait for a collection
             watch.begun(run)
             with left_safe(run):
-                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, writer, watch, job.good)
+                seconds = _tick(run, ticked, lives, ports.pace, job.lapse, leaps, writer, watch, job.good)
         watch.rested()
         record_statistics(run.engine.devices, writer, seconds)
         if run.outcome is Outcome.DONE:
@@ -211,6 +214,7 @@ def _tick(
     world: TickedWorld | None,
     pace: Pace | None,
     lapse: float | None,
+    leaps: Leaps | None,
     recorder: RunWriter,
     watch: PartWatch,
     good: GoodRun | None,
@@ -226,7 +230,7 @@ def _tick(
 
     if world is not None:
         # Even at --speed 1, time is counted by ticks, not measured, so that the speed cannot change a result.
-        return run_simulated(ticked, world, lapse=lapse, poll=poll)
+        return run_simulated(ticked, world, lapse=lapse, poll=poll, leaps=leaps)
     return run_real_time(run, world, poll=poll, statistics=watch.statistics, pace=pace)
 
 

@@ -216,7 +216,7 @@ class Session(PartWatch):
         history = self.aside(lambda: run_parts(rig).history(folder.parent, rig))
         # A rig simulated in this process keeps no settings, because it is rebuilt from its file for each run.
         good = self.aside(lambda: last_good_run(rig, folder.parent)) if rig.can.interface != "sim" else None
-        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history, good)
+        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history, good, o.leaps)
 
     def _beginning(
         self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work, kept: Sequence[KeptFile]

@@ -32,6 +32,8 @@ class SessionOptions:
     """Number of processes that run independent parts side by side (simulated rig only)."""
     samples: bool = True
     """Whether samples are stored."""
+    leaps: bool = True
+    """Whether a simulated rig leaps time in which only heat flows (``tester.machine.leaps``)."""
     faults: tuple[str, ...] = ()
     """Lines of a fault script (sim.faults.language), in addition to the rig file's."""
 

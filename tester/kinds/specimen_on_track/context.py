@@ -84,6 +84,8 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         self._way_m = 0.0
         self._from_m = 0.0
         self._way = 0.0
+        track = rig.axes.track
+        self._still_m_s = rig.interlocks.standing_share * track.max_speed * rig.metres
 
     def after_reading(self) -> None:
         """Derive values from the readings: friction against the motion, distance slid, load, stretches."""
@@ -114,6 +116,12 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
         if not (r.lowered and r.cell_valid):
             mask |= _CONTACT
         return mask
+
+    def calm(self) -> tuple[float, ...]:
+        r = self.readings
+        if self.demand.track_m_s != 0.0 or not abs(r.track_m_s) <= self._still_m_s or not r.raised:
+            return ()
+        return r.air_c, r.contact_c
 
     def touching(self) -> bool:
         """Return whether to record this scan: with the arm down, as often as a stretch needs."""

@@ -60,6 +60,15 @@ class TrackReadings(BaseReadings):
     stretch: float = 0.0
     """Way in stretches of the condition."""
 
+    def later(self, seconds: float) -> None:
+        BaseReadings.later(self, seconds)
+        self.track_at_s += seconds
+        self.lift_at_s += seconds
+        self.cell_at_s += seconds
+        self.cell_changed_s += seconds
+        self.air_at_s += seconds
+        self.exit_at_s += seconds
+
     def drive_stamps_s(self) -> tuple[float, ...]:
         return (self.track_at_s, self.lift_at_s)
 

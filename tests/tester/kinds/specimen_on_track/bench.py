@@ -13,6 +13,7 @@ from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.kinds.specimen_on_track.runs import RUNS
+from tester.machine.leaps import Leaps
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.run_parts import RunSetup
@@ -90,11 +91,18 @@ class TrackBench:
         self.prompts = Prompts(automatic=True)
         self.run: Run = RUNS.build(RunSetup(self.config, self.plan, ports, attendant, self.kept, self.prompts))
         self.now = 0.0
+        self.leaps: Leaps | None = None
+
+    def leaping(self) -> TrackBench:
+        """Leap time in which only heat flows, from now on."""
+        self.leaps = Leaps(self.run.engine, self.world)
+        return self
 
     def tick(self) -> None:
         """Let the rig live until the next tick and do it."""
         self.world.advance(self.now)
-        self.now = next_tick(self.now, self.run.tick(self.now), self.world.urgent_s)
+        later = next_tick(self.now, self.run.tick(self.now), self.world.urgent_s)
+        self.now = later if self.leaps is None else self.leaps.after(self.now, later)
 
     def until(self, reached: Callable[[TrackBench], bool], at_most_s: float) -> TrackBench:
         """Tick until something is the case; fails where it is not in time."""

@@ -1,0 +1,144 @@
+"""Leaps: on a simulated rig in virtual time, time in which only heat flows passes without scans.
+
+``Leaps.hindered`` decides and gives the reason. Wires, drives and drivers do not notice a leap: their clock stands
+still. The plant's heat flows in the same steps as between scans, controllers run their loops, and each device draws the
+noise of the readings that it was not asked for. A leap lasts a common multiple of the periods in which devices are
+read: after it each is where it would have been, and noise belongs to a moment.
+
+After a leap the wires run for ``RENEW_S`` before the next scan, so that it finds readings of every device.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import floor, inf, lcm
+from typing import Final, Protocol
+
+from tester.machine.activity import Waits
+from tester.machine.context import AnyContext
+from tester.machine.control import AnyControl
+from tester.machine.engine import Engine
+from tester.machine.executor import Executor
+from tester.machine.state import Mode
+
+LOOP_S: Final = 0.5
+"""Common multiple of the cycles of simulated controllers (``sim.nodes.control_loop``), s."""
+USUAL_S: Final = 9.0
+"""A leap lasts so many common periods as fit in this, s [A]: filters of readings restart after ten seconds."""
+MOST_S: Final = 20.0
+"""Longest leap, s [A]; no leap where the devices' periods have no common multiple as short."""
+RENEW_S: Final = 1.0
+"""Time after a leap in which only the wires run and renew every reading, s [A]: several periods of each device."""
+MOST_K: Final = 0.5
+"""No leap while a temperature changes by more in its time, K [A]: less than a row calls a jump."""
+_TINY_S: Final = 1e-6
+_RUN: Final = Mode.RUN
+
+
+class LeapingWorld(Protocol):
+    """A simulated rig that can leap (``sim.rig``)."""
+
+    def count_readings(self) -> None:
+        """Begin to count how often each device is read."""
+        ...
+
+    def readings_since(self) -> dict[str, dict[bytes, int]]:
+        """Return how often each device was read since then, by its requests."""
+        ...
+
+    def leap(self, seconds: float, step_s: float, each: Mapping[str, Mapping[bytes, int]]) -> None:
+        """Let ``seconds`` pass on the plant alone, in steps of ``step_s``."""
+        ...
+
+
+class Leaps:
+    """Decides after each tick whether time is leapt, and leaps."""
+
+    def __init__(self, engine: Engine, world: LeapingWorld) -> None:
+        """``world``: the rig of the engine's wires."""
+        self.engine = engine
+        self.world = world
+        self.leapt_s = 0.0
+        """Rig time leapt in the present step of the plan, s; reported when the step is over."""
+        self._step = -1
+        self._period_s = self._leap_s = 0.0
+        self._calm_s = inf
+        """Since when nothing but heat has changed, rig s."""
+        self._each: dict[str, dict[bytes, int]] = {}
+        """The readings of each device in the time of a leap."""
+        self._before_s = 0.0
+        self._before_c: tuple[float, ...] = ()
+        """An earlier moment and its temperatures, for their rates."""
+
+    def after(self, now: float, later: float) -> float:
+        """Leap if only heat flows; return the time of the next tick. ``later``: that time without a leap, rig s."""
+        engine = self.engine
+        ctx: AnyContext = engine.ctx
+        if ctx.progress.step != self._step:
+            self._report()
+            self._step = ctx.progress.step
+        if engine.last_scan_s != now or engine.renewing:
+            return later
+        if engine.period_s <= engine.sliding_s or self.hindered():
+            self._calm_s = inf
+            return later
+        if self._calm_s == inf or engine.period_s != self._period_s:
+            self._begin(now, ctx.calm())
+        if not self._each and now - self._calm_s >= self._leap_s - _TINY_S:
+            self._each = self.world.readings_since()
+        if not self._each or not self._slow(now, ctx.calm()) or self._leap_s > MOST_S:
+            return later
+        self._before_s, self._before_c = now, ctx.calm()
+        self.world.leap(self._leap_s, engine.period_s, self._each)
+        engine.leap(self._leap_s, RENEW_S)
+        self.leapt_s += self._leap_s
+        return floor((later + self._leap_s) * 1e6 + 0.5) / 1e6
+
+    def hindered(self) -> str:
+        """Return why time may not be leapt now; "" if it may."""
+        engine = self.engine
+        ctx: AnyContext = engine.ctx
+        control: AnyControl = engine.control
+        state = control.state
+        if ctx.moving or ctx.repeat_key:
+            return "something moves or is measured"
+        if state.mode is not _RUN or state.trip is not None:
+            return f"the rig is in {state.mode.value}"
+        if state.held:
+            return "a row of the interlock table holds"
+        if ctx.prompts.waiting is not None:
+            return "a person is asked"
+        if not ctx.calm():
+            return "not every axis is at rest and unloaded, or this kind of machine makes every scan"
+        if engine.devices.busy() or engine.devices.lost or engine.devices.alarm():
+            return "a drive is being set up, or reports something"
+        executor: Executor[AnyContext] = engine.executor
+        activity = executor.activity
+        if not isinstance(activity, Waits) or activity.waits_s(ctx) < self._leap_s + RENEW_S + engine.period_s:
+            return "the step of the plan may act"
+        return ""
+
+    def _begin(self, now: float, temperatures_c: tuple[float, ...]) -> None:
+        """Begin to count the readings, for the time of a leap."""
+        self._calm_s = self._before_s = now
+        self._before_c = temperatures_c
+        self._period_s = self.engine.period_s
+        periods_s = [self._period_s, LOOP_S, *self.engine.devices.periods_s()]
+        common_s = 1e-3 * lcm(*[round(1e3 * period_s) for period_s in periods_s])
+        self._leap_s = common_s * max(1, int(USUAL_S / common_s))
+        self._each = {}
+        self.world.count_readings()
+
+    def _slow(self, now: float, temperatures_c: tuple[float, ...]) -> bool:
+        """Return whether every temperature changes slowly enough for a leap."""
+        share = self._leap_s / (now - self._before_s) if now > self._before_s else inf
+        pairs = zip(temperatures_c, self._before_c, strict=True)
+        return all(abs(c - before_c) * share <= MOST_K for c, before_c in pairs)
+
+    def _report(self) -> None:
+        """Record how much of a step was leapt."""
+        if self.leapt_s:
+            ctx: AnyContext = self.engine.ctx
+            text = f"{self.leapt_s:.0f} s in which only heat flowed were leapt, without scans"
+            ctx.journal.event(ctx.now, "leap", text)
+        self.leapt_s = 0.0
