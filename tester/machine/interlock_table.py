@@ -28,31 +28,23 @@ def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
 class Group:
     """Rows of a rig that are evaluated together, with their bits.
 
-    A number costs one call a scan, and its limit at most one more. A number with a parameter as its limit is compared
-    first, because that is cheap; every other condition is evaluated only where its row applies.
+    A number costs one call a scan, and its limit at most one more. Nearly always no condition holds, so a row's
+    condition comes first, and whether the row applies only where it holds.
     """
 
-    __slots__ = ("least", "members", "most", "numbers", "spans", "states")
+    __slots__ = ("floors", "least", "members", "most", "numbers", "spans", "states")
 
     def __init__(self, members: Iterable[tuple[int, Interlock[Any]]], values: Values) -> None:
         """Take (bit, row) pairs, and the rig's values of the parameters."""
         self.members: tuple[tuple[int, Interlock[Any]], ...] = tuple(members)
-        # No scan looks a limit up: a rig's values never change.
-        self.numbers: tuple[tuple[Read, float, Applies], ...] = tuple(
-            (watch.parts[0], values[watch.parameters[0]], applies)
-            for watch, applies in self._of(Form.AT_MOST)
-            if watch.parameters
-        )
+        # No scan looks a fixed limit up: a rig's values never change.
+        self.numbers = self._fixed(Form.AT_MOST, values)
         """For each row: the number, the value that it may not exceed, and whether the row applies."""
-        self.most: tuple[tuple[Read, Read, Applies], ...] = tuple(
-            (watch.parts[0], watch.parts[1], applies)
-            for watch, applies in self._of(Form.AT_MOST)
-            if not watch.parameters
-        )
-        """The same for limits that are not parameters."""
-        self.least: tuple[tuple[Read, Read, Applies], ...] = tuple(
-            (watch.parts[0], watch.parts[1], applies) for watch, applies in self._of(Form.AT_LEAST)
-        )
+        self.floors = self._fixed(Form.AT_LEAST, values)
+        """The same for the value below which the number may not fall."""
+        self.most = self._moving(Form.AT_MOST)
+        """The same for limits that are functions of the inputs."""
+        self.least = self._moving(Form.AT_LEAST)
         self.spans: tuple[tuple[Callable[[Any], tuple[float, float, float]], Applies], ...] = tuple(
             (watch.parts[0], applies) for watch, applies in self._of(Form.WITHIN)
         )
@@ -63,31 +55,42 @@ class Group:
     def _of(self, form: Form) -> list[tuple[Watch[Any], Applies]]:
         return [(row.watch, row.applies) for _, row in self.members if row.watch.form is form]
 
+    def _fixed(self, form: Form, values: Values) -> tuple[tuple[Read, float, Applies], ...]:
+        return tuple(
+            (watch.parts[0], limit, applies)
+            for watch, applies in self._of(form)
+            if (limit := watch.fixed(values)) is not None
+        )
+
+    def _moving(self, form: Form) -> tuple[tuple[Read, Read, Applies], ...]:
+        return tuple(
+            (watch.parts[0], watch.parts[1], applies) for watch, applies in self._of(form) if watch.limit is None
+        )
+
     def held(self, v: ScanInputs) -> int:
         """Return the bits of the rows that hold. Nearly always none holds; the search for the row begins only when one
         does.
         """
-        return self._which(v) if self._any(v) else 0
-
-    def _any(self, v: ScanInputs) -> bool:
         for number, limit_value, applies in self.numbers:
             if not (number(v) <= limit_value) and (applies is None or applies(v)):
-                return True
-        for number, limit, applies in self.most:
-            if (applies is None or applies(v)) and not (number(v) <= limit(v)):
-                return True
-        for number, limit, applies in self.least:
-            if (applies is None or applies(v)) and not (number(v) >= limit(v)):
-                return True
+                return self._which(v)
         for holds, applies in self.states:
-            if (applies is None or applies(v)) and holds(v):
-                return True
+            if holds(v) and (applies is None or applies(v)):
+                return self._which(v)
+        for number, limit, applies in self.most:
+            if not (number(v) <= limit(v)) and (applies is None or applies(v)):
+                return self._which(v)
         for span, applies in self.spans:
-            if applies is None or applies(v):
-                low, value, high = span(v)
-                if not (low <= value <= high):
-                    return True
-        return False
+            low, value, high = span(v)
+            if not (low <= value <= high) and (applies is None or applies(v)):
+                return self._which(v)
+        for number, limit_value, applies in self.floors:
+            if not (number(v) >= limit_value) and (applies is None or applies(v)):
+                return self._which(v)
+        for number, limit, applies in self.least:
+            if not (number(v) >= limit(v)) and (applies is None or applies(v)):
+                return self._which(v)
+        return 0
 
     def _which(self, v: ScanInputs) -> int:
         held = 0

@@ -95,6 +95,12 @@ class Watch(Generic[V]):
     """The functions from which ``holds`` is made: number and limit, or the span. The table compares their values
     without a call of ``holds``.
     """
+    limit: Parameter | float | None = None
+    """The limit, if it is a parameter or a constant; None where the inputs determine it."""
+
+    def fixed(self, values: Values) -> float | None:
+        """Return the value of such a limit on a rig, None where the inputs determine it."""
+        return values[self.limit] if isinstance(self.limit, Parameter) else self.limit
 
 
 @dataclass(frozen=True, slots=True)

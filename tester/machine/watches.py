@@ -72,6 +72,7 @@ def _one_sided(form: Form, level: str, value: Callable[[V], float], limit: Limit
         parameters,
         form,
         (value, read),
+        limit if isinstance(limit, Parameter) else float(limit) if isinstance(limit, int | float) else None,
     )
 
 
