@@ -54,7 +54,6 @@ class CanMaster:
         self._withheld = False
         self._commands: list[bytes | None] = []
         self._cycle_ids: tuple[int, ...] = ()
-        self._cycle_key: int = 0                # nodes with commands in the cycle, and whether SYNC is in it
         self._payloads: tuple[bytes, ...] = ()
         self._cycle_syncs = False
         self._nodes: list[CanNode] = []
@@ -141,10 +140,14 @@ class CanMaster:
             if outputs is not None:
                 port.send(node.rpdo2_id, outputs, now)
         changed = sync is not self._cycle_syncs
+        commands = self._commands
         for i, node in enumerate(self._nodes):
             if node.dirty:
                 changed = True
-                self._commands[i] = node.emit(sync)
+                before, command = commands[i], node.emit(sync)
+                commands[i] = command
+                if before is None or command is None:
+                    self._cycle_ids = ()  # another node takes part, or one less
         if changed:
             self._compose(sync)
         if not self.withhold_setpoints:
@@ -158,21 +161,10 @@ class CanMaster:
 
     def _compose(self, sync: bool) -> None:
         """Put the commands of all nodes, and SYNC, into the cycle; unchanged payloads stay the same object."""
-        payloads: list[bytes] = []
-        key = bit = 1
-        for command in self._commands:
-            bit <<= 1
-            if command is not None:
-                key |= bit
-                payloads.append(command)
-        if sync:
-            payloads.append(b"")
-        else:
-            key -= 1
-        self._payloads = tuple(payloads)
-        self._cycle_syncs = sync
-        if key != self._cycle_key:
-            self._cycle_key = key
+        payloads = tuple(filter(None, self._commands))
+        self._payloads = (*payloads, b"") if sync else payloads
+        if not self._cycle_ids or sync is not self._cycle_syncs:
+            self._cycle_syncs = sync
             commanded = zip(self._nodes, self._commands, strict=True)
             can_ids = [node.rpdo1_id for node, command in commanded if command is not None]
             self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)

@@ -168,7 +168,9 @@ class PdoExchange(SyncFollower):
 
     def on_sync(self, t: float) -> None:
         """Apply the frames held for this SYNC and send its TPDOs."""
-        self._drain(t)
+        for received in self.fresh:
+            received.sink(received.held, t)
+        self.fresh.clear()
         for cob_id, source in self._each_sync:
             self._wire.transmit(cob_id, source(), t, self.urgent)
         for pdo in self._counted_tpdos:
@@ -176,11 +178,6 @@ class PdoExchange(SyncFollower):
                 self._wire.transmit(pdo.cob_id, pdo.source(), t, self.urgent)
         self.urgent = False
         self.plain = self._single
-
-    def _drain(self, t: float) -> None:
-        for pdo in self.fresh:
-            pdo.sink(pdo.held, t)
-        self.fresh.clear()
 
     def take(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
         """Write an RPDO's mapped values into the object store and let the device act on them."""

@@ -22,15 +22,19 @@ _LOAD_MARK_S: Final = 0.1
 """Resolution in s of the one-second bus load."""
 
 
-def _same_lengths(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> bool:
-    """Return whether the frames of two cycles have equal lengths: with equal identifiers, their times are equal."""
+def _changed(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> list[int] | None:
+    """Return the places at which the frames of two cycles differ; None if their lengths, and so their times, do."""
     if len(payloads) != len(others):
-        return False
-    same = True
-    for i in range(len(payloads)):
-        if payloads[i] is not others[i] and len(payloads[i]) != len(others[i]):
-            same = False
-    return same
+        return None
+    places: list[int] = []
+    place = 0
+    for data, other in zip(payloads, others, strict=True):
+        if data is not other:
+            if len(data) != len(other):
+                return None
+            places.append(place)
+        place += 1
+    return places
 
 
 class CanWire(CanListeners):
@@ -111,11 +115,10 @@ class CanWire(CanListeners):
         data. SYNC is answered as always.
         """
         taken = self._taken
-        if (
-            taken is None
-            or (can_ids is not self._cycle_ids and can_ids != self._cycle_ids)
-            or (payloads is not taken and not _same_lengths(payloads, taken))
-        ):
+        changed: list[int] | None = None
+        if taken is not None and (can_ids is self._cycle_ids or can_ids == self._cycle_ids):
+            changed = _changed(payloads, taken)
+        if changed is None:
             self._remember(can_ids, payloads)  # before a listener may ask to forget it
             for can_id, data in zip(can_ids, payloads, strict=True):
                 self.send(can_id, data, now)
@@ -127,12 +130,10 @@ class CanWire(CanListeners):
         start = self._busy_s if self._busy_s > now else now
         self._cycled_s = self._busy_s = end = start + self._cycle_s
         self.occupied_s += self._cycle_s
-        if payloads is not taken:
-            self._taken = payloads
-            for i in range(len(payloads)):
-                if payloads[i] is not taken[i]:
-                    for listener in self._cycle_listeners[i]:
-                        listener(payloads[i], start + self._offsets_s[i])
+        self._taken = payloads
+        for i in changed:
+            for listener in self._cycle_listeners[i]:
+                listener(payloads[i], start + self._offsets_s[i])
         if self.watchers:
             for can_id, data, offset_s in zip(can_ids, payloads, self._offsets_s, strict=True):
                 self._tell(start + offset_s, can_id, data, True)
@@ -249,19 +250,19 @@ class CanWire(CanListeners):
         """Let every device answer a SYNC that arrived at ``t`` s; the lowest identifier is first."""
         inbox, frame_s = self._inbox, self._frame_s
         quick = self.connected and not self.watchers
-        arrival = self._busy_s
+        arrival, occupied_s = self._busy_s, self.occupied_s
         for follower in self._followers:
             if quick and follower.plain:
                 data = follower.take_sample() if follower.stale else follower.sample
                 length_s = frame_s[len(data)]
                 arrival += length_s
-                self.occupied_s += length_s
+                occupied_s += length_s
                 inbox.append((arrival, follower.sample_id, data))
             else:
-                self._busy_s = arrival
+                self._busy_s, self.occupied_s = arrival, occupied_s
                 follower.on_sync(t)
-                arrival = self._busy_s
-        self._busy_s = arrival
+                arrival, occupied_s = self._busy_s, self.occupied_s
+        self._busy_s, self.occupied_s = arrival, occupied_s
 
     def settle(self, now: float) -> None:
         """Give the wire to every waiting frame that was ready by ``now`` s, in order of readiness, then identifier."""
