@@ -124,8 +124,6 @@ class DeviceList:
             self._fill_status(r)
         r.inputs_at_s = self.io.inputs_stamp_s
         r.can_heard_s = self._can_heard_s
-        r.unheard = unheard(self.drives)
-        r.line_silent = silent_lines(self.lines, self.modbus)
         if self.lost:
             r.bus_fault = self.lost
         if self.master.foreign_master:
@@ -261,6 +259,12 @@ class DeviceList:
     def periods_s(self) -> list[float]:
         """Return the periods in which devices are read, s, without those read in every scan."""
         return [period_s for _, link in self.lines for period_s in link.periods_s()]
+
+    def silences(self) -> tuple[str, str]:
+        """Return the drives that send no new data while others do, and the Modbus lines on which no device answers, as
+        text; "" = none.
+        """
+        return unheard(self.drives), silent_lines(self.lines, self.modbus)
 
     def busy(self) -> bool:
         """Return whether an exchange with a node of the CAN bus is under way."""

@@ -6,6 +6,7 @@ of each, which is overwritten in place at fixed places of a scan.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -32,10 +33,10 @@ class BaseReadings:
     """Which wire is gone (CAN adapter, serial line), as text; empty while all are there."""
     can_heard_s: float = NEVER
     """Arrival time of the last CAN frame."""
-    unheard: str = ""
-    """Drives that send no new data while others do, as text; empty = none."""
-    line_silent: str = ""
-    """Modbus lines on which no device answers, as text; empty = none."""
+    silences: Callable[[], tuple[str, str]] | None = None
+    """Names the drives that send no new data while others do, and the Modbus lines on which no device answers
+    (``DeviceList.silences``): asked only after a trip.
+    """
     foreign_master: str = ""
     """First CAN frame that only another master can have sent, as text; empty = none."""
     device_fault: str = ""
@@ -63,8 +64,9 @@ class BaseReadings:
 
     def faults(self) -> list[str]:
         """Return the faults of drives, wires and devices, in words."""
-        wires = (self.bus_fault, self.line_silent, self.foreign_master)
-        texts = (self.drive_fault, self.unheard, *wires, self.device_fault, self.line_fault)
+        unheard, line_silent = self.silences() if self.silences is not None else ("", "")
+        wires = (self.bus_fault, line_silent, self.foreign_master)
+        texts = (self.drive_fault, unheard, *wires, self.device_fault, self.line_fault)
         return [text for text in texts if text]
 
 

@@ -234,6 +234,7 @@ def run_of(
     begins.
     """
     sampler = Sampler(ctx.journal, quantities)
+    ctx.readings.silences = devices.silences
     return Run(
         Connector(devices, ctx.rig, arming, listen_s),
         Engine(devices, control, Executor(plan, procedures), ctx, sampler),
