@@ -120,46 +120,40 @@ class WheelRig(SimRig):
     def follow(self, t1: float, still: bool) -> None:
         """Advance the plant with its drives to ``t1`` s, and load the drives."""
         plant = self.plant
-        if not still:
-            dt = t1 - self._seen_s
-            self._turned_rad += self.wheel_rad_s * dt
-            self._travelled_m += self.belt_m_s * dt
-        self._seen_s = t1
         relay = self.relay
         if relay is not None and (not still or relay.off) and relay.look(self.rim_m_s, self.belt_m_s, t1):
             for name in relay.reaches:
                 self.axes[name].set_torque_off(relay.off)
         elapsed = t1 - self.plant_s
         if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
+            self._seen_s = t1
             return  # only temperatures change, and slowly
-        self.plant_s = t1
         wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
-        if plant.force_z_n > 0.0 or self._stalled:
-            self._bear(self._press)
-        self._pressed_mm = press.position
         wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
         if self.swapped:
             wheel_rad_s, belt_m_s = belt_m_s / self._roller_m, wheel_rad_s * self._roller_m
+        wheel_rad_s /= plant.wheel_speed.factor
+        belt_m_s /= plant.belt_speed.factor
+        dt, self._seen_s = t1 - self._seen_s, t1
+        self._turned_rad += wheel_rad_s * dt
+        self._travelled_m += belt_m_s * dt
+        self.plant_s = t1
+        if plant.force_z_n > 0.0 or self._stalled:
+            self._bear(self._press)
+        self._pressed_mm = press.position
         press_mm, press_mm_s = press.position, press.value
         sideslip_deg = self._sideslip.axis.position if self._sideslip is not None else 0.0
         if self.turned:
             press_mm, press_mm_s = (-press_mm, -press_mm_s) if "press" in self.turned else (press_mm, press_mm_s)
             sideslip_deg = -sideslip_deg if "sideslip" in self.turned else sideslip_deg
-        plant.advance(
-            elapsed,
-            wheel_rad_s / plant.wheel_speed.factor,
-            belt_m_s / plant.belt_speed.factor,
-            press_mm,
-            press_mm_s,
-            sideslip_deg,
-            self.heat_flowing_w,
-        )
+        plant.advance(elapsed, wheel_rad_s, belt_m_s, press_mm, press_mm_s, sideslip_deg, self.heat_flowing_w)
+        belt_nm = -plant.belt_force_n * self._roller_m
         if plant.force_z_n > 0.0 or self._yields:
-            radius_m, belt_nm = 0.0005 * plant.diameter_mm, -plant.belt_force_n * self._roller_m
+            radius_m = 0.0005 * plant.diameter_mm
             wheel = self._give_way(self._wheel, plant.drive_torque_nm, WHEEL_KG_M2, radius_m, 1.0, elapsed)
             belt = self._give_way(self._belt, belt_nm, BELT_KG_M2, self._roller_m, self._roller_m, elapsed)
             self._yields = wheel or belt
-        self._show(wheel_axis.value, belt_axis.value)
+        self._show(wheel_axis.value, belt_axis.value, belt_nm)
 
     def _give_way(self, drive: Cia402Slave, load_nm: float, inertia: float, arm_m: float, per_rad: float, dt: float
                   ) -> bool:  # fmt: skip
@@ -205,10 +199,13 @@ class WheelRig(SimRig):
         """Speed of the wheel's tread, m/s."""
         return 0.0005 * self.plant.diameter_mm * self.wheel_rad_s
 
-    def _show(self, wheel_rad_s: float, belt_m_s: float) -> None:
-        """Set the torques that three drives show, and the errors of their encoders, which are noisy during rotation."""
+    def _show(self, wheel_rad_s: float, belt_m_s: float, belt_nm: float) -> None:
+        """Set the torques that three drives show, and the errors of their encoders, which are noisy during rotation.
+
+        ``belt_nm``: the torque of friction at the belt's roller.
+        """
         plant, wheel, belt, press = self.plant, self._wheel, self._belt, self._press
-        wheel_nm, belt_nm = plant.drive_torque_nm, -plant.belt_force_n * self._roller_m
+        wheel_nm = plant.drive_torque_nm
         if self.belt_slip > self._belt_creep and self.belt_m_s != 0.0:
             belt_nm = copysign(self._slip_nm, self.belt_m_s)
         if self.swapped:
