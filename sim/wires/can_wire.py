@@ -27,13 +27,11 @@ def _changed(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> list[int
     if len(payloads) != len(others):
         return None
     places: list[int] = []
-    place = 0
-    for data, other in zip(payloads, others, strict=True):
+    for place, (data, other) in enumerate(zip(payloads, others, strict=True)):
         if data is not other:
             if len(data) != len(other):
                 return None
             places.append(place)
-        place += 1
     return places
 
 

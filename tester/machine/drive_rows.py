@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from tester.inputs.rig.parameter import Parameter
-from tester.machine.row import ACK, ENDING, POWER_OFF, Compared, Interlock
+from tester.machine.row import ACK, ENDING, POWER_OFF, SELDOM, Compared, Interlock
 from tester.machine.watches import at_most, condition
 from tester.machine.wires import STALE_CAN_S, STALE_CAN_SCANS, drive_data_allowed_s, drive_data_old
 
@@ -61,6 +61,7 @@ def drive_dropped_out(delay: Parameter) -> Interlock[Any]:
         watch=condition("not OPERATION_ENABLED although wanted", lambda v: not v.readings.drives_enabled),
         applies=lambda v: v.confirmed and v.demand.enabled,
         delay=delay,
+        when=SELDOM,
         reset=ACK,
     )
 

@@ -64,8 +64,19 @@ class ScanInputs:
     attended: bool = False
     """A person was asked to come near; the person's effect on sensors is no fault."""
 
+    seen: tuple[object, ...] | None = None
+    """What ``seldom`` returned when the rows with ``when=SELDOM`` were last evaluated ..."""
+    seen_held: int = 0
+    """... and the bits of those that held."""
+
     further_places: dict[str, int] = field(default_factory=dict[str, int])
     """Index in ``readings.channels`` of each channel of a further sensor, by its name."""
+
+    def seldom(self) -> tuple[object, ...] | None:
+        """Return all that the rows with ``when=SELDOM`` read, besides what a rig file fixes: while it stays the same,
+        their verdicts stay. None, unless a kind defines it: they are evaluated in every scan.
+        """
+        return None
 
     def note_further(self, rig: Rig) -> None:
         """Store the indices of the rig's further channels."""

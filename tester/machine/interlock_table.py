@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 from tester.inputs.rig.parameter import SECTION, Parameter, Values, key_line
 from tester.machine.inputs import ScanInputs
-from tester.machine.row import ALWAYS, ENDING, LOADED, WARN, Form, Interlock, Watch, When
+from tester.machine.row import ALWAYS, ENDING, LOADED, SELDOM, WARN, Form, Interlock, Watch, When
 
 Asked: TypeAlias = Callable[[Any], bool]
 Applies: TypeAlias = Asked | None
@@ -103,7 +103,7 @@ class Group:
 class RigTable:
     """The rows with the values of a rig: it evaluates a scan, and never changes."""
 
-    __slots__ = ("always", "while_ending", "while_loaded")
+    __slots__ = ("after_change", "always", "while_ending", "while_loaded")
 
     def __init__(self, table: InterlockTable, values: Values) -> None:
         """Take the rows of ``table``, and the rig's value of each of its parameters."""
@@ -112,6 +112,7 @@ class RigTable:
             return Group(((table.bit(row.name), row) for row in table.rows if row.when is when), values)
 
         self.always, self.while_loaded, self.while_ending = group(ALWAYS), group(LOADED), group(ENDING)
+        self.after_change = group(SELDOM)
 
     def __deepcopy__(self, memo: dict[int, object]) -> RigTable:
         """Return itself: copies of a running machine share its table."""
@@ -119,7 +120,10 @@ class RigTable:
 
     def held(self, v: ScanInputs) -> int:
         """Return the bits of the rows that hold in a scan; every row that can apply is evaluated."""
-        found = self.always.held(v)
+        seldom = v.seldom()
+        if seldom is None or seldom != v.seen:
+            v.seen, v.seen_held = seldom, self.after_change.held(v)
+        found = v.seen_held | self.always.held(v)
         if v.loaded and not v.unpowered:
             found |= self.while_loaded.held(v)
         if v.lifting_s >= 0.0 or v.resting or v.unpowered:

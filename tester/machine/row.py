@@ -51,6 +51,8 @@ class When(Enum):
     ALWAYS = "always"
     LOADED = "loaded"
     """Contact is wanted or cannot be excluded, and the run's drives are not off."""
+    SELDOM = "seldom"
+    """After a change of ``ScanInputs.seldom``: the row reads nothing else, and no time."""
     ENDING = "ending"
     """A stop or a hold is under way, everything should be at rest, or a run has its drives off."""
 
@@ -64,6 +66,7 @@ EMERGENCY: Final = Reaction.EMERGENCY
 
 ALWAYS: Final = When.ALWAYS
 LOADED: Final = When.LOADED
+SELDOM: Final = When.SELDOM
 ENDING: Final = When.ENDING
 
 ACK: Final = "cause gone, acknowledged"

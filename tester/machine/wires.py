@@ -8,7 +8,7 @@ from math import nan
 from typing import Any, Final, TypeAlias
 
 from tester.inputs.rig.parameter import AT_LEAST_ONE, NOT_NEGATIVE, SHARE, Parameter
-from tester.machine.row import ACK, CONTROLLED, EMERGENCY, WARN, Interlock
+from tester.machine.row import ACK, CONTROLLED, EMERGENCY, SELDOM, WARN, Interlock
 from tester.machine.watches import at_least, at_most, condition
 
 Row: TypeAlias = Interlock[Any]
@@ -18,6 +18,7 @@ SAFETY_CHAIN: Final[Row] = Interlock(
     name="safety chain",
     cause="emergency stop circuit open (drive input)",
     watch=condition("input 0x60FD bit 16 = 0", lambda v: not v.readings.safety_chain),
+    when=SELDOM,
     reaction=EMERGENCY,
     reset=ACK,
 )
@@ -74,6 +75,7 @@ DRIVE_FAULT: Final[Row] = Interlock(
     watch=condition(
         "state FAULT, heartbeat missing 3 x 50 ms, boot-up, or EMCY", lambda v: v.readings.drive_fault != ""
     ),
+    when=SELDOM,
     reset="drive reset by the acknowledgement",
 )
 
@@ -82,6 +84,7 @@ BUS_LOST: Final[Row] = Interlock(
     name="bus lost",
     cause="CAN adapter or serial line gone, bus-off",
     watch=condition("the wire's port is lost: it is never reopened", lambda v: v.readings.bus_fault != ""),
+    when=SELDOM,
     reset="started anew",
 )
 
@@ -90,6 +93,7 @@ SECOND_MASTER: Final[Row] = Interlock(
     name="second master",
     cause="another master on the CAN bus",
     watch=condition("a frame only a master sends", lambda v: v.readings.foreign_master != ""),
+    when=SELDOM,
     reset="other master gone, started anew",
 )
 
@@ -121,6 +125,7 @@ GUARD_OPEN: Final[Row] = Interlock(
     cause="guard open with drives on",
     watch=condition("input 0x60FD bit 17 = 0, drives wanted", lambda v: not v.readings.guard_closed),
     applies=lambda v: v.demand.enabled,
+    when=SELDOM,
     unseen=True,
     reset=ACK,
 )
@@ -155,7 +160,7 @@ STALE_CAN_S: Final = Parameter(
 def drive_data_old(v: Any) -> bool:
     """Return whether the data of a drive are too old."""
     since_s = v.readings.now_s - drive_data_allowed_s(v)
-    for at_s in v.readings.drive_stamps_s():  # a generator costs twice as much in every scan
+    for at_s in v.readings.drive_stamps_s():  # noqa: SIM110 - a generator costs twice as much in every scan
         if not (at_s >= since_s):
             return True
     return False
@@ -176,6 +181,7 @@ DEVICE_REFUSED: Final[Row] = Interlock(
     name="device refused",
     cause="a Modbus device refuses a request, or misses our commands",
     watch=condition("exception 01 to 03, or its lease ran out", lambda v: v.readings.device_fault != ""),
+    when=SELDOM,
     reaction=CONTROLLED,
 )
 
@@ -194,6 +200,7 @@ LINE_NOISY: Final[Row] = Interlock(
     cause="a Modbus device answers badly (CRC, time-outs, late replies)",
     watch=at_most("failed requests > {}", lambda v: v.readings.line_errors, LINE_ERRORS),
     delay=LINE_ERRORS_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
     reset=ACK,
 )

@@ -12,7 +12,7 @@ import pytest
 from tester.inputs.rig.parameter import Parameter
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import Group, InterlockTable, RigTable, parameters_of
-from tester.machine.row import ENDING, FAST, LOADED, WARN, Interlock, always
+from tester.machine.row import ENDING, FAST, LOADED, SELDOM, WARN, Interlock, always
 from tester.machine.watches import at_most, condition
 
 DELAY = Parameter("toy_delay_s", "s", "30 ms", "for this long")
@@ -36,11 +36,13 @@ TABLE = InterlockTable(
         replace(ROW, name="ending", when=ENDING, at_rest=always),
         replace(ROW, name="never", watch=NEVER, unseen=never),
         replace(ROW, name="warning", reaction=WARN),
+        replace(ROW, name="seldom", when=SELDOM),
     ],
     [OPERATION],
 )
 VALUES = {LEVEL: 3.0, DELAY: 0.03}
 ROWS = RigTable(TABLE, VALUES)
+GROUPS = (ROWS.always, ROWS.after_change, ROWS.while_loaded, ROWS.while_ending)
 
 
 def scan(**what: object) -> ScanInputs:
@@ -55,11 +57,11 @@ def scan(**what: object) -> ScanInputs:
 @pytest.mark.parametrize(
     ("inputs", "names"),
     [
-        (scan(), ["always", "loaded", "warning"]),
-        (scan(loaded=False), ["always", "warning"]),
-        (scan(unpowered=True), ["always", "ending", "warning"]),
-        (scan(loaded=False, lifting_s=0.0), ["always", "ending", "warning"]),
-        (scan(loaded=False, resting=True), ["always", "ending", "warning"]),
+        (scan(), ["always", "loaded", "warning", "seldom"]),
+        (scan(loaded=False), ["always", "warning", "seldom"]),
+        (scan(unpowered=True), ["always", "ending", "warning", "seldom"]),
+        (scan(loaded=False, lifting_s=0.0), ["always", "ending", "warning", "seldom"]),
+        (scan(loaded=False, resting=True), ["always", "ending", "warning", "seldom"]),
     ],
     ids=["in contact", "lifted", "without power", "lifting", "at rest"],
 )
@@ -76,7 +78,7 @@ def test_masks_go_by_what_rows_say_of_themselves() -> None:
 
 
 def test_a_bit_is_a_rows_place() -> None:
-    assert [TABLE.bit(row.name) for row in TABLE.rows] == [1, 2, 4, 8, 16]
+    assert [TABLE.bit(row.name) for row in TABLE.rows] == [1, 2, 4, 8, 16, 32]
     with pytest.raises(KeyError):
         TABLE.bit("no such row")
 
@@ -87,7 +89,7 @@ def test_parameters_stand_once_and_those_of_no_row_come_last() -> None:
 
 def test_a_row_is_timed_by_its_delay() -> None:
     assert ROW.delay_s({DELAY: 0.5}) == 0.5 and ROW.declared() == (LEVEL, DELAY)
-    assert TABLE.delays_s({DELAY: 0.5}) == (0.5,) * 5 and TABLE.nothing_pending() == [inf] * 5
+    assert TABLE.delays_s({DELAY: 0.5}) == (0.5,) * 6 and TABLE.nothing_pending() == [inf] * 6
 
 
 def test_a_group_tells_every_condition_that_holds() -> None:
@@ -101,7 +103,7 @@ def test_a_number_that_is_not_known_is_beyond_its_limit() -> None:
 
 
 def test_every_row_is_in_exactly_one_group() -> None:
-    bits = [one for group in (ROWS.always, ROWS.while_loaded, ROWS.while_ending) for one, _ in group.members]
+    bits = [one for group in GROUPS for one, _ in group.members]
     assert sorted(bits) == [1 << i for i in range(len(TABLE.rows))]
 
 

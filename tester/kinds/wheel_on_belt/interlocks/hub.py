@@ -8,7 +8,7 @@ from typing import Final
 from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
 from tester.kinds.wheel_on_belt.interlocks.surface import BLIND_S, JUMP_K, STALE_DELAY_S
-from tester.machine.row import ACK, CONTROLLED, Interlock, always
+from tester.machine.row import ACK, CONTROLLED, SELDOM, Interlock, always
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
@@ -41,6 +41,7 @@ JACKET_HOT: Final[Row] = Interlock(
     parameters=(JACKET_MARGIN_K,),
     applies=lambda v: v.readings.jacket_valid,
     delay=JACKET_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
     reset=ACK,
 )
@@ -84,6 +85,7 @@ JACKET_RUNAWAY: Final[Row] = Interlock(
     parameters=(RUNAWAY_K, RUNAWAY_WINDOW_S),
     applies=lambda v: _hub_known(v) and len(v.hub_setpoints) > 0,
     delay=RUNAWAY_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
     reset=ACK,
 )
@@ -158,6 +160,7 @@ HEATING_AT_STANDSTILL: Final[Row] = Interlock(
     watch=at_most("output > {}, wheel at rest", lambda v: v.readings.heat_percent, 0.0, "%"),
     applies=lambda v: v.readings.contactor_closed and not v.turning,
     delay=STANDSTILL_HEAT_DELAY_S,
+    when=SELDOM,
     at_rest=always,
     ends_lease=True,
     reaction=CONTROLLED,
@@ -171,6 +174,7 @@ HUB_JUMP: Final[Row] = Interlock(
     watch=at_most("two readings apart by > {}", lambda v: v.jacket.jump_k, JUMP_K),
     parameters=(BLIND_S,),
     applies=lambda v: not v.attended,
+    when=SELDOM,
     reaction=CONTROLLED,
     reset=ACK,
 )
@@ -223,6 +227,7 @@ HEAT_NOT_SHOWN: Final[Row] = Interlock(
     ),
     parameters=(HEAT_SHARE, HEAT_SHARE_KNOWN, HEAT_LEAK_W, UNSEEN_HEAT_K, JACKET_MARGIN_K),
     applies=lambda v: not v.heat.unseen_k <= 0.0 and _hub_known(v),
+    when=SELDOM,
     reaction=CONTROLLED,
 )
 
@@ -238,6 +243,7 @@ HEAT_NOT_GIVEN: Final[Row] = Interlock(
                   UNGIVEN_HEAT_K),
     applies=lambda v: not v.heat.ungiven_k <= 0.0 and _hub_known(v),
     delay=RUNAWAY_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
 )  # fmt: skip
 
@@ -268,6 +274,7 @@ HUB_HOTTER: Final[Row] = Interlock(
     parameters=(HIDDEN_MODEL_K, HEAT_SHARE, HEAT_SHARE_KNOWN, HEAT_LEAK_W),
     applies=lambda v: v.setpoints.heat and v.turning and v.readings.surface_valid and _hub_known(v),
     delay=HIDDEN_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
 )  # fmt: skip
 
@@ -300,6 +307,7 @@ HUB_FROZEN: Final[Row] = Interlock(
     ),
     parameters=(FROZEN_HUB_K, FROZEN_HUB_SHARE),
     applies=lambda v: not v.heat.still_k <= 0.0 and _hub_known(v),
+    when=SELDOM,
     reaction=CONTROLLED,
 )
 
@@ -331,6 +339,7 @@ HUB_NOT_VALID: Final[Row] = Interlock(
     watch=condition("reading not valid", lambda v: not v.readings.jacket_valid),
     applies=lambda v: not v.attended and not v.readings.jacket_silent,
     delay=STALE_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
     reset=ACK,
 )

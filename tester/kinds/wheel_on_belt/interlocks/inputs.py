@@ -128,6 +128,17 @@ class Inputs(ScanInputs):
     rest_mm: float = inf
     """Farthest retraction of the press since a run was found without power (``unpowered``)."""
 
+    def seldom(self) -> tuple[object, ...] | None:
+        r, demand, out, heat, setpoints = self.readings, self.demand, self.setpoints, self.heat, self.hub_setpoints
+        return (
+            r.safety_chain, r.guard_closed, r.bus_fault, r.drive_fault, r.foreign_master, r.device_fault, r.line_errors,
+            r.drives_enabled, r.contactor_closed, r.surface_c, r.surface_valid, r.surface_silent, r.hub_c,
+            r.heat_percent, r.jacket_valid, r.jacket_silent, demand.enabled, demand.surface_c, out.heat, out.contactor,
+            self.confirmed, self.attended, self.pressing, self.turning, self.model_c, self.surface.jump_k,
+            self.jacket.jump_k, self.jacket.coolest_c, setpoints[0][1] if setpoints else None, heat.unseen_k,
+            heat.ungiven_k, heat.still_k, heat.put_w, heat.shown_w, heat.lack_j, heat.may_lack_j,
+        )  # fmt: skip
+
 
 Row: TypeAlias = Interlock[Inputs]
 

@@ -20,7 +20,7 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import (
 )
 from tester.kinds.wheel_on_belt.interlocks.motion import DROPPED_DELAY_S
 from tester.machine.drive_rows import keeps_power, not_stopping, quick_stop_failed, stop_not_ended
-from tester.machine.row import CONTROLLED, ENDING, POWER_OFF, REFUSE, Compared, Interlock, always
+from tester.machine.row import CONTROLLED, ENDING, POWER_OFF, REFUSE, SELDOM, Compared, Interlock, always
 from tester.machine.watches import at_most, condition
 
 LIFT_LATE_S: Final = Parameter(
@@ -195,6 +195,7 @@ CONTACTOR_WELDED: Final[Row] = Interlock(
         "feedback closed, request off", lambda v: v.readings.contactor_closed and not v.setpoints.contactor
     ),
     delay=CONTACTOR_DELAY_S,
+    when=SELDOM,
     at_rest=always,
     ends_lease=True,
     reaction=CONTROLLED,

@@ -7,7 +7,7 @@ from typing import Final
 
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Direction, Parameter
 from tester.kinds.wheel_on_belt.interlocks.inputs import Inputs, Row
-from tester.machine.row import ACK, CONTROLLED, Compared, Interlock
+from tester.machine.row import ACK, CONTROLLED, SELDOM, Compared, Interlock
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
 
@@ -38,6 +38,7 @@ SURFACE_HOT: Final[Row] = Interlock(
     watch=at_most("surface > {}", lambda v: v.readings.surface_c, "limits.surface_c"),
     applies=lambda v: v.readings.surface_valid,
     delay=SURFACE_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
     reset=ACK,
 )
@@ -54,6 +55,7 @@ SURFACE_JUMP: Final[Row] = Interlock(
     watch=at_most("two readings apart by > {}", lambda v: v.surface.jump_k, JUMP_K),
     parameters=(BLIND_S,),
     applies=_surface_wanted,
+    when=SELDOM,
     reaction=CONTROLLED,
     reset=ACK,
 )
@@ -129,6 +131,7 @@ SURFACE_OFF_MODEL: Final[Row] = Interlock(
     ),
     applies=_measures,
     delay=MODEL_DELAY_S,
+    when=SELDOM,
     reaction=CONTROLLED,
 )
 
@@ -161,6 +164,7 @@ SURFACE_NOT_VALID: Final[Row] = Interlock(
         "reading not valid, and wanted", lambda v: not v.readings.surface_valid and not v.readings.surface_silent
     ),
     applies=_surface_wanted,
+    when=SELDOM,
     unseen=True,
     delay=STALE_DELAY_S,
     reaction=CONTROLLED,
