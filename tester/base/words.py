@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from math import isfinite
+from math import floor, isfinite, log10
 from typing import Final
 
 NONE: Final = "—"
@@ -49,6 +49,14 @@ def rough_duration(seconds: float) -> str:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
     return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def about(seconds: float) -> str:
+    """Return a duration that is only roughly known, to one digit: about 20 s, about 7 min, about 2 h; at least 1 s."""
+    unit, size_s = ("s", 1.0) if seconds < 95.0 else ("min", 60.0) if seconds < 5700.0 else ("h", 3600.0)
+    units = max(seconds / size_s, 1.0)
+    digit = 10.0 ** floor(log10(units))
+    return f"about {digit * round(units / digit):.0f} {unit}"
 
 
 def listed(items: Iterable[str], word: str = "and") -> str:

@@ -15,17 +15,21 @@ from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 from rich.text import Text
 
+from tester.base.clock import monotonic
 from tester.base.keys import FAST_STOP, HELP, HOLD, STOP, Meaning, commands_of, pieces_of
-from tester.base.words import conditions_done, duration
+from tester.base.words import about, conditions_done, duration
 from tester.cli.command_keys import keys_of
 from tester.cli.ending import ending_lines
 from tester.machine.context import Progress as RunProgress
 from tester.machine.prompts import DONE, Prompt, Prompts, Question
 from tester.machine.time_left import RunPosition
 from tester.run.reporter import ReportScreen
+from tester.run.wall_time import WallTime
 
 ASKED = f'type "{DONE}" and Enter when it is done'
 MOST_TYPED = 200
+FASTER = 0.9
+"""A run whose wall time left is below this share of its rig time left is simulated faster than a machine's pace."""
 END_OF_INPUT = "\x04"
 """Ctrl+D."""
 
@@ -100,8 +104,8 @@ class Console(ReportScreen):
     always: tuple[Meaning, ...] = (STOP, FAST_STOP, HOLD)
     """Keys that keep their meaning while a question waits: all others belong to its answer."""
 
-    def __init__(self, *, as_json: bool, answer_yes: bool) -> None:
-        """``answer_yes``: prompts are answered without asking."""
+    def __init__(self, *, as_json: bool, answer_yes: bool, clock: Callable[[], float] = monotonic) -> None:
+        """``answer_yes``: prompts are answered without asking. ``clock``: wall time, s."""
         self.as_json = as_json
         self.answer_yes = answer_yes
         self.can_ask = _is_terminal(sys.stdin)
@@ -110,6 +114,9 @@ class Console(ReportScreen):
         self._progress: Progress | None = None
         self._tasks: dict[int, TaskID] = {}
         """The progress lines by part."""
+        self._clock = clock
+        self._walls: dict[int, WallTime] = {}
+        """The wall time left, by progress line."""
         self._question: Prompt | None = None
         """The newest that was put."""
         self._typed = ""
@@ -147,10 +154,12 @@ class Console(ReportScreen):
             if self._progress is None:
                 self.message(f"{label}{duration(now_s)}  {run.title}")
         if self._progress is not None:
-            text = label + standing_words(at)
+            line = at.part if at.beside else 1
+            wall = self._walls.setdefault(line, WallTime(self._clock))
+            text = label + standing_words(at, wall.left_s(at.done_s, at.left_s or 0.0))
             if run.repeats:
                 text += f"  repeat {run.repeat}/{run.repeats}"
-            self._show_line(self._progress, at.part if at.beside else 1, at.share, f"{text}  {run.title}")
+            self._show_line(self._progress, line, at.share, f"{text}  {run.title}")
             self._err.check()
 
     def _show_line(self, progress: Progress, part: int, share: float, text: str) -> None:
@@ -231,11 +240,15 @@ class Console(ReportScreen):
             self.message(f"answered: {prompt.answer}")
 
 
-def standing_words(at: RunPosition) -> str:
-    """Return how far a run is: its conditions that are done, and the time left."""
-    words = [conditions_done(at.over, at.conditions)] if at.conditions else []
+def standing_words(at: RunPosition, wall_s: float | None) -> str:
+    """Return how far a run is: its conditions that are done, its rig time, and the wall time left (``wall_s``, if
+    known), which at a machine's own pace is the rig time left.
+    """
+    words = [conditions_done(at.over, at.conditions, short=True)] if at.conditions else []
     if at.left_s is not None:
-        words.append(f"{duration(at.left_s)} left")
+        words.append(f"rig {duration(at.done_s)} of {duration(at.done_s + at.left_s)}")
+        if wall_s is not None:
+            words.append(f"{about(wall_s) if wall_s < FASTER * at.left_s else duration(at.left_s)} left")
     return ", ".join(words)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing
@@ -72,7 +73,16 @@ def plan(
         wanted = with_precision(wanted, precision)
     compounds = dict.fromkeys(specimen.compound for specimen in wanted.specimens if _asks_precision(wanted))
     pools = repeatability(out or RUNS, compounds, simulated=loaded_rig.simulated)
-    sys.stdout.writelines(_texts(wanted, loaded_rig, part, described, pools, as_json))
+    # A plan for a precision has other repeats than the recipe, which a run carries out.
+    dry = _dry_run(recipe, rig) if loaded_rig.simulated and precision is None else ""
+    sys.stdout.writelines(_texts(wanted, loaded_rig, part, described, pools, as_json, dry, out or RUNS))
+
+
+def _dry_run(recipe: str, rig: RigChoice) -> str:
+    """Return the command that runs a recipe on the rig of a plan without questions."""
+    choice = [] if rig.name == "sim" else ["--rig", rig.name]
+    choice += [word for key in rig.overrides for word in ("--set", key)]
+    return shlex.join(["tester", "run", recipe, *choice, "--yes"])
 
 
 def _texts(
@@ -82,13 +92,19 @@ def _texts(
     described: Mapping[str, CompoundModel],
     pools: Mapping[str, Pool],
     as_json: bool,
+    dry: str,
+    under: Path,
 ) -> Iterator[str]:
-    """Yield the plan of a recipe as text: lines, or chunks of JSON."""
+    """Yield the plan of a recipe as text: lines, or chunks of JSON. ``dry``: the command of a dry run, "" for none;
+    ``under``: the folder of the runs that show its pace.
+    """
+    from tester.base.words import about
     from tester.inputs.recipe.conditions import merged_of
     from tester.inputs.recipe.foreseen import foreseen, foreseen_fields, foreseen_lines, known_slopes
     from tester.inputs.recipe.plan_text import json_chunks, lines
     from tester.inputs.recipe.precision import precision_lines, s_percents
     from tester.inputs.recipe.time_estimate import estimate
+    from tester.run.wall_time import price_s
 
     estimator = part.estimator(rig, s_percents(pools))
     steps = part.expand(wanted, rig, estimator)
@@ -101,6 +117,7 @@ def _texts(
         return
     shown = [
         lines(steps, figures, part),
+        [f"a dry run takes   {about(price_s(figures, rig.kind, under))}: {dry}"] if dry else [],
         (one.sentence() for one in merged),
         foreseen_lines(predictions, estimator, terms),
         precision_lines(steps, figures, estimator, pools, predictions),

@@ -20,6 +20,7 @@ from tester.machine.control import AnyControl
 from tester.machine.engine import Engine
 from tester.machine.executor import Executor
 from tester.machine.state import Mode
+from tester.store.journal_records import LEAP
 
 LOOP_S: Final = 0.5
 """Common multiple of the cycles of simulated controllers (``sim.nodes.control_loop``), s."""
@@ -140,5 +141,5 @@ class Leaps:
         if self.leapt_s:
             ctx: AnyContext = self.engine.ctx
             text = f"{self.leapt_s:.0f} s in which only heat flowed were leapt, without scans"
-            ctx.journal.event(ctx.now, "leap", text)
+            ctx.journal.event(ctx.now, LEAP, text, data=f"{self.leapt_s:.3f}")
         self.leapt_s = 0.0

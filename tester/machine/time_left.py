@@ -92,7 +92,7 @@ class RunPosition:
 
     ``over`` of the ``conditions`` are finished, with a value or without. ``share`` of the rig time is done, 0..1.
     ``left_s``: whole seconds to the end, None once the run was given up; ``step_left_s``: the present step's part of
-    these.
+    these. ``done_s``: time of the work done so far.
     """
 
     step: int = 0
@@ -102,6 +102,7 @@ class RunPosition:
     share: float = 0.0
     left_s: float | None = None
     step_left_s: float = 0.0
+    done_s: float = 0.0
     part: int = 1
     parts: int = 1
     beside: bool = False
@@ -320,6 +321,7 @@ class TimeLeft:
             share=done_s / (done_s + left_s) if done_s + left_s > 0.0 else 0.0,
             left_s=None if self._doing is Doing.GIVEN_UP else left_s,
             step_left_s=present_s,
+            done_s=done_s,
             part=max(self._part, 1),
             parts=self._parts,
         )

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isnan
+from typing import Final
+
+LEAP: Final = "leap"
+"""Kind of the event at the end of a step of which time was leapt (``tester.machine.leaps``); its data: how much, s."""
 
 
 @dataclass(frozen=True, slots=True)

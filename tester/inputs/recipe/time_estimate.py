@@ -83,6 +83,10 @@ class Estimator:
         seconds = sum(step.seconds for step in steps) + down_s
         return (1.0 - self.spread) * seconds, (1.0 + self.spread) * seconds
 
+    def leapt_s(self, plan: Plan, steps: Sequence[StepEstimate]) -> float:
+        """Return the seconds that a simulated rig in virtual time leaps (``tester.machine.leaps``)."""
+        return 0.0
+
     def s_percent(self, compound: str) -> float:
         """Return the expected standard deviation between repeats, per cent of the coefficient."""
         return self.repeatability.get(compound, HISTORIC_PERCENT)
@@ -124,6 +128,8 @@ class Estimate:
     """Rubber worn off, summed over all specimens."""
     friction_j: float
     peak_c: float
+    leapt_s: float = 0.0
+    """Part of the rig time that a simulated rig in virtual time leaps."""
     not_held: tuple[int, ...] = field(default=())
     """Numbers of the conditions whose temperature is not expected to hold within the band."""
 
@@ -148,5 +154,6 @@ def estimate(plan: Plan, estimator: Estimator) -> Estimate:
         loss_mm=math.fsum(step.loss_mm for step in steps),
         friction_j=math.fsum(step.friction_j for step in steps),
         peak_c=max((step.peak_c for step in steps), default=-math.inf),
+        leapt_s=estimator.leapt_s(plan, steps),
         not_held=tuple(not_held),
     )

@@ -7,6 +7,7 @@ from math import inf, nan
 import pytest
 
 from tester.base.words import (
+    about,
     conditions_done,
     counted,
     decimal,
@@ -58,6 +59,15 @@ def test_a_rough_duration_is_as_people_say_it(seconds: float, text: str) -> None
 def test_items_are_listed_with_one_word_before_the_last() -> None:
     assert [listed("abc"[:n]) for n in range(4)] == ["", "a", "a and b", "a, b and c"]
     assert listed(["Hz", "rad/s"], "or") == "Hz or rad/s"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.2, "1 s"), (9.7, "10 s"), (44.0, "40 s"), (94.9, "90 s"), (97.0, "2 min"), (1234.0, "20 min"), (6000.0, "2 h"),
+     (180_000.0, "50 h")],
+)  # fmt: skip
+def test_a_roughly_known_duration_has_one_digit(seconds: float, words: str) -> None:
+    assert about(seconds) == f"about {words}"
 
 
 def test_a_long_list_ends_with_how_many_more_there_are() -> None:

@@ -97,13 +97,30 @@ def test_a_step_is_a_record_once(capsys: Output) -> None:
 @pytest.mark.parametrize(
     ("at", "words"),
     [
-        (RunPosition(2, 9, 1, 4, 0.5, 61.0), "1 of 4 conditions done, 0:01:01 left"),
-        (RunPosition(2, 9, 1, 4, 0.5, None), "1 of 4 conditions done"),
-        (RunPosition(1, 3, left_s=7200.0), "2:00:00 left"),
+        (RunPosition(2, 9, 1, 4, 0.5, 61.0, done_s=60.0), "1/4 done, rig 0:01:00 of 0:02:01"),
+        (RunPosition(2, 9, 1, 4, 0.5, None), "1/4 done"),
+        (RunPosition(1, 3, left_s=7200.0), "rig 0:00:00 of 2:00:00"),
     ],
 )
 def test_how_far_a_run_is_in_words(at: RunPosition, words: str) -> None:
-    assert standing_words(at) == words
+    assert standing_words(at, None) == words
+
+
+@pytest.mark.parametrize(("wall_s", "left"), [(22.0, "about 20 s"), (7100.0, "2:00:00"), (9000.0, "2:00:00")])
+def test_the_time_left_is_wall_time_and_at_a_machines_pace_rig_time(wall_s: float, left: str) -> None:
+    assert standing_words(RunPosition(left_s=7200.0), wall_s) == f"rig 0:00:00 of 2:00:00, {left} left"
+
+
+def test_a_terminal_shows_rig_time_and_wall_time_in_place(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "120")
+    times = iter([0.0, 10.0])
+    console = Console(as_json=False, answer_yes=True, clock=lambda: next(times))
+    console.begin("short")
+    for done_s in (0.0, 1000.0):
+        console.show(done_s, Progress(title="heat"), RunPosition(left_s=3000.0 - done_s, done_s=done_s))
+    console.end()
+    assert "rig 0:16:40 of 0:50:00, about 20 s left" in capsys.readouterr().err
 
 
 def test_texts_from_outside_are_no_markup(capsys: Output) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -125,6 +126,18 @@ def test_plan_says_what_a_precision_takes(folder: Path, capsys: pytest.CaptureFi
     out = capsys.readouterr().out
     assert "repeatability     2 % (type A, expanded, 95 %)" in out
     assert "nothing is stored" in out
+
+
+def test_plan_offers_a_dry_run_with_its_price(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ["--set", "sim.noise=0", "--rig", "sim"]
+    assert invoke(["plan", "quickstart", *options]) == 0
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if line.startswith("a dry run takes")]
+    assert re.fullmatch(r"a dry run takes   about \d0? s: tester run quickstart --set sim.noise=0 --yes", line)
+
+
+def test_plan_for_a_precision_offers_no_run_of_the_recipe(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["plan", "quickstart", "--precision", "2%"]) == 0
+    assert "a dry run" not in capsys.readouterr().out
 
 
 def test_plan_gives_the_rig_time_with_its_range(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

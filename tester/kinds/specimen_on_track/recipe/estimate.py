@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import fsum
 from pathlib import Path
 from typing import ClassVar, Final
 
@@ -27,6 +28,8 @@ SETTLES: Final = {"linear": 1.7, "disc": 0.35}
 """Windows until friction is stationary; on a linear track forward and back together. From simulated runs [A]."""
 CHAMBER_K_S: Final = 0.045
 """Rate of the chamber from one temperature to another, K/s [A]."""
+LEAPT: Final = 0.5
+"""Share of the time at the chamber that is leapt; from simulated runs [A]."""
 LIKELY_MU: Final = 1.0
 """Coefficient without a known law [A]."""
 
@@ -116,6 +119,11 @@ class TrackEstimator(Estimator):
     def shut_down_s(self, plan: Plan) -> float:
         """Return the seconds from the last step to standstill."""
         return 1.0
+
+    def leapt_s(self, plan: Plan, steps: Sequence[StepEstimate]) -> float:
+        """Return the seconds leapt while the chamber tempers."""
+        pairs = zip(plan.steps, steps, strict=True)
+        return LEAPT * fsum(estimate.seconds for step, estimate in pairs if isinstance(step, Temper))
 
     def budget(self, step: ConditionStep, outlook: Outlook = NEW) -> tuple[float, Budget] | None:
         """Return a condition's expected coefficient, and the instruments' part of its uncertainty."""
