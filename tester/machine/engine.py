@@ -85,6 +85,12 @@ class Engine:
         self._renew_by_s = self.last_scan_s + seconds + renew_s
 
     @property
+    def wires_s(self) -> float:
+        """``ctx.now`` by the clock of wires and drivers, s: drivers stamp their data with it."""
+        now: float = self.ctx.now
+        return now - self.leapt_s
+
+    @property
     def renewing(self) -> bool:
         """Whether readings are renewed after a leap."""
         return self._renew_by_s > -inf
@@ -111,7 +117,7 @@ class Engine:
         control: AnyControl = self.control
         control.safe_outputs()
         devices.apply(control.state.setpoints)
-        devices.transmit(self.ctx.now - self.leapt_s, scan=True)
+        devices.transmit(self.wires_s, scan=True)
 
     def _urgent(self) -> bool:
         """Return whether a drive reports a fault or an emergency that should not wait until the next regular scan."""

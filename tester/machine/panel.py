@@ -16,8 +16,8 @@ from tester.machine.wires import STALE_CAN_S
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """State of a device's data: time of the newest (rig s, -inf if never), whether valid, and the age from which it is
-    stale, s.
+    """State of a device's data: time of the newest (s by ``Engine.wires_s``, -inf if never), whether valid, and the age
+    from which it is stale, s.
     """
 
     at_s: float

@@ -68,19 +68,22 @@ def object_name(key: Key) -> str:
     return KNOWN[key].name if key in KNOWN else ""
 
 
-def record_kept(rig: Rig, ports: Ports, world: TickedWorld | None, now_s: float, recorder: Recorder) -> None:
+def record_kept(
+    rig: Rig, ports: Ports, world: TickedWorld | None, now_s: float, recorder: Recorder, leapt_s: float = 0.0
+) -> None:
     """Store identity and settings of every drive, as far as the drive has them; store nothing if the bus is gone.
 
-    ``now_s``: the run's time. Drives are only read, by SDO.
+    ``now_s``: the run's time; ``leapt_s``: what of it passed without the wires. Drives are only read, by SDO.
     """
     names = {config.node_id: name for name, config in rig.drives().items()}
-    scan, clock_s, wait = SdoScan({node: [*IDENTITY, *KEPT] for node in names}), now_s, _waiting(ports, world)
+    scan, wait = SdoScan({node: [*IDENTITY, *KEPT] for node in names}), _waiting(ports, world)
+    begun_s = clock_s = now_s - leapt_s
     try:
-        while not scan.done and clock_s < now_s + MOST_S:
+        while not scan.done and clock_s < begun_s + MOST_S:
             scan.feed(ports.can.receive(clock_s), ports.can, clock_s)
             scan.service(ports.can, clock_s)
             clock_s += STEP_S
-            wait(clock_s)
+            wait(clock_s + leapt_s)
     except BusLost:
         return
     for node, answers in scan.answers.items():

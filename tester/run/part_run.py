@@ -193,7 +193,7 @@ def _execute(
         watch.rested()
         record_statistics(run.engine.devices, writer, seconds)
         if run.outcome is Outcome.DONE:
-            record_kept(rig, ports, world, seconds, writer)
+            record_kept(rig, ports, world, seconds, writer, run.engine.leapt_s)
         return run.outcome, run.reason, seconds
     except BusLost as lost:
         return Outcome.UNREACHABLE, str(lost), 0.0

@@ -27,7 +27,7 @@ class BusWatch:
         self._emergencies[name] = self._emergencies.get(name, 0) + 1
 
     def device_views(self, now: float) -> tuple[DeviceView, ...]:
-        """Return the view of every device at ``now`` s of the run."""
+        """Return the view of every device at ``now`` s by the clock of the wires: leaps have no part in it."""
         hours = max(now, 60.0) / 3600.0
         drives = [self._drive(drive, now, hours) for drive in self.devices.drives]
         nodes = [self._node(node, now, hours) for node in self.devices.nodes]

@@ -85,7 +85,7 @@ class ValueView:
 
     def values(self) -> tuple[Value, ...]:
         """Return all values as of the last scan."""
-        wanted, now = self.panel.wanted(), self.engine.ctx.readings.now_s
+        wanted, now = self.panel.wanted(), self.engine.wires_s
         quality = {device: self._quality(news, now) for device, news in self.panel.news().items()}
         nothing: tuple[float | None, Quality] = (None, "none")
         return tuple(

@@ -153,7 +153,7 @@ class RunWatch:
             gates=self.panel.gates(),
             soak=self.panel.soak(now),
             prompt=self.prompt(),
-            devices=self.buses.device_views(now),
+            devices=self.buses.device_views(now - self.run.engine.leapt_s),
             buses=self.buses.bus_views(),
             preflight=(*(check for check in state.preflight if check.name not in names), *checks),
             alone=self.alone,
@@ -197,7 +197,7 @@ class RunWatch:
             self.watched.add(name)
             late = value.quality == "stale" and value.age_s is not None and value.age_s > 2.0
             alarms.set(late, Cause(name, 2, f"{value.age_s or 0.0:.0f} s old", "in contact the run stops"), now)
-        for device in self.buses.device_views(now):
+        for device in self.buses.device_views(now - self.run.engine.leapt_s):
             lost = not device.online
             alarms.set(
                 lost, Cause(f"{device.name} offline", 2, device.detail or "does not answer", "the run stops"), now

@@ -47,6 +47,17 @@ def test_an_object_that_a_drive_does_not_have_is_left_out() -> None:
     assert ("belt", "0x6091:01") not in kept(rig, ports).rows
 
 
+def test_drives_answer_by_the_clock_of_the_wires_which_leaps_hold() -> None:
+    track = load_rig("grosch")
+    ports, rig, _ = simulated_ports(track, 0, None)
+    rig.advance(1.0)
+    rig.leap(600.0, 0.05, {})
+    notes, before_s = Notes(), rig.can.occupied_s
+    record_kept(track, ports, rig, 601.0, notes, 600.0)  # type: ignore[arg-type]
+    assert {device for device, _ in notes.rows} == set(track.drives())
+    assert rig.can.occupied_s - before_s < 0.1  # no heartbeats of ten minutes
+
+
 def test_nothing_of_a_drive_changes() -> None:
     ports, rig = made()
     before = {name: dict(drive.store.values) for name, drive in rig.axes.items()}
