@@ -68,6 +68,7 @@ class Engine:
         if scan:
             if self._renew_by_s > -inf and not self._renewed(now):
                 self.next_scan_s += self.period_s
+                self.ctx.now = now  # no scan follows at once: a request is dated now, not at the leap's end
             else:
                 self._scan(now)
         deadline = devices.transmit(now - leapt_s, scan=scan, next_scan_s=self.next_scan_s - leapt_s) + leapt_s

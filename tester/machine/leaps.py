@@ -27,7 +27,7 @@ LOOP_S: Final = 0.5
 USUAL_S: Final = 9.0
 """A leap lasts so many common periods as fit in this, s [A]: filters of readings restart after ten seconds."""
 MOST_S: Final = 20.0
-"""Longest leap, s [A]; no leap where the devices' periods have no common multiple as short."""
+"""Longest leap, s [A]; no leap where the periods of scans and devices have no common multiple as short."""
 RENEW_S: Final = 1.0
 """Time after a leap in which only the wires run and renew every reading, s [A]: several periods of each device."""
 MOST_K: Final = 0.5
@@ -78,12 +78,15 @@ class Leaps:
         if ctx.progress.step != self._step:
             self._report()
             self._step = ctx.progress.step
+            self._calm_s = inf  # the new step's setpoints are not sent yet: a leap would hold them back
         if engine.last_scan_s != now or engine.renewing:
             return later
+        if engine.period_s != self._period_s:
+            self._calm_s, self._leap_s = inf, 0.0
         if engine.period_s <= engine.sliding_s or self.hindered():
             self._calm_s = inf
             return later
-        if self._calm_s == inf or engine.period_s != self._period_s:
+        if self._calm_s == inf:
             self._begin(now, ctx.calm())
         if not self._each and now - self._calm_s >= self._leap_s - _TINY_S:
             self._each = self.world.readings_since()
@@ -125,7 +128,7 @@ class Leaps:
         self._before_c = temperatures_c
         self._period_s = self.engine.period_s
         periods_s = [self._period_s, LOOP_S, *self.engine.devices.periods_s()]
-        common_s = 1e-3 * lcm(*[round(1e3 * period_s) for period_s in periods_s])
+        common_s = lcm(*[round(1e6 * period_s) for period_s in periods_s]) / 1e6  # a third of a second has none
         self._leap_s = common_s * max(1, int(USUAL_S / common_s))
         self._each = {}
         self.world.count_readings()

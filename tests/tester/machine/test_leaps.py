@@ -83,6 +83,35 @@ def test_a_stop_ends_the_renewal_at_once() -> None:
     assert bench.to_the_end().run.outcome is Outcome.STOPPED
 
 
+def test_a_stop_during_the_renewal_is_dated_when_it_is_asked() -> None:
+    bench = tempering()
+    renewing_s = bench.now
+    bench.until(lambda one: one.now > renewing_s + 0.8 * RENEW_S, 600.0)
+    assert bench.run.engine.renewing
+    bench.run.request_stop("asked")
+    assert bench.run.engine.control.state.mode_since_s == pytest.approx(bench.now, abs=bench.run.engine.period_s + 0.01)
+
+
+def test_a_new_step_of_the_plan_is_sent_before_the_next_leap() -> None:
+    bench = TrackBench("grosch", TEMPERED).leaping()
+    leaps, engine = bench.leaps, bench.run.engine
+    assert leaps is not None
+    bench.until(lambda _: not leaps.hindered(), 600.0)
+    calm_s = bench.now
+    bench.until(lambda one: one.now > calm_s + 5.0, 600.0)
+    engine.ctx.progress.step += 1
+    bench.until(lambda one: one.now > calm_s + 12.0, 600.0)
+    assert engine.leapt_s == 0.0
+
+
+def test_nothing_is_leapt_where_no_whole_number_of_scans_fits() -> None:
+    bench = TrackBench("grosch", TEMPERED, ["scan.enabled=45 Hz", "scan.idle=45 Hz"]).leaping()
+    bench.phase("temper")
+    begun_s = bench.now
+    bench.until(lambda one: one.now > begun_s + 15.0, 600.0)
+    assert bench.run.engine.leapt_s == 0.0
+
+
 def test_nothing_is_leapt_while_something_is_measured_or_asked() -> None:
     bench = TrackBench("grosch", TEMPERED).leaping()
     assert bench.leaps is not None and "idle" in bench.leaps.hindered()
