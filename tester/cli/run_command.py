@@ -45,7 +45,7 @@ NOT_DETACHED = {
 @bus_log_option
 @click.option(
     "--no-leaps", is_flag=True,
-    help="Simulated rig: make every scan, also while only heat flows; the results are the same.",
+    help="Simulated rig: make every scan, also while only heat flows; coefficients differ by 0.02 % at most.",
 )
 @click.option(
     "--fault", "faults", multiple=True, metavar="TEXT",
