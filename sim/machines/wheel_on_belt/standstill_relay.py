@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import inf
 from typing import Final
 
-TURNS_M_S: Final = 0.1
-"""Speed from which wheel or belt turns, m/s [A]."""
+TURNS_M_S: Final = 0.15
+"""Speed from which wheel or belt turns, m/s [A]: in a cool-down the wheel alone turns, at 0.1 m/s."""
 STANDS_M_S: Final = 0.01
 """Speed below which it stands, m/s [A]."""
 REACTS_S: Final = 0.02

@@ -21,7 +21,7 @@ from tester.machine.commission.stages import Stage, in_stages
 from tester.machine.proof import ProofStage, WatchdogProof
 
 TURNS_M_S: Final = 0.2
-"""Speed of wheel and belt, m/s [A]: the relay acts from 0.1 on, and ISO 10218-1 allows 0.25 near a person."""
+"""Speed of wheel and belt, m/s [A]: the relay acts from 0.15 on, and ISO 10218-1 allows 0.25 near a person."""
 SPIN_S: Final = 1.0
 """Time to get there, s [A]."""
 STANDS_SHARE: Final = 0.1
