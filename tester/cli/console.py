@@ -13,6 +13,7 @@ from typing import TextIO, cast
 
 from rich.console import Console as RichConsole
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
+from rich.table import Column
 from rich.text import Text
 
 from tester.base.clock import monotonic
@@ -135,7 +136,9 @@ class Console(ReportScreen):
             self._progress = Progress(
                 BarColumn(bar_width=12),
                 TextColumn("{task.percentage:3.0f} %"),
-                TextColumn("{task.description}", markup=False),
+                # The text gets what the bar and the share leave, and only the text is cut.
+                TextColumn("{task.description}", markup=False, table_column=Column(ratio=1, no_wrap=True)),
+                expand=True,
                 console=self._terminal,
                 transient=True,
             )

@@ -113,14 +113,15 @@ def test_the_time_left_is_wall_time_and_at_a_machines_pace_rig_time(wall_s: floa
 
 def test_a_terminal_shows_rig_time_and_wall_time_in_place(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
     monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("COLUMNS", "120")
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
     times = iter([0.0, 10.0])
     console = Console(as_json=False, answer_yes=True, clock=lambda: next(times))
     console.begin("short")
     for done_s in (0.0, 1000.0):
-        console.show(done_s, Progress(title="heat"), RunPosition(left_s=3000.0 - done_s, done_s=done_s))
+        console.show(done_s, Progress(title="heat " * 9), RunPosition(left_s=3000.0 - done_s, done_s=done_s))
     console.end()
-    assert "rig 0:16:40 of 0:50:00, about 20 s left" in capsys.readouterr().err
+    assert "   0 % rig 0:16:40 of 0:50:00, about 20 s left" in capsys.readouterr().err
 
 
 def test_texts_from_outside_are_no_markup(capsys: Output) -> None:
