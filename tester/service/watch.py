@@ -16,6 +16,7 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import quantities_on
 from tester.inputs.rig.rig_files import risks_of
 from tester.machine.connect import Stage
+from tester.machine.engine import Engine
 from tester.machine.run import Run
 from tester.machine.served import ServedKind
 from tester.machine.state import ControlState, Mode
@@ -34,9 +35,10 @@ read.
 class FrameLog:
     """The frames since the last message; if there are too many, the oldest are dropped."""
 
-    def __init__(self, can: CanPort, lines: Mapping[str, LinePort]) -> None:
+    def __init__(self, engine: Engine, lines: Mapping[str, LinePort]) -> None:
         """Watch nothing before ``watch``. ``lines`` by their names in the rig file."""
-        self._can = can
+        self._engine = engine
+        self._can: CanPort = engine.devices.can
         self._lines = dict(lines)
         self._frames: deque[tuple[float, str, bool, int, bytes]] = deque(maxlen=MOST)
         self._seen = 0
@@ -69,12 +71,12 @@ class FrameLog:
 
     def _on_can(self, t: float, can_id: int, data: bytes, sent: bool) -> None:
         self._seen += 1
-        self._frames.append((t, "can", sent, can_id, data))
+        self._frames.append((t + self._engine.leapt_s, "can", sent, can_id, data))
 
     def _on_line(self, line: str, t: float, data: bytes, sent: bool) -> None:
         """Record a piece of a line's traffic; its first byte is the station's address."""
         self._seen += 1
-        self._frames.append((t, line, sent, data[0] if data else 0, data))
+        self._frames.append((t + self._engine.leapt_s, line, sent, data[0] if data else 0, data))
 
 
 NO_MODE = "CONNECTING"
@@ -106,7 +108,7 @@ class RunWatch:
         self.values = ValueView(engine, self.panel)
         self.buses = BusWatch(engine.devices, self.rig)
         ports = [port for port, _ in engine.devices.lines]
-        self.frames = FrameLog(engine.devices.can, dict(zip(self.rig.lines, ports, strict=True)))
+        self.frames = FrameLog(engine, dict(zip(self.rig.lines, ports, strict=True)))
         self.alone = kind.alone(self.rig)
         self.track = track
         self.watched: set[str] = set()

@@ -54,3 +54,16 @@ def test_data_are_fresh_although_time_was_leapt() -> None:
     shown = watch.shown_in(replace(state(), t_s=bench.now), None)
     assert {value.quality for value in shown.values} == {"good"}
     assert max(device.age_s for device in shown.devices if device.age_s is not None) < 1.0
+
+
+def test_frames_have_rig_time_although_time_was_leapt() -> None:
+    bench = TrackBench("grosch", TEMPERED).leaping()
+    track = PlanTrack(bench.plan.name, [part_time(bench.config, bench.plan)])
+    frames = RunWatch(bench.run, track, TRACK).frames
+    bench.until(lambda one: one.run.engine.renewing, 600.0)
+    frames.watch(True)
+    begun_s = bench.now
+    bench.until(lambda one: one.now > begun_s + 0.5, 600.0)
+    shown = frames.take()
+    assert shown is not None and {frame.bus for frame in shown.frames} > {"can"}
+    assert all(begun_s - 0.1 <= frame.t_s <= bench.now for frame in shown.frames)
