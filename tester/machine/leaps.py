@@ -60,7 +60,8 @@ class Leaps:
         self.engine = engine
         self.world = world
         self.leapt_s = 0.0
-        """Rig time leapt in the present step of the plan, s; reported when the step is over."""
+        """Rig time leapt in the present step of the plan, s; reported when the step is over, or the run is
+        held or stops."""
         self._step = -1
         self._period_s = self._leap_s = 0.0
         self._calm_s = inf
@@ -75,6 +76,9 @@ class Leaps:
         """Leap if only heat flows; return the time of the next tick. ``later``: that time without a leap, rig s."""
         engine = self.engine
         ctx: AnyContext = engine.ctx
+        control: AnyControl = engine.control
+        if control.state.mode is not _RUN:
+            self._report()  # a run that stops here begins no other step
         if ctx.progress.step != self._step:
             self._report()
             self._step = ctx.progress.step

@@ -57,6 +57,14 @@ def test_the_record_states_how_much_was_leapt(every: TrackBench, leapt: TrackBen
     assert not [text for _, kind, text in every.kept.events if kind == "leap"]
 
 
+def test_the_record_of_a_run_that_is_stopped_in_a_wait_states_it_too() -> None:
+    bench = tempering()
+    bench.run.request_stop("asked")
+    bench.to_the_end()
+    stated = [float(text.split()[0]) for _, kind, text in bench.kept.events if kind == "leap"]
+    assert stated == [pytest.approx(bench.run.engine.leapt_s, abs=0.5)]
+
+
 def tempering() -> TrackBench:
     """Return a run that has leapt and renews its readings."""
     bench = TrackBench("grosch", TEMPERED).leaping()
