@@ -149,10 +149,10 @@ class InverterSlave(FrameByFrame):
     def _synchronise(self, now: float) -> None:
         if self.taken and self.values[0x1400, 2] <= 240:
             words = [int.from_bytes(self.taken[i:i + 2], "little", signed=i > 0) for i in range(0, len(self.taken), 2)]
-            told = dict(zip(self._entries(0x1600), words, strict=True))
-            self._command(told[0x6040])
+            mapped = dict(zip(self._entries(0x1600), words, strict=True))
+            self._command(mapped[0x6040])
             if self.state == "runs" and not self.cleared:
-                self.values[0x6042, 0] = told[0x6042]
+                self.values[0x6042, 0] = mapped[0x6042]
             self.cleared = False
         if self._open(0x1800) and self.values[0x1800, 2] <= 240:
             data = b"".join((self._shown((i, 0)) & 0xFFFF).to_bytes(2, "little") for i in self._entries(0x1A00))

@@ -95,8 +95,9 @@ class InverterCases:
             self._judge("write", abs(rate - asked) <= 0.51 / counts, f"0x{index:X} is {rate:g}, {asked:g} was asked")
         target = self.source.uniform(-1.0, 1.0) * config.max_speed
         seat.turn(target)
-        told, most = slave.values[0x6042, 0], slave.values[0x6046, 2]
-        self._judge("write", abs(told - target * counts) <= 0.51, f"0x6042 is {told}, {target * counts:.1f} was asked")
+        received, most = slave.values[0x6042, 0], slave.values[0x6046, 2]
+        self._judge("write", abs(received - target * counts) <= 0.51,
+                    f"0x6042 is {received}, {target * counts:.1f} was asked")
         self._judge("write", most == round(config.max_speed * counts), f"0x6046:02 is {most}")
         self._judge("read", abs(drive.actual - target) <= 1.01 / counts, f"{drive.actual} is shown at {target}")
         for _ in range(4):
@@ -124,8 +125,8 @@ class InverterCases:
         seat.turn(target)
         slave.fail(0x2310, seat.now)
         seat.run(0.1)
-        told = drive.emergency is not None and drive.emergency.code == 0x2310
-        self._judge("fault", drive.state is State.FAULT and told, f"{drive.state.name} after EMCY 0x2310")
+        reported = drive.emergency is not None and drive.emergency.code == 0x2310
+        self._judge("fault", drive.state is State.FAULT and reported, f"{drive.state.name} after EMCY 0x2310")
         seat.run(1.0)
         self._judge("fault", slave.values[0x6042, 0] == 0 or slave.state == "fault", "it is enabled again by itself")
         drive.reset_fault()
