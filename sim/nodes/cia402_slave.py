@@ -31,6 +31,7 @@ _CONTROLWORD: Final = (o.CONTROLWORD, 0)
 _OUTPUTS: Final = (o.DIGITAL_OUTPUTS, 1)
 _OUTPUT_MASK: Final = (o.DIGITAL_OUTPUTS, 2)
 _NO_MASK: Final = 0xFFFF_FFFF
+_OPERATING: Final = State.OPERATION_ENABLED  # bound once: a look-up on the enum class costs several times as much
 _TARGET_VELOCITY: Final = (o.TARGET_VELOCITY, 0)
 _MAX_TORQUE: Final = (o.MAX_TORQUE, 0)
 
@@ -147,7 +148,7 @@ class Cia402Slave(DrivePower):
             self.watching = self._leaving is not None
             return
         leaving = self._leaving is not None
-        self.watching = mode.watch(t, self.state is State.OPERATION_ENABLED and not leaving) or leaving
+        self.watching = mode.watch(t, self.state is _OPERATING and not leaving) or leaving
         if mode.bits != self._mode_bits:
             self.update(t)
 
@@ -226,7 +227,7 @@ class Cia402Slave(DrivePower):
         self._command(controlword, t)
         mode = self.mode
         if mode is not None:
-            self._steady = self.state is State.OPERATION_ENABLED and self._leaving is None
+            self._steady = self.state is _OPERATING and self._leaving is None
             if self._steady:
                 mode.follow(controlword, t)
             else:

@@ -39,6 +39,7 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
         self.failed = ""
         """Why the zero of the load cell is not trustworthy, which ends the run; "" if it is."""
         self._looked = False
+        self._planned = step.repeats * step.scheme.repeats_each
 
     @property
     def in_repeat(self) -> bool:
@@ -78,7 +79,7 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
         """Advance by one scan; return True when the condition is committed."""
         progress, step = ctx.progress, self.condition
         progress.condition, progress.repeat = step.condition, self.repeat
-        progress.repeats = max(step.repeats * step.scheme.repeats_each, self.repeat)
+        progress.repeats = self._planned if self._planned > self.repeat else self.repeat
         if self.outcome is not None:
             return self._committed(ctx)
         if self.measuring is None:

@@ -87,7 +87,8 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         else:
             self._watch(demand, readings, scan_s, dt)
         mode = state.mode
-        state.last_late_s = max(0.0, now - state.last_s - scan_s) if state.last_s > -inf else 0.0
+        late_s = now - state.last_s - scan_s
+        state.last_late_s = late_s if 0.0 < late_s < inf else 0.0
         state.last_s = now
         if mode is _RUN:
             self.run_outputs(demand, readings, dt)

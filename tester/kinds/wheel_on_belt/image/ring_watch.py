@@ -37,7 +37,7 @@ class SlipRingWatch:
         self.segments: list[RingSegment] = [RingSegment()]
         self._requests = self._failures = 0
         self._asked_rev = self._asked_rev_s = 0.0
-        self._last_rev = self._last_rev_s = 0.0
+        self._last_rev = self._last_rad_s = 0.0
 
     def look(self, angle_rev: float, wheel_rad_s: float) -> None:
         """Read the counters in a scan, with the wheel's turns since it was mounted and its speed in rad/s."""
@@ -46,15 +46,17 @@ class SlipRingWatch:
         if failed != self._failures:
             self._note(failed - self._failures)
             self._failures = failed
+        segment = self.segments[-1]
         if requests != self._requests:
-            segment = self.segments[-1]
-            segment.requests[speed_class(self._last_rev_s)] += requests - self._requests
+            self._asked_rev, self._asked_rev_s = self._last_rev, abs(self._last_rad_s) / _TURN
+            segment.requests[speed_class(self._asked_rev_s)] += requests - self._requests
             self._requests = requests
-            self._asked_rev, self._asked_rev_s = self._last_rev, self._last_rev_s
         if angle_rev < self._last_rev - 0.5:  # another wheel
-            self.segments.append(RingSegment())
-        self.segments[-1].turns = max(self.segments[-1].turns, angle_rev)
-        self._last_rev, self._last_rev_s = angle_rev, abs(wheel_rad_s) / _TURN
+            segment = RingSegment()
+            self.segments.append(segment)
+        if angle_rev > segment.turns:
+            segment.turns = angle_rev
+        self._last_rev, self._last_rad_s = angle_rev, wheel_rad_s
 
     def _note(self, more: int) -> None:
         segment = self.segments[-1]

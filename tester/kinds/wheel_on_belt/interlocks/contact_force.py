@@ -112,7 +112,7 @@ class ForceObserver:
             kept -= 1
         if kept:
             first = (at - kept) % PLACES
-            self._compare(r, first, min(elapsed_s, WINDOW_S))
+            self._compare(r, first, elapsed_s if elapsed_s < WINDOW_S else WINDOW_S)
         times[at], self._forces[at], self._frictions[at], self._places[at] = now, force, r.force_x_n, place
         self._at = (at + 1) % PLACES
         self.kept = kept + 1 if kept < PLACES - 1 else kept

@@ -156,15 +156,14 @@ class CentredBursts(MeasuredRepeat):
     def _burst_over(self, ctx: Context, surface: float, rate: float) -> bool:
         if self.rolling_only:
             return ctx.now - self.burst.counted_s > BLIND_S
-        target, band = self.target_c, self.band_k
-        start = self.burst.began_c
-        below = self.offset_k if isnan(start) else target - start
-        limit = target + min(band, max(below, CENTRED_K) + 0.2)
-        if surface >= limit:
-            return True
-        mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
-        if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
-            return True
+        target, start = self.target_c, self.burst.began_c
+        if surface > target:
+            below = self.offset_k if isnan(start) else target - start
+            if surface >= target + min(self.band_k, max(below, CENTRED_K) + 0.2):
+                return True
+            mean = self.surface_sum_k / self.surface_count if self.surface_count else 0.0
+            if mean > MEAN_LIMIT_K and surface > target + MEAN_LIMIT_K:
+                return True
         window = self.window_rev
         if window is not None and not isnan(start):
             share = 0.5 if surface - start > SPLIT_RISE_K else 1.0

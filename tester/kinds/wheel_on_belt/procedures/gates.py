@@ -39,9 +39,8 @@ class Average:
 
     def update(self, x: float, target: float, dt: float) -> float:
         """Add a value that lasted ``dt`` s; return the average."""
-        value = self.value
-        off, jump = abs(x - target), RESTART_SHARE * abs(target)
-        if (off > self.floor and off > jump) or not -_INF < value < _INF:
+        value, off = self.value, abs(x - target)
+        if (off > self.floor and off > RESTART_SHARE * abs(target)) or not -_INF < value < _INF:
             self.value = x
             self.age_s = 0.0
             return x
@@ -123,7 +122,8 @@ class Gates:
         ):
             mask |= _SPEED
         slip = self.slip.update(r.slip_m_s, t.slip_m_s, dt)
-        if not abs(slip - t.slip_m_s) <= max(self._slip_share * t.slip_m_s, self._slip_floor_m_s):
+        off_m_s, floor_m_s = abs(slip - t.slip_m_s), self._slip_floor_m_s
+        if not off_m_s <= floor_m_s and not off_m_s <= self._slip_share * t.slip_m_s:
             mask |= _SLIP
         surface = self.surface
         if r.surface_at_s > surface.stamp_s:
