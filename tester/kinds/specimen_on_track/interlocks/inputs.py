@@ -129,6 +129,13 @@ class TrackInputs(ScanInputs):
     off_since_s: float = inf
     """Time since which the chamber, commanded to standby, has given output; infinite while it gives none."""
 
+    def seldom(self) -> tuple[object, ...] | None:
+        r = self.readings
+        return (
+            r.safety_chain, r.guard_closed, r.bus_fault, r.drive_fault, r.foreign_master, r.device_fault, r.line_errors,
+            r.drives_enabled, self.demand.enabled, self.confirmed,
+        )  # fmt: skip
+
 
 Row: TypeAlias = Interlock[TrackInputs]
 

@@ -12,6 +12,7 @@ from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.machine.interlock_table import RigTable
 from tester.machine.state import Mode
 from tests.tester.kinds.specimen_on_track.bench import TrackBench
+from tests.tester.machine.seldom import expect_every_scan
 
 
 @pytest.fixture
@@ -29,6 +30,11 @@ def held(bench: TrackBench) -> list[str]:
 
 def test_no_row_holds_while_it_slides(sliding: TrackBench) -> None:
     assert held(sliding) == []
+
+
+def test_a_row_that_is_seldom_evaluated_holds_in_every_scan_in_which_its_condition_does(sliding: TrackBench) -> None:
+    view: TrackInputs = sliding.run.engine.control.view
+    expect_every_scan(TABLE, view, [view, view.readings, view.demand, view.setpoints])
 
 
 def unknown(name: str, value: object = nan) -> Callable[[TrackInputs], None]:

@@ -3,62 +3,25 @@
 from __future__ import annotations
 
 import random
-from dataclasses import fields
-from math import inf, nan
-from typing import Any
+from math import nan
 
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.machine.inputs import ScanInputs
 from tester.machine.interlock_table import RigTable
-from tester.machine.row import SELDOM
 from tests.tester.kinds.wheel_on_belt.control.conftest import Bench
-
-ROWS = [row for row in TABLE.rows if row.when is SELDOM]
-OWN = ("seen", "seen_held")
-"""Fields of the inputs that no row may read."""
-
-
-def places(bench: Bench) -> list[tuple[Any, str]]:
-    """Return every number, state and text that the inputs of the rows hold: the object and the field's name."""
-    view = bench.control.view
-    parts = [view, view.readings, view.demand, view.setpoints, view.stop, view.stop_start, view.contact, view.jacket,
-             view.surface, view.heat, view.wheel, view.belt, view.press, view.free, view.force]  # fmt: skip
-    return [
-        (part, field.name)
-        for part in parts
-        for field in fields(part)
-        if field.name not in OWN and isinstance(getattr(part, field.name), bool | int | float | str)
-    ]
-
-
-def other(value: object, random_numbers: random.Random) -> object:
-    """Return another value of the same type, as a rig may bring it."""
-    if isinstance(value, bool):
-        return not value
-    if isinstance(value, str):
-        return "" if value else "faulty"
-    number = float(value) if isinstance(value, int | float) else 0.0
-    return random_numbers.choice([nan, inf, -inf, 0.0, 100.0, -100.0, number + 1.0, number - 1.0])
+from tests.tester.machine.seldom import expect_every_scan
 
 
 def test_a_row_that_is_seldom_evaluated_holds_in_every_scan_in_which_its_condition_does(bench: Bench) -> None:
-    view, numbers = bench.control.view, random.Random(1)
-    table = RigTable(TABLE, view.parameters)
-    usual = [(part, name, getattr(part, name)) for part, name in places(bench)]
-    held: set[str] = set()
-    for _ in range(1500):
-        for part, name, value in usual:  # among many faults no row depends on one value alone
-            setattr(part, name, value)
-        for _ in range(10):
-            part, name, value = numbers.choice(usual)
-            setattr(part, name, other(value, numbers))
-            if numbers.random() < 0.1:
-                view.hub_setpoints[:] = numbers.choice([[], [(0.0, 40.0)], [(0.0, 120.0)]])
-            now = TABLE.names_of(table.held(view))
-            expected = {row.name for row in ROWS if row.holds(view)}
-            assert expected == {row.name for row in ROWS if row.name in now}
-            held |= expected
-    assert held == {row.name for row in ROWS}
+    view = bench.control.view
+
+    def change_setpoints(numbers: random.Random) -> None:
+        if numbers.random() < 0.1:
+            view.hub_setpoints[:] = numbers.choice([[], [(0.0, 40.0)], [(0.0, 120.0)]])
+
+    parts = [view, view.readings, view.demand, view.setpoints, view.stop, view.stop_start, view.contact, view.jacket,
+             view.surface, view.heat, view.wheel, view.belt, view.press, view.free, view.force]  # fmt: skip
+    expect_every_scan(TABLE, view, parts, change_setpoints)
 
 
 def test_they_are_evaluated_again_only_after_a_change(bench: Bench) -> None:
