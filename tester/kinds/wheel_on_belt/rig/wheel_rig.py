@@ -141,6 +141,11 @@ def _press(rig: RigConfig) -> _Found:
     problem = torque_problem(rig)
     if problem:
         yield ("axes", "press", "screw"), problem
+    screw, limits = rig.axes.press.screw, rig.axes.press.software_limits
+    if screw is not None and limits is not None and screw.spring_n and not screw.lifts_n(limits[0]) > 0.0:
+        # "press spring" compares a share of this force.
+        message = f"leaves the spring without force at {limits[0]:g} mm (axes.press.software_limits)"
+        yield ("axes", "press", "screw", "spring_rate"), message
 
 
 def _skew(rig: RigConfig) -> _Found:

@@ -6,6 +6,8 @@ import math
 
 import pytest
 
+from tester.base.source import InvalidSource
+from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.image.process_image import Readings
 from tester.kinds.wheel_on_belt.interlocks.monitors import LEAST_READINGS, UNDER_WAY_MM, FreeTravel
 
@@ -91,3 +93,9 @@ def test_a_torque_that_is_not_known_is_beyond_every_limit() -> None:
     travel.go(1.0)
     travel.gain = math.nan
     assert not travel.go(-1.0) <= 0.05
+
+
+def test_a_spring_without_force_within_the_travel_is_refused() -> None:
+    with pytest.raises(InvalidSource) as error:
+        load_rig("sim", overrides=("axes.press.screw.spring_rate=40 N/mm",))
+    assert "leaves the spring without force at -1 mm" in str(error.value)
