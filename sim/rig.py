@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 SHORTEST_STEP_S: Final = 1e-3
 LONGEST_STEP_S: Final = 0.1
 """Least and greatest step of the machine, s."""
+LEAP_STEP_S: Final = 0.125
+"""Step of the machine in a leap, s [A]: only heat flows, and a controller's loop has the same cycle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +111,7 @@ class SimRig:
         self.now_s = self.plant_s = 0.0
         self.leapt_s = 0.0
         """Rig time that has passed without the wires; ``now_s`` and ``plant_s`` are times on the wires."""
-        self._served: dict[str, dict[bytes, int]] = {}
+        self._served: dict[str, dict[int, int]] = {}
         self._drives = tuple(self.axes.values())
         self._timed = tuple(slave for slave in every.values() if slave.due_s < inf)
         self._dithered = tuple(
@@ -165,31 +167,31 @@ class SimRig:
         """Begin to count how often each device is read."""
         self._served = {name: slave.served() for name, slave in self.wired.items()}
 
-    def readings_since(self) -> dict[str, dict[bytes, int]]:
-        """Return how often each device was read since ``count_readings``: its requests and their numbers."""
+    def readings_since(self) -> dict[str, dict[int, int]]:
+        """Return how often each block of each device was read since ``count_readings``."""
         return {
-            name: {frame: count - self._served[name].get(frame, 0) for frame, count in slave.served().items()}
+            name: {block: count - self._served[name].get(block, 0) for block, count in slave.served().items()}
             for name, slave in self.wired.items()
         }
 
-    def leap(self, seconds: float, step_s: float, each: Mapping[str, Mapping[bytes, int]]) -> None:
+    def leap(self, seconds: float, each: Mapping[str, Mapping[int, int]]) -> None:
         """Let time pass in which drives and wires do not change: heat flows, and controllers run their loops.
 
-        ``seconds``: a multiple of the controllers' cycles and of ``step_s``, the plant's step, which is that of the
-        scans. ``each``: how often each device would have been read in this time; the noise of these readings is drawn.
+        ``seconds``: a multiple of the controllers' cycles and of the plant's step. ``each``: how often each block of
+        each device would have been read in this time; the noise of these readings is drawn.
         """
-        steps = round(seconds / step_s)
+        steps = round(seconds / LEAP_STEP_S)
         still = all(drive.axis.still for drive in self._drives)
         begin = self.now_s
         for i in range(1, steps + 1):
-            t1 = begin + i * step_s
+            t1 = begin + i * LEAP_STEP_S
             for device in self._timed:
                 if device.due_s <= t1:
                     device.leap(t1, begin)
             self.follow(t1, still)
-        for name, requests in each.items():
-            for frame, count in requests.items():
-                self.wired[name].draw(frame, count, begin)
+        for name, blocks in each.items():
+            for block, count in blocks.items():
+                self.wired[name].draw(block, count, begin)
         for device in self._timed:
             device.due_s -= seconds
         self.put_back(seconds)

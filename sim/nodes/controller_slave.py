@@ -117,6 +117,9 @@ class ControllerSlave(ModbusSlave):
             self._cycle(self.due_s)
             self.due_s += self._cycle_s
 
+    def draw(self, block: int, count: int, t: float) -> None:
+        self.dither = (self.dither + count) & 3
+
     def leap(self, until_s: float, now: float) -> None:
         while self.due_s <= until_s:
             self._cycle(now)

@@ -98,18 +98,12 @@ class ModbusSlave:
 
     # leaps -----------------------------------------------------------------------------------------------------
 
-    def served(self) -> dict[bytes, int]:
-        """Return how many replies each read request has had."""
-        return {frame: read.served for frame, read in self._reads.items()}
+    def served(self) -> dict[int, int]:
+        """Return how many replies each of ``blocks`` has had."""
+        return {read.block: read.served for read in self._reads.values() if read.block >= 0}
 
-    def draw(self, frame: bytes, count: int, t: float) -> None:
-        """Take ``count`` readings as if the request had come as often: their noise is used up."""
-        read = self._reads[frame]
-        for _ in range(count):
-            if read.block >= 0:
-                self.sample(read.block, t)
-            else:
-                self.refresh(t)
+    def draw(self, block: int, count: int, t: float) -> None:
+        """Use up the noise of ``count`` readings of a block at ``t`` s, as if the requests had come."""
 
     # hooks for a device ----------------------------------------------------------------------------------------
 

@@ -137,6 +137,12 @@ class SensorSlave(ModbusSlave):
         found = [self._quantities[signal.name] for signal in block.signals]
         return [quantity if isinstance(quantity, float | int) else quantity() for quantity in found]
 
+    def draw(self, block: int, count: int, t: float) -> None:
+        registers = self._shown[block].block
+        for _ in range(count):
+            self.measure(t, registers)
+        self.dither = (self.dither + count) & 3
+
     def refresh(self, t: float) -> None:
         """Sample at ``t`` s."""
         for number, one in enumerate(self._shown):

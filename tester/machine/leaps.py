@@ -1,8 +1,8 @@
 """Leaps: on a simulated rig in virtual time, time in which only heat flows passes without scans.
 
 ``Leaps.hindered`` decides and gives the reason. Wires, drives and drivers do not notice a leap: their clock stands
-still. The plant's heat flows in the same steps as between scans, controllers run their loops, and each device draws the
-noise of the readings that it was not asked for. A leap lasts a common multiple of the periods in which devices are
+still. The plant's heat flows, controllers run their loops, and each device draws the noise of the readings that it was
+not asked for. A leap lasts a common multiple of the periods in which devices are
 read: after it each is where it would have been, and noise belongs to a moment.
 
 After a leap the wires run for ``RENEW_S`` before the next scan, so that it finds readings of every device.
@@ -30,8 +30,8 @@ MOST_S: Final = 20.0
 """Longest leap, s [A]; no leap where the periods of scans and devices have no common multiple as short."""
 RENEW_S: Final = 1.0
 """Time after a leap in which only the wires run and renew every reading, s [A]: several periods of each device."""
-MOST_K: Final = 0.5
-"""No leap while a temperature changes by more in its time, K [A]: less than a row calls a jump."""
+MOST_K: Final = 1.0
+"""No leap while a temperature changes by more in its time, K [A]: a chamber at full output moves by 0.9 K in 9 s."""
 _TINY_S: Final = 1e-6
 _RUN: Final = Mode.RUN
 
@@ -43,12 +43,12 @@ class LeapingWorld(Protocol):
         """Begin to count how often each device is read."""
         ...
 
-    def readings_since(self) -> dict[str, dict[bytes, int]]:
-        """Return how often each device was read since then, by its requests."""
+    def readings_since(self) -> dict[str, dict[int, int]]:
+        """Return how often each device was read since then, by the blocks of its profile."""
         ...
 
-    def leap(self, seconds: float, step_s: float, each: Mapping[str, Mapping[bytes, int]]) -> None:
-        """Let ``seconds`` pass on the plant alone, in steps of ``step_s``."""
+    def leap(self, seconds: float, each: Mapping[str, Mapping[int, int]]) -> None:
+        """Let ``seconds`` pass on the plant alone."""
         ...
 
 
@@ -66,7 +66,7 @@ class Leaps:
         self._period_s = self._leap_s = 0.0
         self._calm_s = inf
         """Since when nothing but heat has changed, rig s."""
-        self._each: dict[str, dict[bytes, int]] = {}
+        self._each: dict[str, dict[int, int]] = {}
         """The readings of each device in the time of a leap."""
         self._before_s = 0.0
         self._before_c: tuple[float, ...] = ()
@@ -97,7 +97,7 @@ class Leaps:
         if not self._each or not self._slow(now, ctx.calm()) or self._leap_s > MOST_S:
             return later
         self._before_s, self._before_c = now, ctx.calm()
-        self.world.leap(self._leap_s, engine.period_s, self._each)
+        self.world.leap(self._leap_s, self._each)
         engine.leap(self._leap_s, RENEW_S)
         self.leapt_s += self._leap_s
         return floor((later + self._leap_s) * 1e6 + 0.5) / 1e6

@@ -21,7 +21,9 @@ from tests.tester.kinds.specimen_on_track.bench import TrackBench
 
 SEEDS, SAMPLE_SEEDS = 20, 2
 RECIPES = (("grosch", "grosch"), ("grosch-talc", "grosch"), ("pin-on-disc", "pin-on-disc"))
-"""Recipes and their rigs."""
+"""Recipes and their rigs ..."""
+CHAMBERS = ("grosch",)
+"""... those with a chamber, for which a run waits."""
 MOST_PERCENT, MOST_K = 0.02, 0.05
 """Most by which a coefficient and its temperature may differ."""
 TWO = "0 degC, 30 degC"
@@ -90,7 +92,7 @@ def measure(recipe: str, rig: str, seeds: int, *, sample: bool) -> int:
         (f"coefficient, worst of {len(apart)}", f"{percent:.4f} %", f"<= {MOST_PERCENT:g} %", percent <= MOST_PERCENT),
         ("temperature, worst", f"{kelvin:.4f} K", f"<= {MOST_K:g} K", kelvin <= MOST_K),
         ("repeats in one run only", f"{lost}", f"1 in {LOST_IN}", lost * LOST_IN <= len(apart)),
-        ("leapt", f"{leapt_s:.0f} s", "some", leapt_s > 0.0),
+        ("leapt", f"{leapt_s:.0f} s", "some with a chamber", leapt_s > 0.0 or rig not in CHAMBERS),
     ]
     for name, value, asked, met in figures:
         print(f"{'ok  ' if met else 'MISS'} {recipe}: {name}: {value} (asked: {asked})", flush=True)
