@@ -2,8 +2,8 @@
 
 ``Leaps.hindered`` decides and gives the reason. Wires, drives and drivers do not notice a leap: their clock stands
 still. The plant's heat flows, controllers run their loops, and each device draws the noise of the readings that it was
-not asked for. A leap lasts a common multiple of the periods in which devices are
-read: after it each is where it would have been, and noise belongs to a moment.
+not asked for. A leap lasts a common multiple of the periods in which devices are read: after it each is where it would
+have been, and noise belongs to a moment.
 
 After a leap the wires run for ``RENEW_S`` before the next scan, so that it finds readings of every device.
 """
@@ -87,14 +87,14 @@ class Leaps:
             return later
         if engine.period_s != self._period_s:
             self._calm_s, self._leap_s = inf, 0.0
-        if engine.period_s <= engine.sliding_s or self.hindered():
+        if engine.period_s <= engine.sliding_s or self.stirred():
             self._calm_s = inf
             return later
         if self._calm_s == inf:
             self._begin(now, ctx.calm())
         if not self._each and now - self._calm_s >= self._leap_s - _TINY_S:
             self._each = self.world.readings_since()
-        if not self._each or not self._slow(now, ctx.calm()) or self._leap_s > MOST_S:
+        if self.hindered(now):
             return later
         self._before_s, self._before_c = now, ctx.calm()
         self.world.leap(self._leap_s, self._each)
@@ -102,8 +102,8 @@ class Leaps:
         self.leapt_s += self._leap_s
         return floor((later + self._leap_s) * 1e6 + 0.5) / 1e6
 
-    def hindered(self) -> str:
-        """Return why time may not be leapt now; "" if it may."""
+    def stirred(self) -> str:
+        """Return why readings may not be counted for a leap, since more than heat may change; "" if they may."""
         engine = self.engine
         ctx: AnyContext = engine.ctx
         control: AnyControl = engine.control
@@ -120,10 +120,24 @@ class Leaps:
             return "not every axis is at rest and unloaded, or this kind of machine makes every scan"
         if engine.devices.busy() or engine.devices.lost or engine.devices.alarm():
             return "a drive is being set up, or reports something"
-        executor: Executor[AnyContext] = engine.executor
+        return ""
+
+    def hindered(self, now: float) -> str:
+        """Return why time may not be leapt at ``now``, rig s; "" if it may."""
+        stirred = self.stirred()
+        if stirred:
+            return stirred
+        if not self._each:
+            return "readings are still being counted"
+        if self._leap_s > MOST_S:
+            return "the periods of the devices have no short common multiple"
+        ctx: AnyContext = self.engine.ctx
+        executor: Executor[AnyContext] = self.engine.executor
         activity = executor.activity
-        if not isinstance(activity, Waits) or activity.waits_s(ctx) < self._leap_s + RENEW_S + engine.period_s:
+        if not isinstance(activity, Waits) or activity.waits_s(ctx) < self._leap_s + RENEW_S + self._period_s:
             return "the step of the plan may act"
+        if not self._slow(now, ctx.calm()):
+            return "a temperature changes fast"
         return ""
 
     def _begin(self, now: float, temperatures_c: tuple[float, ...]) -> None:
