@@ -28,7 +28,7 @@ SETTLES: Final = {"linear": 1.7, "disc": 0.35}
 """Windows until friction is stationary; on a linear track forward and back together. From simulated runs [A]."""
 CHAMBER_K_S: Final = 0.045
 """Rate of the chamber from one temperature to another, K/s [A]."""
-LEAPT: Final = 0.5
+LEAPT: Final = 0.9
 """Share of the time at the chamber that is leapt; from simulated runs [A]."""
 LIKELY_MU: Final = 1.0
 """Coefficient without a known law [A]."""
