@@ -140,6 +140,7 @@ def test_a_client_may_come_after_one_that_is_gone(bench: Bench, connect: Connect
 
 
 def test_a_drive_that_watched_a_client_stops_when_it_is_gone(bench: Bench, connect: Connect) -> None:
+    bench.rig.relay = None  # it would take the torque off a wheel that turns beside a belt at rest
     client = Client(bench, connect(can_address(bench.server)))
     bench.run(0.3)
     client.send(HEARTBEAT)

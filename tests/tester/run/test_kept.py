@@ -51,7 +51,7 @@ def test_drives_answer_by_the_clock_of_the_wires_which_leaps_hold() -> None:
     track = load_rig("grosch")
     ports, rig, _ = simulated_ports(track, 0, None)
     rig.advance(1.0)
-    rig.leap(600.0, 0.05, {})
+    rig.leap(600.0, {})
     notes, before_s = Notes(), rig.can.occupied_s
     record_kept(track, ports, rig, 601.0, notes, 600.0)  # type: ignore[arg-type]
     assert {device for device, _ in notes.rows} == set(track.drives())
