@@ -62,9 +62,8 @@ class ModbusLink(LineType):
             raise ValueError(f"a Modbus address is 1..247, not {unit_id}")
         if any(other.unit_id == unit_id for other in self.stations):
             raise ValueError(f"two devices have Modbus address {unit_id} on one line")
-        station = Station(unit_id, timing, owner)
-        self.stations.append(station)
-        return station
+        self.stations.append(Station(unit_id, timing, owner))
+        return self.stations[-1]
 
     def enable(self, request: Request, due_s: float = -inf) -> None:
         """Send a request at ``due_s`` (s; at once by default), then in its period."""
@@ -77,16 +76,14 @@ class ModbusLink(LineType):
         self.wants_s = -inf
 
     def rewrite(self, request: Request, values: tuple[int, ...], urgent: bool = False) -> None:
-        """Set the ``values`` of a write from now on: the newest values replace those still waiting.
+        """Set the ``values`` of a write from now on: new values replace those still waiting.
 
         If enabled, the write goes out as soon as its turn comes; an ``urgent`` write goes before everything else.
-        Unchanged values change nothing.
         """
-        if values == request.values:
-            return
-        self.load(request, values)
-        self._schedule.renew(request, urgent)
-        self._backlog_s = self.wants_s = -inf
+        if values != request.values:
+            self.load(request, values)
+            self._schedule.renew(request, urgent)
+            self._backlog_s = self.wants_s = -inf
 
     def periods_s(self) -> list[float]:
         """Return the periods of the reads that have one, s."""

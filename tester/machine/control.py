@@ -45,8 +45,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         hold_at_most_s: float,
         ack_wait_s: float,
     ) -> None:
-        """Store the kind's parts. ``withdrawn`` and ``held`` are fresh demands for the modes that ignore the recipe's
-        demand.
+        """Store the kind's parts. ``withdrawn``, ``held``: fresh demands for the modes that ignore the recipe's demand.
 
         ``hold_at_most_s``: after this time a hold ends in a controlled stop. ``ack_wait_s``: an acknowledgement waits
         this long for the last cause to clear.
@@ -81,11 +80,8 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         dt = now - state.last_s
         if not (0.0 <= dt <= 0.2):
             dt = 0.2 if dt > 0.2 else 0.0
-        if self._leapt_s:
-            self._watch(demand, readings, scan_s, dt + self._leapt_s)  # sums and averages count the whole time
-            self._leapt_s = 0.0
-        else:
-            self._watch(demand, readings, scan_s, dt)
+        self._watch(demand, readings, scan_s, dt + self._leapt_s)  # sums and averages count a leap whole
+        self._leapt_s = 0.0
         mode = state.mode
         late_s = now - state.last_s - scan_s
         state.last_late_s = late_s if 0.0 < late_s < inf else 0.0
@@ -103,13 +99,10 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
     def _disable_voltage(self, now: float) -> None:
         """Disable every drive's voltage once none has needed power for ``VOLTAGE_S``.
 
-        The usual way down follows the drive's statusword. A drive that repeats an old one would stay on.
-        """
+        The usual way down follows the drive's statusword. A drive that repeats an old one would stay on."""
         state, out = self.state, self.state.setpoints
-        if out.quick_stop and not self.motion_over():
-            state.unwanted_s = inf
-        elif state.unwanted_s > now:
-            state.unwanted_s = now
+        moves = out.quick_stop and not self.motion_over()
+        state.unwanted_s = inf if moves else min(state.unwanted_s, now)
         out.voltage_off = now - state.unwanted_s > VOLTAGE_S
 
     def _other(self, mode: Mode, readings: ReadingsT, dt: float) -> None:
@@ -205,9 +198,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
             state.enter(_STOPPING, now, why)
 
     def request_ack(self, now: float, by: str = "") -> str:
-        """Acknowledge a latched trip: IDLE follows once every cause is gone. Return "", or the reason for refusing;
-        idempotent.
-        """
+        """Acknowledge a latched trip: IDLE follows once every cause is gone. Return "" or the refusal; idempotent."""
         state = self.state
         if state.mode is not _LATCHED:
             return f"nothing to acknowledge: the rig is in {state.mode.value}"
