@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import sys
 from array import array
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from tester.base import clock
-from tester.machine.tickers import Leaping, Ticked, TickedWorld, run_simulated
+from tester.machine.tickers import Ticked, TickedWorld, run_simulated
 from tester.run import part_run, preconditions
 from tester.service import service
 from tester.service.command_handler import Orders
@@ -93,17 +93,10 @@ def note_stops(file: Path) -> None:
 def note_scans(file: Path) -> None:
     """Write the scans of each run behind those before it."""
 
-    def ticked(
-        engine: Ticked,
-        world: TickedWorld,
-        *,
-        lapse: float | None,
-        poll: Callable[[float], None],
-        leaps: Leaping | None = None,
-    ) -> float:
+    def ticked(engine: Ticked, world: TickedWorld, **options: Any) -> float:
         notes: array[float] = array("d")
         try:
-            return run_simulated(Noted(engine, notes), world, lapse=lapse, poll=poll, leaps=leaps)
+            return run_simulated(Noted(engine, notes), world, **options)
         finally:
             with file.open("ab") as out:
                 notes.tofile(out)
