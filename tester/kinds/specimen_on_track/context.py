@@ -119,7 +119,9 @@ class TrackContext(BaseContext[TrackConfig, TrackReadings, TrackDemand]):
 
     def calm(self) -> tuple[float, ...]:
         r = self.readings
-        if self.demand.track_m_s != 0.0 or not abs(r.track_m_s) <= self._still_m_s or not r.raised:
+        if self.demand.lowered or not r.raised:
+            return ()
+        if self.demand.track_m_s != 0.0 or not abs(r.track_m_s) <= self._still_m_s:
             return ()
         return r.air_c, r.contact_c
 
