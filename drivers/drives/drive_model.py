@@ -69,7 +69,7 @@ class Units:
     torque: float = 1.0
     """Counts of 0x6072 and 0x6077 per mille of the rated torque."""
     target_rpm: float = 1.0
-    """Velocity mode: r/min of the motor for each count of 0x6042; 0x604C, where the drive has it, is set to it."""
+    """Velocity mode: r/min of the motor for each count of 0x6042, written to 0x604C where the drive has it."""
     rated_torque_nm: float = 0.001
     """N m per count of 0x6076."""
 

@@ -8,7 +8,7 @@ from math import isnan
 from typing import Final
 
 LEAP: Final = "leap"
-"""Kind of the event at the end of a step of which time was leapt (``tester.machine.leaps``); its data: how much, s."""
+"""Kind of the event that ends a step with leaps (``tester.machine.leaps``); its data are the seconds leapt."""
 
 
 @dataclass(frozen=True, slots=True)

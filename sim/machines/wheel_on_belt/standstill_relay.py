@@ -8,7 +8,7 @@ from typing import Final
 TURNS_M_S: Final = 0.15
 """Speed from which wheel or belt turns, m/s [A]: in a cool-down the wheel alone turns, at 0.1 m/s."""
 STANDS_M_S: Final = 0.01
-"""Speed below which it stands, m/s [A]."""
+"""A slower wheel or belt is at rest, m/s [A]."""
 REACTS_S: Final = 0.02
 """Time from the condition to the torque off, s [A]: a standstill monitor and a contactor's coil."""
 

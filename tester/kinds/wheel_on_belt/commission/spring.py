@@ -31,7 +31,7 @@ PARTS: Final = 3
 """Parts of the travel that are compared: a spring whose force grows differs at the ends."""
 LEAST_TRAVEL_SHARE: Final = 0.9
 FRICTION_SHARE: Final = 0.2
-"""Share of a growth by which both ways may differ: a screw of 83 % [A]."""
+"""The growths measured on the two ways may differ by this share: a screw of 83 % efficiency [A]."""
 ROUNDED: Final = 4.0
 """... and standard uncertainties of the growth: digits of a torque that hardly changes [A]."""
 
