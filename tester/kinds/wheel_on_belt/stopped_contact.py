@@ -8,7 +8,7 @@ one of them stands and the other turns must: ``arming.standstill_relay``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from math import ceil
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -168,10 +168,13 @@ def _heat(one: PlannedContact, times: Stopping) -> str:
 
 def counted_on(rig: RigConfig, plan: Plan) -> list[str]:
     """Return the line of a run's record: the plan's contact with the most heat on a part at rest, and what holds it."""
-    contacts = list(_contacts(rig, plan))
-    if not contacts:
+    asked: dict[tuple[str, float, float], float] = {}
+    for compound, load_n, speed_m_s, hottest_c in _asked(rig, plan):
+        key = compound, load_n, speed_m_s
+        asked[key] = max(hottest_c, asked.get(key, hottest_c))
+    worst = _worst(rig, [contact(rig, *key, hottest_c) for key, hottest_c in asked.items()])
+    if worst is None:
         return []
-    worst = max(contacts, key=lambda one: one.power_w * stopping(rig, one.load_n, one.speed_m_s).worst_s)
     why = unheld(rig, worst)
     if not why:
         times = stopping(rig, worst.load_n, worst.speed_m_s)
@@ -179,17 +182,35 @@ def counted_on(rig: RigConfig, plan: Plan) -> list[str]:
     return [f"stopped contact: {why}: the relay that takes the torque off is COUNTED ON ({RELAY})"]
 
 
-def _contacts(rig: RigConfig, plan: Plan) -> Iterator[PlannedContact]:
-    """Yield the contacts of a plan. What heats up rolls at the load of its condition or less, from ambient on."""
+def _worst(rig: RigConfig, contacts: Sequence[PlannedContact]) -> PlannedContact | None:
+    """Return the contact with the most heat, None without contacts."""
+    if not contacts:
+        return None
+    # More load or speed takes longer to stop: no contact takes longer than this, and most need no sum of their own.
+    longest_s = stopping(rig, max(one.load_n for one in contacts), max(one.speed_m_s for one in contacts)).worst_s
+    worst, most_j = None, -1.0
+    for one in sorted(contacts, key=lambda one: -one.power_w):
+        if one.power_w * longest_s <= most_j:
+            break
+        heat_j = one.power_w * stopping(rig, one.load_n, one.speed_m_s).worst_s
+        if heat_j > most_j:
+            worst, most_j = one, heat_j
+    return worst
+
+
+def _asked(rig: RigConfig, plan: Plan) -> Iterator[tuple[str, float, float, float]]:
+    """Yield compound, load (N), greatest speed (m/s) and greatest temperature (degC) of each contact of a plan.
+
+    What heats up rolls at the load of its condition or less, from ambient on.
+    """
     compound, ambient_c = "", rig.ambient_c
     for step in plan.steps:
         if isinstance(step, Install):
             compound = step.compound
         elif isinstance(step, PreGrind):
-            speed_m_s = max(step.wheel_speed_m_s, step.belt_speed_m_s)
-            yield contact(rig, compound, step.load_n, speed_m_s, ambient_c)
+            yield compound, step.load_n, max(step.wheel_speed_m_s, step.belt_speed_m_s), ambient_c
         elif isinstance(step, WheelCondition):
             held = held_by(step.setpoint)
             belt_m_s = max(held.belt_speed_m_s, held.reversed().belt_speed_m_s if step.both_directions else 0.0)
             hottest_c = held.temperature_c + step.temperature_band_k
-            yield contact(rig, held.compound, held.load_n, max(held.wheel_speed_m_s, belt_m_s), hottest_c)
+            yield held.compound, held.load_n, max(held.wheel_speed_m_s, belt_m_s), hottest_c

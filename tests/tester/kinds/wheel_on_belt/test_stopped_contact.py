@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from random import Random
 
 import pytest
 
 from tester.inputs.recipe.loader import check
 from tester.kinds import load_rig
+from tester.kinds.wheel_on_belt import stopped_contact
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.stopped_contact import (
     HARMFUL_J,
+    PlannedContact,
+    Stopping,
     contact,
     counted_on,
     remedy,
@@ -77,3 +81,21 @@ def test_a_run_names_what_it_counts_on(compound: str, named: bool) -> None:
     text = SHORT.replace('"1#"', f'"{compound}"').replace("200 N", "60 N").replace("100 N", "60 N")
     (line,) = counted_on(rig(), plan_of(text, ()))
     assert ("COUNTED ON" in line) is named
+
+
+def test_the_contact_with_the_most_heat_is_found_without_a_sum_for_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    quick, made = rig(), Random(3)
+    contacts = [
+        PlannedContact("1#", made.uniform(20.0, 400.0), made.uniform(0.1, 2.0), made.uniform(10.0, 500.0))
+        for _ in range(200)
+    ]
+    longest = max(contacts, key=lambda one: one.power_w * stopping(quick, one.load_n, one.speed_m_s).worst_s)
+    sums: list[float] = []
+
+    def counted(rig: RigConfig, load_n: float, speed_m_s: float) -> Stopping:
+        sums.append(load_n)
+        return stopping(rig, load_n, speed_m_s)
+
+    monkeypatch.setattr(stopped_contact, "stopping", counted)
+    assert stopped_contact._worst(quick, contacts) == longest  # pyright: ignore[reportPrivateUsage]
+    assert len(sums) < len(contacts) // 4
