@@ -12,6 +12,11 @@ def monotonic() -> float:
     return time.monotonic()
 
 
+def cpu_time() -> float:
+    """Return the seconds of CPU time that this process has used."""
+    return time.process_time()
+
+
 def sleep_until(deadline_s: float) -> float:
     """Sleep until the monotonic ``deadline_s``; return the lateness on waking, in s, at least 0.
 

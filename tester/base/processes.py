@@ -109,13 +109,15 @@ def module_command(module: str, *arguments: str) -> list[str]:
 
 
 LEVEL = 10
-"""1 to 99; low: kernel threads that serve interrupts run at 50."""
+"""Of scans. 1 to 99; low: kernel threads that serve interrupts run at 50."""
+BELOW_SCANS = LEVEL - 1
+"""Of a process whose work must not wait for others, but for a scan."""
 
 
 class RealTimePriority:
     """Real-time priority of this process, until ``close``; ``refused``: why it was not granted, else ""."""
 
-    def __init__(self) -> None:
+    def __init__(self, level: int = LEVEL) -> None:
         """Request the priority for every running thread.
 
         A thread without it could hold the interpreter's lock, and the others would wait.
@@ -130,7 +132,7 @@ class RealTimePriority:
                 continue
             try:
                 os.sched_setscheduler(
-                    thread.native_id, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(LEVEL)
+                    thread.native_id, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(level)
                 )
             except OSError as error:
                 self.refused = error.strerror or "refused"

@@ -23,6 +23,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from tester.base import clock
+from tester.base.processes import BELOW_SCANS, RealTimePriority
 from tester.service.address import peer_of, peer_text, unlink_socket, with_peer
 from tester.service.child_process import link_to_owner
 from tester.service.stop_call import TAKEN
@@ -32,10 +33,11 @@ MOST_CALLERS = 256
 closed.
 """
 WORK_S = 0.002
-"""Longest time for which the door accepts new connections before it handles the existing ones, s."""
+"""Longest CPU time for which the door accepts new connections before it handles the existing ones, s."""
 PAUSE_SHARE = 4.0
-"""Length of the pause that follows, as a multiple of the time that accepting took: callers who reconnect without end
-cannot use more than a fifth of a core.
+"""Length of the pause after each turn, as a multiple of the turn's CPU time: no flood makes the door use more than a
+fifth of a core, so real-time priority is safe. Not a multiple of the time that passed: a turn during which the system
+ran other processes for 80 ms would add 320 ms to the STOPs that wait.
 """
 LONGEST = 512
 """Upper limit of a line's length, bytes."""
@@ -100,8 +102,6 @@ class StopDoor:
             end.setblocking(False)
             self._selector.register(end, selectors.EVENT_READ)
         self._number = os.getpid() << 16  # each process of the door has its own range of numbers
-        self._admits_s: float | None = None
-        """Time at which the door accepts connections again (tester.base.clock.monotonic); None: now."""
         self._asked: Wish | None = None
         self._next: Wish | None = None
         self._answers = b""
@@ -109,17 +109,12 @@ class StopDoor:
     def serve(self) -> None:
         """Serve until the owner ends."""
         while not self.ended:
-            self.turn(None)
+            used_s = self.turn(None)
+            clock.sleep_until(clock.monotonic() + PAUSE_SHARE * used_s)
 
-    def turn(self, within_s: float | None) -> None:
-        """Wait for input and handle it: the owner first, then existing callers, then new ones."""
-        if self._admits_s is not None:
-            left_s = self._admits_s - clock.monotonic()
-            if left_s <= 0.0:
-                self._admits_s = None
-                self._selector.register(self._listener, selectors.EVENT_READ)
-            else:
-                within_s = left_s if within_s is None else min(within_s, left_s)
+    def turn(self, within_s: float | None) -> float:
+        """Wait for input and handle it: the owner first, then callers, then new ones. Return the CPU time, s."""
+        began_s = clock.cpu_time()
         ready = {id(key.fileobj): key.data for key, _ in self._selector.select(within_s)}
         if id(self.owner) in ready:
             self._receive_answers()
@@ -128,20 +123,18 @@ class StopDoor:
                 self._receive(caller)
         if id(self._listener) in ready:
             self._admit()
+        return clock.cpu_time() - began_s
 
     # -- callers ----------------------------------------------------------------------------------------------
 
     def _admit(self) -> None:
-        began_s = now_s = clock.monotonic()
-        while now_s - began_s < WORK_S:
+        end_s = clock.cpu_time() + WORK_S
+        while clock.cpu_time() < end_s:
             try:
                 connection, _ = self._listener.accept()
             except OSError:  # the queue is empty, or the caller has disconnected
                 break
             self._welcome(connection)
-            now_s = clock.monotonic()
-        self._selector.unregister(self._listener)
-        self._admits_s = now_s + PAUSE_SHARE * (now_s - began_s)
 
     def _welcome(self, connection: socket.socket) -> None:
         process, uid = peer_of(connection)
@@ -274,6 +267,7 @@ def main(link: socket.socket) -> None:
     listener = open_listener(settings)
     port = int(listener.getsockname()[1]) if settings.token else 0
     link.sendall(b"p %d\n" % port)
+    RealTimePriority(BELOW_SCANS)  # where it is not granted, the door runs as it is
     StopDoor(listener, link, uid=None if settings.token else os.getuid(), token=settings.token).serve()
     if not settings.token:
         with suppress(OSError):

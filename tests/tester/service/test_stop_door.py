@@ -60,12 +60,6 @@ class Bench:
             one.close()
 
 
-@pytest.fixture(autouse=True)
-def no_pause(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the door accept connections at every turn."""
-    monkeypatch.setattr("tester.service.stop_door.PAUSE_SHARE", 0.0)
-
-
 @pytest.fixture
 def bench(tmp_path: Path) -> Iterator[Bench]:
     made = Bench(tmp_path)
@@ -178,16 +172,23 @@ def test_a_connection_that_has_ended_is_never_kept(bench: Bench) -> None:
 def test_a_flood_of_connections_leaves_four_fifths_of_the_time(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    times = iter([0.0, 0.001, 0.0015, 0.0019, 0.00201])
-    monkeypatch.setattr("tester.service.stop_door.PAUSE_SHARE", 4.0)
-    monkeypatch.setattr("tester.service.stop_door.clock.monotonic", lambda: next(times))
+    times = iter([10.0, 10.0, 10.0, 10.001, 10.0015, 10.0019, 10.00201, 10.00205])
+    slept: list[float] = []
+
+    def sleep_until(until_s: float) -> None:
+        slept.append(until_s)
+        bench.door.ended = True
+
+    monkeypatch.setattr("tester.service.stop_door.clock.cpu_time", lambda: next(times))
+    monkeypatch.setattr("tester.service.stop_door.clock.monotonic", lambda: 500.0)
+    monkeypatch.setattr("tester.service.stop_door.clock.sleep_until", sleep_until)
     callers = [socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) for _ in range(6)]
     for caller in callers:
         caller.connect(str(bench.path))
     bench.callers += callers
-    bench.door.turn(0.0)
+    bench.door.serve()
     assert len(bench.door.callers) == 4
-    assert bench.door._admits_s == pytest.approx(0.00201 * 5)  # pyright: ignore[reportPrivateUsage]
+    assert slept == [pytest.approx(500.0 + 4 * 0.00205)]
 
 
 def test_the_door_ends_with_its_owner(bench: Bench) -> None:
