@@ -25,6 +25,9 @@ RUBBERS: Final[Mapping[str, WlfBellParameters]] = MappingProxyType({
     "SBR": WlfBellParameters(),  # Tg = -53 degC [A]
     "NR": WlfBellParameters(t_ref=-20.0),  # Tg = -70 degC [A]
     "NBR": WlfBellParameters(t_ref=25.0),  # Tg = -25 degC [A]
+    "ABR": WlfBellParameters(t_ref=16.0),  # Tg = -34 degC, as in the compound's file, like those below
+    "INR": WlfBellParameters(t_ref=-20.0),  # Tg = -70 degC
+    "butyl": WlfBellParameters(t_ref=-23.0),  # Tg = -73 degC
 })
 """Rubbers by their names in recipes; they differ only in their glass transition [A]."""
 

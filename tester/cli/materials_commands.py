@@ -114,6 +114,8 @@ def _lines(material: Loaded) -> Iterable[str]:
     for label, text in (("note", model.note), ("source", model.source)):
         if text:
             yield f"{label:8} {text}"
+    for key, text in model.sources.items():
+        yield f"         {key}: {text}"
     if isinstance(model, CompoundModel):
         yield from _of_compound(model)
     for note in material.notes:

@@ -14,6 +14,7 @@ import recipes
 from sim.physics import laws
 from sim.physics.laws import LawSetting
 from sim.physics.persson import PerssonLaw
+from sim.physics.roughness import SelfAffine, TabulatedSpectrum
 from sim.physics.track import RUBBERS
 from tester.base.validation import editor_text
 from tester.inputs.materials.library import Library
@@ -25,8 +26,11 @@ SURFACES = [one.name for one in LIBRARY.entries("surface")]
 
 
 def test_what_ships() -> None:
-    assert sorted(COMPOUNDS) == ["1#", "2#", "3#", "NBR", "NR", "SBR", "tread", "tread soft"]
-    assert sorted(SURFACES) == ["S0", "anti-slip tape", "glass", "road", "silicon carbide"]
+    assert sorted(COMPOUNDS) == ["1#", "2#", "3#", "ABR", "INR", "NBR", "NR", "SBR", "butyl", "tread", "tread soft"]
+    assert sorted(SURFACES) == [
+        "S0", "anti-slip tape", "asphalt", "concrete", "glass", "granite", "polished steel", "road", "silicon carbide",
+        "wavy glass", "zirconia corundum belt",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("name", COMPOUNDS)
@@ -39,6 +43,53 @@ def test_a_compound_is_read_without_a_doubt(name: str) -> None:
 def test_a_surface_is_read_without_a_doubt(name: str) -> None:
     one = LIBRARY.surface_file(name)
     assert one.file.doubts == () and one.model.source and ("[A]" in one.model.source or "doi " in one.model.source)
+
+
+def uncovered(section: dict[str, object], covered: frozenset[str]) -> list[str]:
+    """Return the keys of a file whose number, or text with a unit, has no source of its own or of its section."""
+    missing: list[str] = []
+    for key, value in section.items():
+        if key in covered or key in ("name", "note", "source", "sources", "doubts", "columns"):
+            continue
+        if isinstance(value, dict):
+            missing += [] if "source" in value else uncovered(value, covered)
+        elif not isinstance(value, str) or any(letter.isdigit() for letter in value):
+            missing.append(key)
+    return missing
+
+
+@pytest.mark.parametrize("path", sorted(recipes.FOLDER.glob("*/*.yaml")), ids=lambda path: path.stem)
+def test_every_number_of_a_file_has_its_source(path: Path) -> None:
+    content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    sources = content["sources"]
+    assert uncovered(content, frozenset(sources)) == []
+    # A source is a publication's place or an assumption.
+    marks = ("[A]", "doi ", "Table ", "section ", "paper S", "as printed", "handbook", "Handbook")
+    assert [text for text in sources.values() if not any(mark in text for mark in marks)] == []
+
+
+def test_a_number_without_a_source_is_found() -> None:
+    content = yaml.safe_load((recipes.FOLDER / "surfaces" / "granite.yaml").read_text(encoding="utf-8"))
+    assert uncovered(content, frozenset({"q0", "q1", "H"})) == ["C0"]
+
+
+@pytest.mark.parametrize(
+    ("name", "rms_um", "longest_um", "slope"),
+    [
+        ("S0", 20.0, 314.2, 1.03), ("asphalt", 400.0, 9900.0, 1.17), ("concrete", 80.0, 2000.0, 1.16),
+        ("glass", 2e-3, 100.0, 0.00097), ("granite", 150.0, 5000.0, 0.87), ("polished steel", 0.125, 100.0, 0.036),
+        ("silicon carbide", 12.0, 150.0, 1.25), ("zirconia corundum belt", 27.5, 344.0, 1.25),
+        ("wavy glass", 1.0, 1e4, 0.0015),
+    ],
+)  # fmt: skip
+def test_a_surface_has_the_roughness_and_the_slope_that_its_file_states(
+    name: str, rms_um: float, longest_um: float, slope: float
+) -> None:
+    spectrum = LIBRARY.surface(name).spectrum
+    assert isinstance(spectrum, SelfAffine | TabulatedSpectrum)
+    assert 1e6 * spectrum.rms_height_m == pytest.approx(rms_um, rel=2e-3)
+    assert 2e6 * pi / spectrum.band_1_m[0] == pytest.approx(longest_um, rel=1e-3)
+    assert spectrum.rms_slope == pytest.approx(slope, rel=0.02)
 
 
 @pytest.mark.parametrize("name", [name for name in COMPOUNDS if not name.endswith("#")])
@@ -72,7 +123,7 @@ def test_recipes_find_what_they_name() -> None:
         recipe = yaml.safe_load(path.read_text(encoding="utf-8"))
         for specimen in recipe["specimens"]:
             assert LIBRARY.path("compound", specimen["compound"]) is not None
-        if recipe.get("kind") == "specimen_on_track":
+        if "abrasive" in recipe:
             assert LIBRARY.path("surface", recipe["abrasive"]["name"]) is not None
 
 

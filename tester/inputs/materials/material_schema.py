@@ -6,10 +6,11 @@ editors are generated from these classes.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import exp
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import Field, model_validator
+from pydantic import BaseModel, Field, model_validator
 
 from tester.base.units import Quantity
 from tester.base.validation import Section
@@ -37,8 +38,26 @@ class MaterialModel(Section, frozen=True):
     note: Note | None = None
     source: Note | None = None
     """source of the figures; [A] for an assumption"""
+    sources: dict[Text, Note] = Field(default_factory=dict[str, str])
+    """source of single figures, by key; a section's key covers the section"""
     doubts: Annotated[list[Note], Field(max_length=100)] = Field(default_factory=list[str])
     """doubts that an import or a person has noted; listed wherever the material is used"""
+
+    @model_validator(mode="after")
+    def _of_given_keys(self) -> Self:
+        unknown = [name for name in self.sources if name not in {*given_keys(self)}]
+        if unknown:
+            raise ValueError(f"sources: {', '.join(unknown)} is no key of this file (expected keys that it holds)")
+        return self
+
+
+def given_keys(model: BaseModel) -> Iterator[str]:
+    """Yield the keys that a file holds, and those of its sections."""
+    for name in model.model_fields_set:
+        yield name
+        value = getattr(model, name)
+        if isinstance(value, BaseModel):
+            yield from given_keys(value)
 
 
 class CureModel(Section, frozen=True):

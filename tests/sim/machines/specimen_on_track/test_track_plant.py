@@ -279,5 +279,5 @@ def test_a_lift_that_never_leaves_the_track_is_refused() -> None:
 
 
 def test_a_rubber_that_is_not_known_is_refused_with_those_that_are() -> None:
-    with pytest.raises(ValueError, match=r"no rubber 'XY'.*known: SBR, NR, NBR"):
+    with pytest.raises(ValueError, match=r"no rubber 'XY'.*known: SBR, NR, NBR, ABR, INR, butyl"):
         lowered(compound="XY")
