@@ -93,6 +93,11 @@ class SimRig:
     s; ``plant_s``: time of the plant, which a kind advances. Both are times on the wires, which stand still in a leap.
     """
 
+    __slots__ = (
+        "_dithered", "_drives", "_served", "_timed", "axes", "can", "devices", "leapt_s", "lines", "nodes", "now_s",
+        "plant_s", "sensors", "wired",
+    )  # fmt: skip
+
     def __init__(self, spec: RigSpec, plant: object, can_wire: type[CanWire]) -> None:
         """Switch everything on at time 0; ``can_wire``: the class of the bus, another one for faults.
 
@@ -215,11 +220,16 @@ class SimRig:
         self.now_s = t1
         still = True
         for drive in self._drives:
-            if drive.watching or drive.due_s <= t1 or not drive.axis.still:
+            axis = drive.axis
+            if drive.watching or drive.due_s <= t1:
                 drive.advance(t0, t1)
-                still = still and drive.axis.still
+                still = still and axis.still
             else:
                 drive.now_s = t1
+                if not axis.still:
+                    axis.step(t1 - t0)
+                    drive.pdos.stale = True
+                    still = still and axis.still
         for node in self.nodes:
             node.advance(t0, t1)
         for device in self._timed:

@@ -55,8 +55,8 @@ class Cia402Slave(DrivePower):
     """
 
     __slots__ = (
-        "_by_position", "_increments", "_mode_bits", "_offset", "_per_mille", "_remote_bit", "_sent_data",
-        "_sent_status", "_sent_torque", "_sent_value", "_velocity", "homed", "homing",
+        "_by_position", "_increments", "_mode_bits", "_offset", "_per_mille", "_remote_bit", "_velocity", "homed",
+        "homing",
     )  # fmt: skip
 
     def __init__(
@@ -173,9 +173,8 @@ class Cia402Slave(DrivePower):
         self.torque_gain, self.torque_offset_nm = gain, offset_nm
         self.load(true_nm, self.encoder_error)
 
-    @property
     def torque_limit_nm(self) -> float:
-        """True torque at the limit of 0x6072, N m: the drive limits the torque that it measures."""
+        """Return the true torque at the limit of 0x6072, N m: the drive limits the torque that it measures."""
         return (self.store.values[_MAX_TORQUE] / self._per_mille - self.torque_offset_nm) / self.torque_gain
 
     def stall(self, position: float) -> None:
@@ -319,28 +318,18 @@ class Cia402Slave(DrivePower):
 
     def _forget_sample(self) -> None:
         self._offset = self.origin if self._by_position else 0.0
-        self._sent_status = -1
-        self._sent_value = 0.0
-        self._sent_torque = 0.0
-        self._sent_data = b""
         self.pdos.stale = True
 
     def _sample(self) -> bytes:
-        """Return statusword, actual value and torque packed; the same bytes while none of them changes."""
-        axis = self.axis
+        """Return statusword, actual value and torque packed; the wire asks only after one of them may have changed."""
+        axis, pdos = self.axis, self.pdos
         value = (axis.position if self._by_position else axis.value) + self.encoder_error
-        torque = self.torque_nm
-        if value != self._sent_value or torque != self._sent_torque or self.statusword != self._sent_status:
-            self._sent_value = value
-            self._sent_torque = torque
-            self._sent_status = self.statusword
-            counts = floor((value - self._offset) * self._increments + 0.5)
-            per_mille = floor(torque * self._per_mille + 0.5)
-            try:
-                self._sent_data = _TPDO1(self.statusword, counts, per_mille)
-            except struct.error:
-                self._sent_data = _TPDO1(self.statusword, wrapped_i32(counts), clamped_i16(per_mille))
-        pdos = self.pdos
-        pdos.sample = data = self._sent_data
+        counts = floor((value - self._offset) * self._increments + 0.5)
+        per_mille = floor(self.torque_nm * self._per_mille + 0.5)
+        try:
+            data = _TPDO1(self.statusword, counts, per_mille)
+        except struct.error:
+            data = _TPDO1(self.statusword, wrapped_i32(counts), clamped_i16(per_mille))
+        pdos.sample = data
         pdos.stale = False
         return data

@@ -109,7 +109,11 @@ class VelocityAxis:
             if demand == target:
                 slope, span, end = 0.0, dt, target
             else:
-                slope, end = self._corner(demand, target)
+                if demand * target < 0.0:
+                    end, rate = 0.0, self.deceleration
+                else:
+                    end, rate = target, self.deceleration if abs(target) < abs(demand) else self.acceleration
+                slope = rate if end > demand else -rate
                 span = (end - demand) / slope
                 if span > dt:
                     span = dt
@@ -137,16 +141,6 @@ class VelocityAxis:
             self.settled = True
             self.still = target == 0.0
         self.value = value
-
-    def _corner(self, demand: float, target: float) -> tuple[float, float]:
-        """Return the slope (unit/s2) of the ramp at ``demand`` and the velocity at which it ends or changes."""
-        if demand * target < 0.0:
-            corner, rate = 0.0, self.deceleration
-        elif abs(target) < abs(demand):
-            corner, rate = target, self.deceleration
-        else:
-            corner, rate = target, self.acceleration
-        return (rate if corner > demand else -rate), corner
 
     def _hit_stop(self) -> None:
         """Rest against the hard stop that was overrun; only a new target moves the axis away again."""

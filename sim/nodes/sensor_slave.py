@@ -72,7 +72,7 @@ class SensorSlave(ModbusSlave):
     """
 
     __slots__ = (
-        "_block", "_invalid", "_limits", "_overload", "_parameters", "_quantities", "_read_only", "_shown", "_signals",
+        "_block", "_invalid", "_overload", "_parameters", "_quantities", "_read_only", "_shown", "_signals",
         "dither", "frozen", "status_bits",
     )  # fmt: skip
 
@@ -110,7 +110,6 @@ class SensorSlave(ModbusSlave):
         self._overload = profile.bit("overload")
         most = _most_counts if profile.kind == "load_cell" else _no_limit
         self._shown = tuple(_Shown(one, [most(signal) for signal in one.signals]) for one in profile.blocks)
-        self._limits = tuple(most(signal) for signal in block.signals)
         self.blocks = {
             (one.block.address, one.block.count): number for number, one in enumerate(self._shown) if not one.of_bits
         }
@@ -237,6 +236,7 @@ class CellSlave(SensorSlave):
         self._places = tuple(FORCES.index(force) if force in FORCES else -1 for force in self.forces)
         self._scales = tuple(signal.scale for signal in self._signals)
         self._pack = self._block.pack
+        self._limits = tuple(int(_most_counts(signal)) for signal in self._signals)
 
     def measure(self, t: float, block: RegisterBlock) -> list[float]:
         """Return each channel's force at ``t`` s, 0 for a channel without one; further reads hold no force."""

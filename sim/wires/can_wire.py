@@ -22,19 +22,6 @@ _LOAD_MARK_S: Final = 0.1
 """Resolution in s of the one-second bus load."""
 
 
-def _changed(payloads: tuple[bytes, ...], others: tuple[bytes, ...]) -> list[int] | None:
-    """Return the places at which the frames of two cycles differ; None if their lengths, and so their times, do."""
-    if len(payloads) != len(others):
-        return None
-    places: list[int] = []
-    for place, (data, other) in enumerate(zip(payloads, others, strict=True)):
-        if data is not other:
-            if len(data) != len(other):
-                return None
-            places.append(place)
-    return places
-
-
 class CanWire(CanListeners):
     """The bus and the computer's port on it (``drivers.ports.CanPort``).
 
@@ -113,10 +100,15 @@ class CanWire(CanListeners):
         data. SYNC is answered as always.
         """
         taken = self._taken
-        changed: list[int] | None = None
-        if taken is not None and (can_ids is self._cycle_ids or can_ids == self._cycle_ids):
-            changed = _changed(payloads, taken)
-        if changed is None:
+        changed: list[int] = []
+        known = taken is not None and (can_ids is self._cycle_ids or can_ids == self._cycle_ids)
+        if taken is not None and known and payloads is not taken:
+            for place, data in enumerate(payloads):
+                if data is not taken[place]:
+                    if len(data) != len(taken[place]):
+                        known = False  # other lengths, other times
+                    changed.append(place)
+        if not known:
             self._remember(can_ids, payloads)  # before a listener may ask to forget it
             for can_id, data in zip(can_ids, payloads, strict=True):
                 self.send(can_id, data, now)
@@ -251,7 +243,10 @@ class CanWire(CanListeners):
         arrival, occupied_s = self._busy_s, self.occupied_s
         for follower in self._followers:
             if quick and follower.plain:
-                data = follower.take_sample() if follower.stale else follower.sample
+                data = follower.sample
+                if follower.stale:
+                    take = follower.take_sample  # called as a method it is looked up anew (CPython 3.11)
+                    data = take()
                 length_s = frame_s[len(data)]
                 arrival += length_s
                 occupied_s += length_s

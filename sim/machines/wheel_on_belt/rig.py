@@ -18,6 +18,7 @@ from sim.machines.wheel_on_belt.standstill_relay import StandstillRelay
 from sim.machines.wheel_on_belt.torque import PressScrew, capstan_n, shafts
 from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.controller_slave import ControllerSlave
+from sim.nodes.drive_power import ENERGISED
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import VelocityAxis
 from sim.nodes.sensor_slave import CellSlave, IrSlave
@@ -56,6 +57,14 @@ class WheelRig(SimRig):
     Devices: load cell, thermometer, jacket. ``install``, ``remount`` and ``begin_repeat`` are the actions of the person
     at the rig.
     """
+
+    # Slots: CPython 3.11 keeps more than 30 attributes in a dictionary, and every step of the twin gets slower.
+    __slots__ = (
+        "_belt", "_belt_creep", "_held_n", "_limit_nm", "_press", "_pressed_mm", "_pushed_n", "_roller_m", "_screw",
+        "_seen_s", "_sideslip", "_slip_nm", "_spring_mm_s", "_stalled", "_travelled_m", "_turned_rad", "_wheel",
+        "_yields", "belt_shaft", "belt_slip", "cell", "cells", "ir", "jacket", "plant", "relay", "swapped", "turned",
+        "wheel_shaft",
+    )  # fmt: skip
 
     def __init__(
         self, spec: RigSpec, parameters: SimParameters, seed: int, can_wire: type[CanWire] = CanWire
@@ -119,21 +128,21 @@ class WheelRig(SimRig):
 
     def follow(self, t1: float, still: bool) -> None:
         """Advance the plant with its drives to ``t1`` s, and load the drives."""
-        plant = self.plant
-        relay = self.relay
-        if relay is not None and (not still or relay.off) and relay.look(self.rim_m_s, self.belt_m_s, t1):
-            for name in relay.reaches:
-                self.axes[name].set_torque_off(relay.off)
-        elapsed = t1 - self.plant_s
-        if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
-            self._seen_s = t1
-            return  # only temperatures change, and slowly
+        plant, relay = self.plant, self.relay
         wheel_axis, belt_axis, press = self._wheel.axis, self._belt.axis, self._press.axis
         wheel_rad_s, belt_m_s = wheel_axis.value, belt_axis.value
         if self.swapped:
             wheel_rad_s, belt_m_s = belt_m_s / self._roller_m, wheel_rad_s * self._roller_m
         wheel_rad_s /= plant.wheel_speed.factor
         belt_m_s /= plant.belt_speed.factor
+        rim_m_s = 0.0005 * plant.diameter_mm * wheel_rad_s
+        if relay is not None and (not still or relay.off) and relay.look(rim_m_s, belt_m_s, t1):
+            for name in relay.reaches:
+                self.axes[name].set_torque_off(relay.off)
+        elapsed = t1 - self.plant_s
+        if still and elapsed < LONGEST_STEP_S - 1e-6 and plant.force_z_n == 0.0:
+            self._seen_s = t1
+            return  # only temperatures change, and slowly
         dt, self._seen_s = t1 - self._seen_s, t1
         self._turned_rad += wheel_rad_s * dt
         self._travelled_m += belt_m_s * dt
@@ -163,7 +172,7 @@ class WheelRig(SimRig):
         ``arm_m``: from the shaft to the contact; ``per_rad``: the axis's speed at 1 rad/s. What friction takes falls
         with the slip, within a step too.
         """
-        axis, limit_nm = drive.axis, drive.torque_limit_nm
+        axis, limit_nm = drive.axis, drive.torque_limit_nm()
         size_nm = -load_nm if load_nm < 0.0 else load_nm
         if not isinstance(axis, VelocityAxis) or (axis.yielded == 0.0 and size_nm <= limit_nm) or dt <= 0.0:
             return False
@@ -210,8 +219,8 @@ class WheelRig(SimRig):
             belt_nm = copysign(self._slip_nm, self.belt_m_s)
         if self.swapped:
             wheel_nm, belt_nm = belt_nm, wheel_nm
-        wheel_nm = self.wheel_shaft.shown_nm(wheel_nm, wheel_rad_s) if wheel.energised else 0.0
-        belt_nm = self.belt_shaft.shown_nm(belt_nm, belt_m_s / self._roller_m) if belt.energised else 0.0
+        wheel_nm = self.wheel_shaft.shown_nm(wheel_nm, wheel_rad_s) if wheel.state in ENERGISED else 0.0
+        belt_nm = self.belt_shaft.shown_nm(belt_nm, belt_m_s / self._roller_m) if belt.state in ENERGISED else 0.0
         if wheel_rad_s != 0.0:
             wheel.load(wheel_nm, plant.wheel_speed.error() * 2000.0 / plant.diameter_mm)
         elif wheel.encoder_error != 0.0 or wheel.torque_nm != wheel_nm:
@@ -221,18 +230,18 @@ class WheelRig(SimRig):
         elif belt.encoder_error != 0.0 or belt.torque_nm != belt_nm:
             belt.load(belt_nm, 0.0)
         press_nm = 0.0
-        if press.energised:
+        if press.state in ENERGISED:
             axis = press.axis
             press_nm = self._screw.torque_nm(plant.force_z_n, axis.position)
             if axis.blocked and axis.demand != 0.0:
-                press_nm = copysign(press.torque_limit_nm, axis.demand)
+                press_nm = copysign(press.torque_limit_nm(), axis.demand)
         if press.torque_nm != press_nm:
             press.load(press_nm, 0.0)
 
     def _bear(self, drive: Cia402Slave) -> None:
         """Limit the press to its drive's torque: it stalls; a greater load drives it back."""
-        limit_nm, plant = drive.torque_limit_nm, self.plant
-        if not drive.energised and self._spring_mm_s:
+        limit_nm, plant = drive.torque_limit_nm(), self.plant
+        if self._spring_mm_s and drive.state not in ENERGISED:
             # The spring at 0 mm makes coast_deceleration of the screw's inertia; the load pushes the same way.
             axis, screw = drive.axis, self._screw
             grown_n = screw.rate_n_per_mm * axis.position

@@ -27,11 +27,12 @@ class StandstillRelay:
 
     def look(self, wheel_m_s: float, belt_m_s: float, now_s: float) -> bool:
         """Read the speeds of tread and belt at ``now_s``; return whether ``off`` has changed."""
-        slow, fast = sorted((abs(wheel_m_s), abs(belt_m_s)))
+        wheel_turns = not -STANDS_M_S < wheel_m_s < STANDS_M_S
+        belt_turns = not -STANDS_M_S < belt_m_s < STANDS_M_S
         before = self.off
-        if self.off:
-            self.off = fast >= STANDS_M_S
-        elif not (slow < STANDS_M_S and fast > TURNS_M_S):
+        if before:
+            self.off = wheel_turns or belt_turns
+        elif wheel_turns is belt_turns or not (abs(wheel_m_s) > TURNS_M_S or abs(belt_m_s) > TURNS_M_S):
             self._since_s = inf
         elif self._since_s == inf:
             self._since_s = now_s

@@ -75,7 +75,7 @@ class PressScrew:
         way = self._way + (press_mm - self._place_mm) * self._per_mm
         self._way = way = 1.0 if way > 1.0 else -1.0 if way < -1.0 else way
         self._place_mm = press_mm
-        spring_n = self.lifts_n(press_mm)
+        spring_n = self.spring_n + self.rate_n_per_mm * press_mm  # lifts_n, without a call
         return self._m * (force_n + spring_n) * (1.0 + way * self._excess) + way * self._drag_nm
 
     def lifts_n(self, press_mm: float) -> float:
