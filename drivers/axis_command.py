@@ -152,9 +152,8 @@ class AxisCommand(CanNode):
             raise ValueError(f"{self.config.name}: outputs {bits:#x} do not fit 32 bits")
         self._outputs = bits
 
-    @property
     def reached(self) -> bool:
-        """Whether the drive reports its target reached (bit 10).
+        """Return whether the drive reports its target reached (bit 10).
 
         In position mode the bit counts only for the present target. A velocity has no
         handshake: for two scans after a change the bit still belongs to the target before.
@@ -192,13 +191,14 @@ class AxisCommand(CanNode):
         """Act on a statusword that differs from the last one."""
         state = cia402.decode(statusword)
         previous = self.state
-        if state is not previous:
+        if state is not previous or (statusword ^ self.statusword) & cia402.REMOTE:
             self.state = state
+            self.news = True
             if (self._goal is Goal.ENABLED and previous in _STOPPED_BY_ITSELF
                     and state is not State.OPERATION_ENABLED):
                 self.inhibited = True
         self.statusword = statusword
-        self.dirty = self.news = True
+        self.dirty = True
 
     def _request_reset(self) -> None:
         """Raise controlword bit 7 once, up to the next SYNC; the drive then stays disabled."""
@@ -223,7 +223,8 @@ class AxisCommand(CanNode):
         goal = self._goal
         if self.lost and goal is not _FREE:
             goal = _QUICK_STOP
-        if goal is _ENABLED and (self.inhibited or not self.remote):
+        remote = self._remote_bit
+        if goal is _ENABLED and (self.inhibited or self.statusword & remote != remote):
             goal = _DISABLED
         word = cia402.controlword(self.state, goal)
         if self._resetting:

@@ -160,7 +160,8 @@ class ServoAxis(AxisCommand):
         if len(data) != self._size:
             self.malformed += 1
             return
-        fields: tuple[int, int, int] = self._unpack(data)
+        unpack = self._unpack  # an attribute that is called as a method is looked up anew (CPython 3.11)
+        fields: tuple[int, int, int] = unpack(data)
         statusword, raw, torque = fields
         if statusword != self.statusword:
             self.take_statusword(statusword)

@@ -108,28 +108,25 @@ class SerialEar:
     """Removes the echo of sent bytes, and finds out whether the adapter echoes.
 
     The request of a read is never a reply to it: an adapter that returns it echoes. A reply to a read without it shows
-    that the adapter does not. ``hears_itself`` is None until either has come.
+    that the adapter does not. ``hears_itself`` is None until either has come. ``stripped``: the echo of the request
+    under way was removed; the sender of a request clears it.
     """
 
     def __init__(self, hears_itself: bool | None = None) -> None:
         """Begin with what is known of the echo; None: nothing."""
         self.hears_itself: bool | None = hears_itself
-        self._stripped = False
-
-    def asked(self) -> None:
-        """Begin anew: a request was sent."""
-        self._stripped = False
+        self.stripped = False
 
     def answer(self, request: Request, sent: bytes, data: bytes) -> ReplySoFar:
         """Return the answer to ``sent``, without the echo."""
         if self.hears_itself is False and (request.writes or not data.startswith(sent)):
             return serial_answer(request, data)
         # The adapter may be exchanged between two replies: from then on it counts as an adapter with echo.
-        if not self._stripped:
+        if not self.stripped:
             if len(data) < len(sent) and sent.startswith(data):
                 return ReplySoFar(AnswerKind.WAITED_FOR, data)
             if data.startswith(sent):
-                self._stripped = True
+                self.stripped = True
                 self.hears_itself = True
                 data = data[len(sent) :]
                 if not data:

@@ -157,7 +157,7 @@ class ModbusLink(LineType):
             self._transaction = self._transaction % 0xFFFF + 1
             frame = numbered(request, self._transaction)
         self._sent = frame
-        self.ear.asked()
+        self.ear.stripped = False
         port.write(frame, now)
         request.sent_s = now
         if request.writes:

@@ -61,7 +61,7 @@ def test_over_tcp_a_reply_is_taken_alone_and_whole() -> None:
 @pytest.mark.parametrize("hears", [True, False])
 def test_an_ear_learns_from_the_first_reply_to_a_read(hears: bool) -> None:
     request, ear = read(), SerialEar()
-    ear.asked()
+    ear.stripped = False
     data = request.frame + GOOD if hears else GOOD
     assert ear.answer(request, request.frame, data).data == b"\0\7"
     assert ear.hears_itself is hears
@@ -69,6 +69,6 @@ def test_an_ear_learns_from_the_first_reply_to_a_read(hears: bool) -> None:
 
 def test_an_exception_shows_it_too() -> None:
     request, ear = read(), SerialEar()
-    ear.asked()
+    ear.stripped = False
     assert ear.answer(request, request.frame, with_crc(b"\1\x83\2")).kind is AnswerKind.EXCEPTION
     assert ear.hears_itself is False

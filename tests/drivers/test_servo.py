@@ -94,6 +94,15 @@ def test_the_same_inputs_again_are_fresh_and_no_news() -> None:
     assert (drive.inputs_stamp_s, drive.news) == (2.1, False)
 
 
+@pytest.mark.parametrize(("bit", "news"), [(0x0400, False), (0x0800, False), (0x0200, True), (0x0008, True)])
+def test_only_a_change_of_state_or_of_remote_is_news(bit: int, news: bool) -> None:
+    drive = joined(wheel())
+    report(drive, ENABLED)
+    drive.news = False
+    report(drive, ENABLED ^ bit)
+    assert (drive.statusword, drive.news, drive.dirty) == (ENABLED ^ bit, news, True)
+
+
 def test_a_statusword_that_comes_by_itself_says_that_the_axis_stands() -> None:
     drive = joined(wheel(speed_zero=0.2))
     report(drive, ENABLED, value=5800)
@@ -320,18 +329,18 @@ def test_reached_counts_only_for_the_present_target() -> None:
     report(drive, ENABLED | REACHED)
     rpdo1(drive)
     drive.target = 20.0
-    assert not drive.reached
+    assert not drive.reached()
     rpdo1(drive)
     report(drive, ENABLED | ACKNOWLEDGED | REACHED)
     rpdo1(drive)
-    assert drive.reached
+    assert drive.reached()
 
 
 def test_a_disabled_drive_has_reached_nothing() -> None:
     drive = joined(wheel())
     report(drive, DISABLED | REACHED)
     rpdo1(drive)
-    assert not drive.reached
+    assert not drive.reached()
 
 
 def test_after_a_stop_a_position_axis_is_held_where_it_stands() -> None:

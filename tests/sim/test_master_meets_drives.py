@@ -127,7 +127,7 @@ def test_axes_home_and_travel(bus: Bus) -> None:
     bus.tick(300)
     assert [node.axis.position for node in bus.nodes[3:]] == [pytest.approx(23.0), pytest.approx(-2.0)]
     assert [drive.actual for drive in bus.drives[3:]] == [20.0, -5.0]
-    assert all(drive.reached for drive in bus.drives[3:])
+    assert all(drive.reached() for drive in bus.drives[3:])
 
 
 def test_a_withheld_heartbeat_is_noticed_by_every_drive(bus: Bus) -> None:

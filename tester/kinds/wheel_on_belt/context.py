@@ -72,6 +72,12 @@ class CellZero(Protocol):
 class Context(BaseContext[RigConfig, Readings, Demand]):
     """One per run; only activities read and write it."""
 
+    # Slots: CPython 3.11 looks the methods of an object with more than 30 attributes up anew in every scan.
+    __slots__ = (
+        "_open_since_s", "_place_mm", "_was_in_contact", "_wear_mm3_per_n_m", "attendant", "belt_travel_m", "cell",
+        "contact", "gates", "heat", "observer", "quantities", "rates", "shelf", "view", "wheel",
+    )  # fmt: skip
+
     gate_bits: ClassVar[Mapping[str, int]] = GATES
 
     def __init__(

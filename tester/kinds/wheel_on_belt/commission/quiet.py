@@ -209,14 +209,14 @@ class Jogging(Moving):
 
     def _arrived(self, drive: ServoDrive, jog: JogMove) -> bool:
         if drive.config.mode == "position":
-            return drive.reached
+            return drive.reached()
         ramp = 0.5 * jog.speed * jog.speed / drive.config.deceleration  # way of the ramp after the stop command
         return abs(jog.moved) + ramp >= abs(jog.way)
 
     def _halt(self, drive: ServoDrive) -> None:
         if drive.config.mode == "velocity":
             drive.target = 0.0
-        elif not drive.reached:
+        elif not drive.reached():
             drive.target = drive.actual
 
     def trouble(self, now: float) -> str:

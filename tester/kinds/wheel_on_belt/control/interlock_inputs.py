@@ -154,7 +154,9 @@ class InterlockInputs(Inputs):
         if self.confirmed:
             out = self.state.setpoints
             self.wheel.follow(out.wheel_rad_s * r.diameter_mm * 0.5e-3, dt)
-            self.belt.follow(out.belt_m_s, dt)
+            belt = self.belt
+            if not belt.low_m_s == out.belt_m_s == belt.high_m_s:
+                belt.follow(out.belt_m_s, dt)
             self.press.follow(out.press_mm_s, dt, r)
             if r.press_at_s > self.free.at_s and self.free.spring_nm > 0.0:
                 self.free.update(r, r.press_mm < self._free_to_mm(r.diameter_mm))

@@ -74,7 +74,8 @@ class LoadLoop(Contact):
     def _lift(self, force: float, position: float, loop: LoadLoopConfig) -> float:
         """Return the velocity to the lifted position; while the cell shows a load, to the end of the travel."""
         self.in_contact = self.loaded = False
-        self._look_open(force, loop)
+        if force < loop.open_share * loop.touch_load_n:
+            self.seen_open = True
         self.highest_n = self.lowest_n = 0.0
         self.integral_mm_s = 0.0
         if not isfinite(position):
@@ -84,10 +85,6 @@ class LoadLoop(Contact):
             return min(distance * POSITION_GAIN_PER_S, loop.loading_speed_mm_s) if distance > 0.5 else 0.0
         return -min(loop.lift_speed_mm_s, _profile(-distance, loop), -distance * POSITION_GAIN_PER_S)
 
-    def _look_open(self, force: float, loop: LoadLoopConfig) -> None:
-        if force < loop.open_share * loop.touch_load_n:
-            self.seen_open = True
-
     def worn_to_mm(self, diameter_mm: float) -> float:
         """Return the place of contact of the wheel worn to this diameter, mm; NaN before its first touch."""
         worn = 0.5 * (self.diameter_mm - diameter_mm)
@@ -95,7 +92,8 @@ class LoadLoop(Contact):
 
     def _track_contact(self, force: float, readings: Readings, loop: LoadLoopConfig) -> None:
         """Record a touch; its place counts only if the contact was open before, else the rubber begins elsewhere."""
-        self._look_open(force, loop)
+        if force < loop.open_share * loop.touch_load_n:
+            self.seen_open = True
         if not self.in_contact and force > loop.touch_load_n:
             self.in_contact = True
             if self.seen_open:

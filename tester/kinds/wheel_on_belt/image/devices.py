@@ -67,6 +67,12 @@ class Devices(DeviceList):
     ``cell`` reads CELL_CHANNELS and ``thermometer`` the surface; ``jacket`` heats the hub.
     """
 
+    # Slots: CPython 3.11 looks the methods of an object with more than 30 attributes up anew in every scan.
+    __slots__ = (
+        "_contactor_asked", "_contactor_closed", "_last_angle_s", "_positioned", "axes", "cell", "jacket", "slip_ring",
+        "thermometer",
+    )  # fmt: skip
+
     def __init__(self, rig: RigConfig, ports: Ports) -> None:
         """Build the drivers of the rig file on these wires; nothing is sent."""
         drivers = RigDrivers(rig, ports)
@@ -87,6 +93,7 @@ class Devices(DeviceList):
         if isinstance(cell, JoinedCell):
             self.counted.append(CellSkew(cell))
         self._positioned = tuple(positioned.items())
+        self._contactor_asked = False
         self._contactor_closed = False  # its last feedback
         self._last_angle_s: float = NEVER
 
@@ -130,7 +137,7 @@ class Devices(DeviceList):
             positions[name] = drive.actual
             if drive.stamp_s < oldest_s:
                 oldest_s = drive.stamp_s
-            if not drive.reached:
+            if not drive.reached():
                 reached = False
         r.positions_at_s, r.yaw_reached = oldest_s, reached
         angle = positions["sideslip"] * _RADIANS_PER_DEGREE
@@ -153,7 +160,9 @@ class Devices(DeviceList):
             position = out.positions[name]
             if position != drive.aimed:
                 drive.aim(position)
-        press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
+        if out.contactor is not self._contactor_asked or self.news:
+            self._contactor_asked = out.contactor
+            press.outputs = OUTPUT_CONTACTOR if out.contactor else 0
         press.outputs_unanswered = out.contactor is not self._contactor_closed
         jacket = self.jacket
         jacket.enable(out.heat)

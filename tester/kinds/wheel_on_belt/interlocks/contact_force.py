@@ -60,13 +60,14 @@ SOFTEST: Final = 0.5
 STIFFEST: Final = 2.0
 """Bounds of a measured stiffness, as shares of ``loops.load.stiffness`` [A]: rubbers differ by 30 %."""
 _POWER: Final = 1.0 / (1.0 - STIFFNESS_EXPONENT)
+_AT_200_N: Final = math.pow(200.0, STIFFNESS_EXPONENT)
 
 
 def force_n(depth: float, stiffness_n_per_mm: float) -> float:
     """Return the force at a depth in mm: the inverse of ``depth_mm``; 0 without contact."""
     if not depth > 0.0:
         return 0.0
-    return math.pow(depth * stiffness_n_per_mm / (_POWER * math.pow(200.0, STIFFNESS_EXPONENT)), _POWER)
+    return math.pow(depth * stiffness_n_per_mm / (_POWER * _AT_200_N), _POWER)
 
 
 @dataclass(slots=True)

@@ -167,7 +167,7 @@ class CentredBursts(MeasuredRepeat):
         window = self.window_rev
         if window is not None and not isnan(start):
             share = 0.5 if surface - start > SPLIT_RISE_K else 1.0
-            if self.revolutions - self.burst.blocks_before >= share * window:
+            if len(self.counter.blocks) - self.burst.blocks_before >= share * window:
                 return True
         return ctx.now - self.burst.counted_s > BLIND_S
 

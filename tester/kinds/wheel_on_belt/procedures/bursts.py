@@ -57,6 +57,12 @@ _MOVE_OUT: Final = Phase.MOVE_OUT
 class MeasureRepeat(CentredBursts):
     """The activity of one repeat."""
 
+    # Slots: CPython 3.11 looks the methods of an object with more than 30 attributes up anew in every scan.
+    __slots__ = (
+        "cooling_since_s", "moves", "phase", "ready_since_s", "reference", "rolling_since_s", "run_in", "tare",
+        "tared_s",
+    )  # fmt: skip
+
     def __init__(
         self,
         step: WheelCondition,

@@ -103,7 +103,8 @@ class WheelLife:
         self.sliding_m += distance
         self.exposure_n_m += force_n * distance
         rate_mm3_per_n_m = self.rate_mm3_per_n_m or rate_mm3_per_n_m
-        self.loss_mm += 2.0 * rate_mm3_per_n_m * force_n * distance / (pi * self.cold_mm * self.width_mm)
+        cold_mm = self.installed_mm - self.loss_mm
+        self.loss_mm += 2.0 * rate_mm3_per_n_m * force_n * distance / (pi * cold_mm * self.width_mm)
 
     def loss_of(self, exposure_n_m: float, believed_mm3_per_n_m: float) -> float:
         """Return the loss of diameter, mm, by a load times distance, at the learnt rate or else the believed one."""
