@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Annotated, Final, NamedTuple
 
 import numpy as np
 
-from sim.physics.materials import Components
+from sim.physics.materials import Components, length_text
 from sim.physics.scratch import Scratch
 
 if TYPE_CHECKING:
@@ -75,6 +75,17 @@ def contact_slope(wave: Sinusoid) -> float:
     return 0.5 * sqrt(pi * mean_square_slope(wave))
 
 
+def found_waves(surface: Surface) -> str:
+    """Return a remark on two waves that were found in a surface's spectrum; "" where its file states them."""
+    if surface.split_m is None or surface.coarse is None or surface.fine is None:
+        return ""
+    coarse, fine = (f"{length_text(w.wavelength_m)}, {length_text(w.ra_m)}" for w in (surface.coarse, surface.fine))
+    return (
+        f"the two waves of {surface.name} are found in its spectrum, divided at {length_text(surface.split_m)}"
+        f" (length, amplitude): coarse {coarse}; fine {fine}"
+    )
+
+
 class Greta:
     """The law of one rubber on one surface."""
 
@@ -90,6 +101,7 @@ class Greta:
         self.full_per_modulus = pi * self.coarse.ra_m / (self.coarse.wavelength_m * (1.0 - rubber.poisson**2))
         """Ratio of the pressure of full contact with the coarse wave to the modulus there (Eqs 21 and 22)."""
         self._shear = rubber.shear
+        self._found = found_waves(surface)
         self._scratch = Scratch(self.coarse.wavelength_m, 1e-3 * self.parameters.tread)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
@@ -106,7 +118,9 @@ class Greta:
         return Components(adhesion, self.hysteresis(pressure_pa, coarse, adhesion))
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
-        """Yield a warning for a speed below the slowest, and for full contact; raises as ``mu``."""
+        """Yield a warning for found waves, a speed below the slowest, and full contact; raises as ``mu``."""
+        if self._found:
+            yield self._found
         if slip_m_s < SLOWEST_M_S:
             yield f"below {1e3 * SLOWEST_M_S:g} mm/s the coefficient is that of this speed"
         _, fine = self.dynamic(temperature_c, max(slip_m_s, SLOWEST_M_S))

@@ -76,6 +76,16 @@ class Spectrum(Protocol):
         """Return q0 and q1, the least and the largest wave number, 1/m."""
         ...
 
+    @property
+    def rms_height_m(self) -> float:
+        """Return the root of <h^2>, m."""
+        ...
+
+    @property
+    def rms_slope(self) -> float:
+        """Return the root of the mean-square slope."""
+        ...
+
     def power_m4(self, q_1_m: Array) -> Array:
         """Return C in m^4 at wave numbers within the band."""
         ...
@@ -97,6 +107,8 @@ class Surface:
     spectrum: Spectrum | None = None
     coarse: Sinusoid | None = None
     fine: Sinusoid | None = None
+    split_m: float | None = None
+    """Wavelength that divided the spectrum between the two waves; None where its file states the waves."""
 
 
 class UnknownMaterialError(ValueError):
@@ -141,3 +153,9 @@ class Components(NamedTuple):
 
     adhesion: float
     hysteresis: float
+
+
+def length_text(length_m: float) -> str:
+    """Return a length above 0 with three digits, in mm, um or nm."""
+    unit, scale = ("mm", 1e3) if length_m >= 0.9995e-3 else ("um", 1e6) if length_m >= 0.9995e-6 else ("nm", 1e9)
+    return f"{scale * length_m:.3g} {unit}"

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from sim.physics.materials import Sinusoid
+
 if TYPE_CHECKING:
-    from sim.physics.materials import Array
+    from sim.physics.materials import Array, Spectrum
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,3 +122,46 @@ def _root(q_1_m: float, ratio: float, power_m4: float, exponent: float, order: i
     # expm1 keeps its precision where the integrand is nearly 1 / q.
     integral = math.log(ratio) if abs(grows) < 1e-12 else math.expm1(grows * math.log(ratio)) / grows
     return math.sqrt(2.0 * math.pi * power_m4 * q_1_m ** (order + 1) * integral)
+
+
+SPLIT_M: Final = 0.5e-3
+"""Wavelength that divides macrotexture from microtexture (Table 1 of paper G; ISO 13473-1)."""
+LEAST_RATIO: Final = 3.0
+"""Least ratio of the longest wave to the shortest on either side of the division [A]."""
+PLACES: Final = 400
+"""Wave numbers at which a part of a spectrum is read for its moments."""
+
+
+class TwoWaves(NamedTuple):
+    """Two waves in the place of a spectrum."""
+
+    coarse: Sinusoid
+    fine: Sinusoid
+    split_m: float
+    """Wavelength that divides the spectrum between them."""
+
+
+def two_waves(spectrum: Spectrum) -> TwoWaves | None:
+    """Return the two waves of a spectrum; None for a band that is too narrow for two.
+
+    The band is divided at 0.5 mm (``SPLIT_M``), or in its middle on a logarithmic scale [A] if one side would be
+    narrower than ``LEAST_RATIO``. Each wave has the mean square of heights and of profile slopes of its side: its
+    length is the profile's root-mean-square wavelength 2 pi Rq / Rdq (ISO 4287:1984), its amplitude, which paper G takes
+    for Ra, sqrt(2) Rq. A profile's mean-square slope is half the surface's.
+    """
+    q0, q1 = spectrum.band_1_m
+    split = 2.0 * math.pi / SPLIT_M
+    if not LEAST_RATIO * q0 <= split <= q1 / LEAST_RATIO:
+        split = math.sqrt(q0 * q1)
+    if min(split / q0, q1 / split) < LEAST_RATIO:
+        return None
+    return TwoWaves(_one_wave(spectrum, q0, split), _one_wave(spectrum, split, q1), 2.0 * math.pi / split)
+
+
+def _one_wave(spectrum: Spectrum, low_1_m: float, high_1_m: float) -> Sinusoid:
+    """Return the wave of the part of a spectrum between two wave numbers."""
+    q = np.geomspace(low_1_m, high_1_m, PLACES)
+    q[0], q[-1] = low_1_m, high_1_m
+    part = TabulatedSpectrum(q, spectrum.power_m4(q))
+    amplitude_m = math.sqrt(2.0) * part.rms_height_m
+    return Sinusoid(2.0 * math.pi * amplitude_m / part.rms_slope, amplitude_m)

@@ -28,6 +28,7 @@ class At(NamedTuple):
 def parts_chart(law: str, compound: str, surface: str, over: str, at: At) -> Chart:
     """Return the chart; an impossible law is a usage error."""
     from sim.physics import laws
+    from sim.physics.greta import found_waves
     from tester.base.source import InvalidSource
     from tester.inputs.materials.library import Library
     from tester.report.law_charts import components_chart
@@ -48,7 +49,8 @@ def parts_chart(law: str, compound: str, surface: str, over: str, at: At) -> Cha
             return laws.with_parts(law, made).components(place.temperature_c, load_n, place.speed_m_s)
 
         title = f"{law}: {rubber.name} on {track.name}"
-        return components_chart(value, x, f"{name} ({unit})", title, _note(over, at))
+        notes = [_note(over, at), *([remark] if (remark := found_waves(track)) else [])]
+        return components_chart(value, x, f"{name} ({unit})", title, "; ".join(notes))
     except (ValueError, InvalidSource) as error:
         raise click.UsageError(str(error)) from error
 

@@ -118,6 +118,8 @@ def _lines(material: Loaded) -> Iterable[str]:
         yield f"         {key}: {text}"
     if isinstance(model, CompoundModel):
         yield from _of_compound(model)
+    else:
+        yield from _of_surface(cast("LoadedSurface", material))
     for note in material.notes:
         yield f"noted    {note}"
     for doubt in file.doubts:
@@ -136,6 +138,29 @@ def _of_compound(model: CompoundModel) -> Iterable[str]:
         t = model.over_temperature
         law = f"alpha {t.alpha:g}, beta {t.beta:g} 1/K2, gamma {t.gamma:g}, Tm {t.Tm:g} degC"
         yield f"over temperature  {law}; {t.least:g} to {t.most:g} degC"
+
+
+def _of_surface(loaded: LoadedSurface) -> Iterable[str]:
+    """Yield roughness and waves: of the spectrum as a law takes it, and the waves of the file or found in it."""
+    from sim.physics.materials import length_text
+    from tester.inputs.materials.library import surface_of
+
+    surface = surface_of(loaded)
+    if surface.spectrum is not None:
+        rms, slope = surface.spectrum.rms_height_m, surface.spectrum.rms_slope
+        yield f"rough    rms {length_text(rms)}, rms slope {slope:.3g}"
+    if surface.coarse is None or surface.fine is None:
+        yield "waves    none: the spectrum is too narrow for two, and greta needs two"
+        return
+    if surface.split_m is None:
+        yield "waves    as the file states them (length, Ra):"
+    else:
+        yield (
+            f"waves    found in the spectrum, divided at {length_text(surface.split_m)}; each has rms height and slope of"
+            " its side (length, amplitude, which counts as Ra):"
+        )
+    for label, wave in (("coarse", surface.coarse), ("fine", surface.fine)):
+        yield f"{label:8} {length_text(wave.wavelength_m)}, {length_text(wave.ra_m)}"
 
 
 @materials.command()

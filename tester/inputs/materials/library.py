@@ -161,8 +161,8 @@ def _modulus(model: CompoundModel, moduli: ModuliModel, table: ModuliTable | Non
 
 
 def surface_of(loaded: LoadedSurface) -> Surface:
-    """Return a surface as input of friction laws."""
-    from sim.physics.roughness import SelfAffine, TabulatedSpectrum  # needs numpy
+    """Return a surface as input of friction laws; two waves that its file lacks are found in its spectrum."""
+    from sim.physics.roughness import SelfAffine, TabulatedSpectrum, two_waves  # needs numpy
 
     model = loaded.model
     spectrum: Spectrum | None = None
@@ -171,9 +171,11 @@ def surface_of(loaded: LoadedSurface) -> Surface:
         spectrum = SelfAffine(s.C0, s.q0, s.q1, s.H)
     elif loaded.radial is not None:
         spectrum = TabulatedSpectrum(loaded.radial.q_1_m, loaded.radial.power_m4)
-    waves = (model.waves.coarse, model.waves.fine) if model.waves is not None else ()
-    coarse, fine = [Sinusoid(wave.wavelength, wave.Ra) for wave in waves] or (None, None)
-    return Surface(name=model.name, spectrum=spectrum, coarse=coarse, fine=fine)
+    if model.waves is not None:
+        coarse, fine = (Sinusoid(wave.wavelength, wave.Ra) for wave in (model.waves.coarse, model.waves.fine))
+        return Surface(model.name, spectrum, coarse, fine)
+    found = two_waves(spectrum) if spectrum is not None else None
+    return Surface(model.name, spectrum, *(found if found is not None else ()))
 
 
 def _named(folder: Path) -> Iterator[tuple[Path, str]]:

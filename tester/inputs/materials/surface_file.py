@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sim.physics.materials import length_text
 from tester.base.plugins import MissingExtraError
 from tester.base.source import InvalidSource, Tree
 from tester.inputs.materials.files import DataFile, Findings, MaterialFile, OpenedMaterial
@@ -39,12 +40,12 @@ class LoadedSurface:
             parts.append(f"spectrum {origin}, {len(q)} points, waves of {_length(q[-1])} to {_length(q[0])}")
         if self.model.waves is not None:
             w = self.model.waves.coarse
-            parts.append(f"waves, coarse {w.wavelength * 1e3:g} mm, Ra {w.Ra * 1e3:g} mm")
+            parts.append(f"waves, coarse {length_text(w.wavelength)}, Ra {length_text(w.Ra)}")
         return "; ".join(parts)
 
 
 def _length(q_1_m: float) -> str:
-    return f"{2e6 * np.pi / q_1_m:.3g} um"
+    return length_text(2.0 * np.pi / q_1_m)
 
 
 def load_surface(path: Path, name: str | None = None) -> LoadedSurface:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.physics.roughness import SelfAffine, TabulatedSpectrum
+from sim.physics.roughness import SPLIT_M, SelfAffine, TabulatedSpectrum, TwoWaves, two_waves
 
 ABRASIVE = SelfAffine(2.6023e-19, 2e4, 10.0**5.344, 0.8)
 
@@ -67,3 +67,39 @@ def test_figures_of_no_spectrum_are_refused(figures: tuple[float, float, float, 
 def test_tables_of_no_spectrum_are_refused(q: list[float], power: list[float], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         TabulatedSpectrum(np.array(q), np.array(power))
+
+
+def found(spectrum: SelfAffine | TabulatedSpectrum) -> TwoWaves:
+    waves = two_waves(spectrum)
+    assert waves is not None
+    return waves
+
+
+def test_two_waves_keep_the_mean_squares_of_heights_and_of_profile_slopes() -> None:
+    spectrum = SelfAffine(1e-13, 600.0, 6e4, 0.8)
+    coarse, fine, split_m = found(spectrum)
+    assert split_m == SPLIT_M == 0.5e-3
+    assert 0.5 * (coarse.ra_m**2 + fine.ra_m**2) == pytest.approx(spectrum.rms_height_m**2, rel=1e-9)
+    slopes = sum(0.5 * (2.0 * math.pi * wave.ra_m / wave.wavelength_m) ** 2 for wave in (coarse, fine))
+    assert slopes == pytest.approx(0.5 * spectrum.rms_slope**2, rel=1e-9)
+    # The closed forms of each side.
+    for wave, low, high in ((coarse, 600.0, 2.0 * math.pi / split_m), (fine, 2.0 * math.pi / split_m, 6e4)):
+        side = SelfAffine(1e-13 * (low / 600.0) ** -3.6, low, high, 0.8)
+        assert wave.ra_m == pytest.approx(math.sqrt(2.0) * side.rms_height_m, rel=1e-9)
+        assert wave.wavelength_m == pytest.approx(2.0 * math.pi * wave.ra_m / side.rms_slope, rel=1e-9)
+
+
+def test_waves_of_one_length_in_all_directions_have_a_profile_that_is_longer_by_the_root_of_two() -> None:
+    # A narrow ring at 4000 1/m (1.57 mm) and one at 1e5 1/m (63 um), on a floor that counts for nothing.
+    q = np.array([1e3, 3.96e3, 3.98e3, 4.02e3, 4.04e3, 0.99e5, 0.995e5, 1.005e5, 1.01e5, 1e6])
+    tops = np.array([1e-30, 1e-30, 1e-13, 1e-13, 1e-30, 1e-30, 1e-19, 1e-19, 1e-30, 1e-30])
+    coarse, fine, _ = found(TabulatedSpectrum(q, tops))
+    assert coarse.wavelength_m == pytest.approx(math.sqrt(2.0) * 2.0 * math.pi / 4e3, rel=0.01)
+    assert fine.wavelength_m == pytest.approx(math.sqrt(2.0) * 2.0 * math.pi / 1e5, rel=0.01)
+
+
+def test_a_band_without_macrotexture_is_divided_in_its_middle_and_a_narrow_one_not_at_all() -> None:
+    assert found(ABRASIVE).split_m == pytest.approx(2.0 * math.pi / math.sqrt(2e4 * 10.0**5.344), rel=1e-12)
+    # 0.5 mm is inside, but waves from 0.5 to 0.9 mm alone are none.
+    assert found(SelfAffine(1e-16, 7e3, 7e5, 0.8)).split_m == pytest.approx(2.0 * math.pi / 7e4, rel=1e-12)
+    assert two_waves(SelfAffine(1e-19, 2e4, 1.7e5, 0.8)) is None

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sim.physics.roughness import TabulatedSpectrum, two_waves
 from tester.inputs.materials.radial import detrended, radial_spectrum
 
 PIXEL = (1e-6, 1e-6)
@@ -73,3 +74,32 @@ def test_small_and_flat_maps_are_refused() -> None:
         radial_spectrum(np.ones((15, 40)), PIXEL)
     with pytest.raises(ValueError, match="all alike"):
         radial_spectrum(np.zeros((32, 32)), PIXEL)
+
+
+def ringed(generator: np.random.Generator, points: int, pixel_m: float, rings: tuple[tuple[float, float], ...]) -> Array:
+    """Return a map of waves in all directions with random phases: length and rms height, m, of each ring."""
+    q = np.fft.fftfreq(points, pixel_m)
+    length = 1.0 / np.maximum(np.hypot(q[:, None], q[None, :]), 1e-9)
+    heights = np.zeros((points, points))
+    for wavelength_m, rms_m in rings:
+        noise = np.fft.fft2(generator.normal(size=(points, points)))
+        part = np.fft.ifft2(np.where(np.abs(length / wavelength_m - 1.0) < 0.1, noise, 0.0)).real
+        heights += part * rms_m / float(np.std(part))
+    return heights
+
+
+def test_the_two_waves_of_maps_are_found_in_their_spectra() -> None:
+    pixel_m, rings = 20e-6, ((1.28e-3, 100e-6), (160e-6, 10e-6))
+    ratios: list[list[float]] = []
+    for seed in range(20):
+        heights = ringed(np.random.default_rng(seed), 512, pixel_m, rings)
+        radial = radial_spectrum(detrended(heights, (pixel_m, pixel_m), "plane"), (pixel_m, pixel_m))
+        waves = two_waves(TabulatedSpectrum(radial.q_1_m, radial.power_m4))
+        assert waves is not None and waves.split_m == 0.5e-3
+        ratios.append([
+            value
+            for wave, (length_m, rms_m) in zip(waves[:2], rings, strict=True)
+            for value in (wave.wavelength_m / (2.0**0.5 * length_m), wave.ra_m / (2.0**0.5 * rms_m))
+        ])
+    assert np.mean(ratios, axis=0) == pytest.approx(np.ones(4), abs=0.1)  # 20 points a decade do not resolve a ring
+    assert np.min(ratios) > 0.7 and np.max(ratios) < 1.4
