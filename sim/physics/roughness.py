@@ -145,9 +145,9 @@ def two_waves(spectrum: Spectrum) -> TwoWaves | None:
     """Return the two waves of a spectrum; None for a band that is too narrow for two.
 
     The band is divided at 0.5 mm (``SPLIT_M``), or in its middle on a logarithmic scale [A] if one side would be
-    narrower than ``LEAST_RATIO``. Each wave has the mean square of heights and of profile slopes of its side: its
-    length is the profile's root-mean-square wavelength 2 pi Rq / Rdq (ISO 4287:1984), its amplitude, which paper G takes
-    for Ra, sqrt(2) Rq. A profile's mean-square slope is half the surface's.
+    narrower than ``LEAST_RATIO``. Each wave has the mean squares of heights and of profile slopes of its side: its
+    length is the profile's root-mean-square wavelength 2 pi Rq / Rdq (ISO 4287:1984), its amplitude sqrt(2) Rq, which
+    paper G takes for Ra. A profile's mean-square slope is half the surface's.
     """
     q0, q1 = spectrum.band_1_m
     split = 2.0 * math.pi / SPLIT_M

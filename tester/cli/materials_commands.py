@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
+from tester.cli.material_words import lines_of, summary_of
 from tester.cli.options import QuantityType, json_option, print_json
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from tester.inputs.materials.compound import LoadedCompound
     from tester.inputs.materials.files import DataFile, Findings, Role
     from tester.inputs.materials.library import Library
-    from tester.inputs.materials.material_schema import CompoundModel
     from tester.inputs.materials.surface_file import LoadedSurface
 
     Loaded = LoadedCompound | LoadedSurface
@@ -80,87 +80,11 @@ def show(name: str, recipe: Path | None, as_json: bool) -> None:
         meant = f', did you mean "{near[0]}"?' if near else ""
         raise click.UsageError(f'no compound and no surface has the name "{name}"{meant}')
     if as_json:
-        print_json([_summary(material) for material in loaded])
+        print_json([summary_of(material) for material in loaded])
         return
     for material in loaded:
-        for line in _lines(material):
+        for line in lines_of(material):
             click.echo(line)
-
-
-def _summary(material: Loaded) -> dict[str, object]:
-    file, model = material.file, material.model
-    return {
-        "role": file.role,
-        "name": file.name,
-        "file": str(file.path),
-        "sha256": file.sha256,
-        "data": {data.name: data.sha256 for data in file.data},
-        "holds": material.holds(),
-        "notes": list(material.notes),
-        "doubts": [str(doubt) for doubt in file.doubts],
-        "content": model.model_dump(mode="json", by_alias=True, exclude_none=True, exclude={"moduli", "radial"}),
-    }
-
-
-def _lines(material: Loaded) -> Iterable[str]:
-    from tester.inputs.materials.material_schema import CompoundModel
-
-    file, model = material.file, material.model
-    yield f"{file.name}: {file.role}, {file.path}"
-    yield f"sha256   {file.sha256}"
-    for data in file.data:
-        yield f"data     {data.name}, sha256 {data.sha256}"
-    yield f"holds    {material.holds()}"
-    for label, text in (("note", model.note), ("source", model.source)):
-        if text:
-            yield f"{label:8} {text}"
-    for key, text in model.sources.items():
-        yield f"         {key}: {text}"
-    if isinstance(model, CompoundModel):
-        yield from _of_compound(model)
-    else:
-        yield from _of_surface(cast("LoadedSurface", material))
-    for note in material.notes:
-        yield f"noted    {note}"
-    for doubt in file.doubts:
-        yield f"doubt    {doubt}"
-
-
-def _of_compound(model: CompoundModel) -> Iterable[str]:
-    if model.formulation:
-        yield "made of  " + ", ".join(f"{name} {phr:g} phr" for name, phr in model.formulation.items())
-    if model.Tg is not None:
-        yield f"Tg       {model.Tg:g} degC"
-    if model.shear is not None:
-        s = model.shear
-        yield f"shear    tau_s0 {s.tau_s0 / 1e3:g} kPa, v_c {s.v_c:g} m/s, n {s.n:g}, ratio {s.ratio:g}"
-    if model.over_temperature is not None:
-        t = model.over_temperature
-        law = f"alpha {t.alpha:g}, beta {t.beta:g} 1/K2, gamma {t.gamma:g}, Tm {t.Tm:g} degC"
-        yield f"over temperature  {law}; {t.least:g} to {t.most:g} degC"
-
-
-def _of_surface(loaded: LoadedSurface) -> Iterable[str]:
-    """Yield roughness and waves: of the spectrum as a law takes it, and the waves of the file or found in it."""
-    from sim.physics.materials import length_text
-    from tester.inputs.materials.library import surface_of
-
-    surface = surface_of(loaded)
-    if surface.spectrum is not None:
-        rms, slope = surface.spectrum.rms_height_m, surface.spectrum.rms_slope
-        yield f"rough    rms {length_text(rms)}, rms slope {slope:.3g}"
-    if surface.coarse is None or surface.fine is None:
-        yield "waves    none: the spectrum is too narrow for two, and greta needs two"
-        return
-    if surface.split_m is None:
-        yield "waves    as the file states them (length, Ra):"
-    else:
-        yield (
-            f"waves    found in the spectrum, divided at {length_text(surface.split_m)}; each has rms height and slope of"
-            " its side (length, amplitude, which counts as Ra):"
-        )
-    for label, wave in (("coarse", surface.coarse), ("fine", surface.fine)):
-        yield f"{label:8} {length_text(wave.wavelength_m)}, {length_text(wave.ra_m)}"
 
 
 @materials.command()
@@ -225,11 +149,12 @@ def import_() -> None:
 )
 @click.option("--frequency", type=QuantityType("Hz"), default=None, help="Of every point, if no column has it.")
 @click.option("--temperature", type=QuantityType("degC"), default=None, help="Of every point, if no column has it.")
+@click.option("--strain", type=QuantityType("%"), default=None, help="Amplitude, if no column has it, e.g. 0.1%.")
 @click.option("--poisson", type=click.FloatRange(0.3, 0.5), default=0.5, show_default=True, help="Converts G to E.")
 @force_option
 def dma(
     file: Path, name: str, out: Path, columns: Sequence[str], units: Sequence[str], frequency: float | None,
-    temperature: float | None, poisson: float, force: bool,
+    temperature: float | None, strain: float | None, poisson: float, force: bool,
 ) -> None:  # fmt: skip
     """Make a compound of FILE, a table of moduli (dynamic mechanical analysis) with headings and units.
 
@@ -238,13 +163,15 @@ def dma(
     from tester.inputs.materials.dma import MAX_BYTES, read_dma
     from tester.inputs.materials.files import Findings, decoded
     from tester.inputs.materials.headings import DmaOptions
+    from tester.inputs.materials.sweep_facts import fact_words, sweep_facts
     from tester.inputs.materials.written import compound_text
 
-    options = DmaOptions(_named(columns), dict(_pairs(units, "--unit")), frequency, temperature, poisson)
+    options = DmaOptions(_named(columns), dict(_pairs(units, "--unit")), frequency, temperature, poisson, strain)
     findings = Findings(str(file))
     data = _read(file, MAX_BYTES)
     table = read_dma(decoded(data.content), options, findings)
-    _write(out, compound_text(name, table, data, findings), findings, force, table.describe())
+    facts = "".join(f"\n{label:9} {words}" for label, words in fact_words(sweep_facts(table)))
+    _write(out, compound_text(name, table, data, findings), findings, force, table.describe() + facts)
 
 
 def _named(columns: Sequence[str]) -> dict[str, str]:

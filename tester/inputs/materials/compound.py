@@ -19,9 +19,10 @@ from tester.inputs.materials.headings import (
     quantity_named,
 )
 from tester.inputs.materials.material_schema import CompoundModel, TableFileModel, TableModel
-from tester.inputs.materials.measured_moduli import ModuliRow, ModuliTable, judge, shift_doubts
+from tester.inputs.materials.measured_moduli import ModuliRow, ModuliTable, judge, shift_doubts, strain_doubts
 
 EXPECTED = "a compound is a list of keys: name, formulation, Tg, moduli and others"
+_ROW = ("temperature", "frequency", "E'", 'E"', "strain")
 FORMULATED_PHR = (90.0, 500.0)
 """Limits of the sum of a formulation [A]: the rubber alone is 100."""
 
@@ -65,6 +66,8 @@ def load_compound(path: Path, name: str | None = None) -> LoadedCompound:
         if data is not None and not findings.problems:
             table = _beside(model, model.moduli.file, data, path, findings)
     model = opened.content()
+    if table is not None and model.moduli is not None and model.moduli.strain is not None:
+        table = table.at_strain(model.moduli.strain)
     for doubt in _doubts(model, table):
         findings.doubt(tree.key_position(("moduli",)), doubt)
     _formulation(model, tree, findings)
@@ -86,9 +89,10 @@ def _inline(model: TableModel, tree: Tree, findings: Findings) -> ModuliTable | 
     columns = [] if wrong else [*map(heading, model.columns)]
     names = {column.quantity for column in columns}
     due = {"temperature", "frequency", "E'", 'E"'}
-    if not wrong and names != due:
+    if not wrong and names not in (due, due | {"strain"}):
         headings = ", ".join(model.columns)
-        problem_words = f"columns: {shown(headings)} (expected temperature, frequency, E' and E'', each once; "
+        expected = "temperature, frequency, E' and E'', each once, and strain"
+        problem_words = f"columns: {shown(headings)} (expected {expected}; "
         findings.refuse(
             tree.position((*at, "columns")), f"{problem_words}`tester materials import dma` converts others)"
         )
@@ -100,7 +104,7 @@ def _inline(model: TableModel, tree: Tree, findings: Findings) -> ModuliTable | 
     if findings.problems:
         return None
     turn = [conversion(column.quantity, column.unit) for column in columns]
-    order = [[column.quantity for column in columns].index(name) for name in ("temperature", "frequency", "E'", 'E"')]
+    order = [[column.quantity for column in columns].index(name) for name in _ROW if name in names]
     values = [[change(float(cell)) for change, cell in zip(turn, row, strict=True)] for row in model.rows]
     rows = [*starmap(ModuliRow, ([value[index] for index in order] for value in values))]
     judge(rows, lambda number: tree.position((*at, "rows", number)), findings)
@@ -127,6 +131,7 @@ def _beside(
         link.frequency,
         link.temperature,
         model.poisson,
+        model.moduli.strain if model.moduli is not None else None,
         ask_column='columns: {{"{quantity}": HEADING}}',
         ask_unit='units: {{"{heading}": {unit}}}',
         ask_value="{quantity}: {example}",
@@ -148,6 +153,7 @@ def _doubts(model: CompoundModel, table: ModuliTable | None) -> list[str]:
     doubts: list[str] = []
     if table is not None:
         doubts += shift_doubts(table, model.Tg, model.decade_k)
+        doubts += strain_doubts(table)
         if moduli.beyond == "hold":
             doubts.append("beyond the frequencies of its points the moduli of its ends hold on: an extrapolation")
     zener = moduli.fractional_zener

@@ -8,10 +8,9 @@ conversions are noted, doubts are kept.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from difflib import get_close_matches
 from math import isfinite, nan
-from typing import Final
 
 from tester.inputs.materials.files import Findings
 from tester.inputs.materials.headings import (
@@ -23,54 +22,24 @@ from tester.inputs.materials.headings import (
     conversion,
     first_unit,
     heading,
+    heading_quantity,
     is_unit,
     layout_of,
     quantity_of,
     unit_of,
     without_brackets,
 )
-from tester.inputs.materials.measured_moduli import ALIKE, ModuliRow, ModuliTable, judge
-
-_STRAIN: Final = re.compile(r"(dyn(amic)?|shear|tensile|oscillation)?\W*(strain|deformation)\b(?!\W*rate)", re.I)
-_PERCENT: Final = re.compile(r"%|per\s?cent", re.I)
+from tester.inputs.materials.measured_moduli import ALIKE, ModuliRow, ModuliTable, judge, strain_words
 
 
 def tell_unused(layout: DmaLayout, used: Set[int], result: Findings) -> None:
-    """Note the unused columns and the range of a strain column; add a doubt if its strains differ."""
+    """Note the unused columns; a strain without a known unit is one of them."""
     unused = [(at, text) for at, text in enumerate(layout.headings) if text and at not in used]
     if unused:
         result.notes.append("columns not used: " + ", ".join(f'"{text}"' for _, text in unused))
-    for at, text in unused:
-        if _STRAIN.match(text):
-            _tell_strain(layout, at, text, result)
-
-
-def _tell_strain(layout: DmaLayout, at: int, text: str, result: Findings) -> None:
-    values = sorted(_values(layout, at))
-    if not values:
-        return
-    below = layout.units[at] if layout.units is not None and at < len(layout.units) else ""
-    unit = " %" if _PERCENT.search(text + below) else ""
-    low, high = values[0], values[-1]
-    phrase = f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
-    result.notes.append(f'strain: {phrase}, from "{text}"' + ("" if unit else ", without a unit"))
-    if high > ALIKE * low:
-        result.doubt(
-            (layout.at + 1, 1),
-            f"measured at strains of {phrase}: moduli of filled rubber fall with strain, and laws assume one strain",
-            lasting=True,
-        )
-
-
-def _values(layout: DmaLayout, at: int) -> Iterator[float]:
-    for _, cells in layout.rows():
-        cell = cells[at] if at < len(cells) else ""
-        try:
-            value = abs(float(cell if layout.delimiter == "," else cell.replace(",", ".")))
-        except ValueError:
-            continue
-        if isfinite(value):
-            yield value
+    for _, text in unused:
+        if heading_quantity(text) == "strain":
+            result.notes.append(f'strain: "{text}" has no unit of a strain and is not used ({accepted("strain")})')
 
 
 MAX_BYTES = 16 * 1024 * 1024
@@ -92,6 +61,14 @@ def read_dma(text: str, options: DmaOptions, findings: Findings) -> ModuliTable:
             (1, 1), f"no row of headings is recognised (expected temperature, frequency, E', E''; {asked})"
         )
     return _Reading(layout, options, findings).table()
+
+
+def _is_strain(cell: str, comma: bool) -> bool:
+    """Return whether a cell holds a strain other than 0."""
+    try:
+        return float(cell.replace(",", ".") if comma else cell) != 0.0
+    except ValueError:
+        return False
 
 
 class _Reading:
@@ -117,7 +94,19 @@ class _Reading:
         self.findings.end()
         self._cross_check(points)
         tell_unused(self.layout, {column.index for column in self.columns.values()}, self.findings)
-        return ModuliTable(tuple(rows))
+        return self._strained(ModuliTable(tuple(rows)))
+
+    def _strained(self, table: ModuliTable) -> ModuliTable:
+        """Return the table with its strain: that of its column, else the option's."""
+        strains, stated = table.strains_percent, self.options.strain_percent
+        if strains is not None:
+            self.findings.notes.append(f'strain: {strain_words(*strains)}, from "{self.columns["strain"].text}"')
+        if stated is None:
+            return table
+        if strains is not None and not strains[0] / ALIKE < stated < strains[1] * ALIKE:
+            where = f"the file has {strain_words(*strains)}, which counts"
+            self.findings.doubt(self.place, f"strain: {stated:g} % is stated; {where}", lasting=True)
+        return table.at_strain(stated)
 
     # -- columns ----------------------------------------------------------------------------------------------
 
@@ -160,17 +149,20 @@ class _Reading:
         try:
             known = heading(text)
         except UnitRefusedError as error:
-            known, refused = Heading(text, quantity_of(re.split(r"[\[(/{,]", text)[0])), str(error)
+            known, refused = Heading(text, heading_quantity(text)), str(error)
         unit = known.unit
         if quantity is not None and quantity != known.quantity:
             known, unit = Heading(text, quantity), self._bracketed(text, quantity)
         if not known.quantity:
             return None
-        if self.layout.units is not None and index < len(self.layout.units) and self.layout.units[index]:
-            unit, refused = self._unit(known.quantity, self.layout.units[index], text) or unit, ""
+        below = self.layout.units[index] if self.layout.units is not None and index < len(self.layout.units) else ""
+        if below and (known.quantity != "strain" or below in ("%", "-", "1")):
+            unit, refused = self._unit(known.quantity, below, text) or unit, ""
         for name, option in self.options.units.items():
             if self._index(name) == index:
                 unit, refused = self._unit(known.quantity, option, text), ""
+        if not unit and known.quantity == "strain":
+            return None  # such as a displacement in um; noted with the unused columns
         if not unit and known.quantity != "tan":
             asked = self.options.ask_unit.format(heading=text, unit=first_unit(known.quantity))
             missing = f'"{text}" has no unit (expected {accepted(known.quantity)}; {asked})'
@@ -235,6 +227,8 @@ class _Reading:
             values: dict[str, float] = {}
             for column in self.columns.values():
                 cell = cells[column.index] if column.index < len(cells) else ""
+                if column.quantity == "strain" and not _is_strain(cell, comma):
+                    continue  # doubted with the table
                 number = self._number(cell, column, line, comma)
                 values[column.quantity] = conversion(column.quantity, column.unit)(number)
             points.append((line, values))
@@ -286,7 +280,7 @@ class _Reading:
         letter, factor = ("G", 2.0 * (1.0 + self.options.poisson)) if "G'" in values else ("E", 1.0)
         storage = values[f"{letter}'"]
         loss = values[f'{letter}"'] if f'{letter}"' in values else storage * values["tan"]
-        return ModuliRow(temperature, frequency, factor * storage, factor * loss)
+        return ModuliRow(temperature, frequency, factor * storage, factor * loss, values.get("strain"))
 
     def _check_frequency(self, points: Sequence[Point]) -> None:
         """Compare the frequency that a person has set for every point with the file's column, if there is one."""

@@ -17,7 +17,7 @@ from tester.base.words import listed
 
 ZERO_C = 273.15
 
-QUANTITIES: Final = ("temperature", "frequency", "omega", "E'", 'E"', "G'", 'G"', "tan")
+QUANTITIES: Final = ("temperature", "frequency", "omega", "E'", 'E"', "G'", 'G"', "tan", "strain")
 """Quantities of columns; ``E"`` may also be written as ``E''``."""
 
 _NAMES: Final[Mapping[str, frozenset[str]]] = MappingProxyType({
@@ -29,6 +29,8 @@ _NAMES: Final[Mapping[str, frozenset[str]]] = MappingProxyType({
     "G'": frozenset({"g'", "shearstoragemodulus", "storageshearmodulus"}),
     'G"': frozenset({'g"', "shearlossmodulus", "lossshearmodulus"}),
     "tan": frozenset({"tan", "tandelta", "tanδ", "tand", "lossfactor", "dampingfactor", "tan(delta)", "tan(δ)"}),
+    "strain": frozenset({f"{kind}{what}" for kind in ("", "dyn", "dynamic", "shear", "tensile", "oscillation")
+                         for what in ("strain", "deformation", "strainamplitude")}),
 })
 
 _LETTERS: Final = {"T": "temperature", "f": "frequency", "w": "omega", "ω": "omega"}
@@ -40,6 +42,7 @@ _UNITS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType({
     "omega": ("rad/s",),
     **{modulus: tuple(_MODULUS_UNITS) for modulus in ("E'", 'E"', "G'", 'G"')},
     "tan": ("1",),
+    "strain": ("%", "1"),
 })
 """Units of each quantity."""
 
@@ -47,7 +50,7 @@ _SPELLINGS: Final = {
     "°c": "degC", "℃": "degC", "c": "degC", "degc": "degC", "deg c": "degC", "celsius": "degC", "k": "K",
     "kelvin": "K", "hz": "Hz", "khz": "kHz", "rad/s": "rad/s", "rad/sec": "rad/s", "rad s-1": "rad/s",
     "rad·s⁻¹": "rad/s", "pa": "Pa", "kpa": "kPa", "n/mm2": "MPa", "n/mm²": "MPa", "gpa": "GPa",
-    "-": "1", "1": "1", "": "1", "--": "1", "%": "%",
+    "-": "1", "1": "1", "": "1", "--": "1", "%": "%", "percent": "%", "per cent": "%",
 }  # fmt: skip
 """Makers' spellings of units, in small letters; MPa is handled apart, because mPa is not accepted."""
 _BRACKETED = re.compile(r"^(?P<name>.*?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]\s*$")
@@ -93,6 +96,11 @@ def quantity_of(name: str) -> str:
         return _LETTERS[name.strip()]
     tidy = re.sub(r"[\s._:\-*|]+", "", name.translate(_QUOTES).casefold()).replace("''", '"')
     return next((quantity for quantity, names in _NAMES.items() if tidy in names), "")
+
+
+def heading_quantity(text: str) -> str:
+    """Return the quantity of a heading whatever its unit, "" for none."""
+    return quantity_of(re.split(r"[\[(/{,]", text)[0])
 
 
 def quantity_named(text: str) -> str:
@@ -147,9 +155,11 @@ def heading_problems(texts: Sequence[str]) -> Iterator[str]:
 
 
 def conversion(quantity: str, unit: str) -> Callable[[float], float]:
-    """Return the conversion of a number in a unit into degC, Hz, Pa or a plain number."""
+    """Return the conversion of a number in a unit into degC, Hz, Pa, per cent (strain) or a plain number."""
     if unit == "K":
         return lambda value: value - ZERO_C
+    if quantity == "strain":
+        return lambda value: abs(value) * (1.0 if unit == "%" else 100.0)
     if quantity in ("frequency", "omega"):
         factor = {"Hz": 1.0, "kHz": 1e3, "rad/s": 1.0 / (2.0 * pi)}[unit]
     else:
@@ -166,6 +176,7 @@ class DmaOptions:
     frequency_hz: float | None = None
     temperature_c: float | None = None
     poisson: float = 0.5
+    strain_percent: float | None = None
     ask_column: str = '--columns "{quantity}=HEADING"'
     ask_unit: str = '--unit "{heading}={unit}"'
     ask_value: str = '--{quantity} "{example}"'

@@ -175,7 +175,9 @@ def surface_of(loaded: LoadedSurface) -> Surface:
         coarse, fine = (Sinusoid(wave.wavelength, wave.Ra) for wave in (model.waves.coarse, model.waves.fine))
         return Surface(model.name, spectrum, coarse, fine)
     found = two_waves(spectrum) if spectrum is not None else None
-    return Surface(model.name, spectrum, *(found if found is not None else ()))
+    if found is None:
+        return Surface(model.name, spectrum)
+    return Surface(model.name, spectrum, found.coarse, found.fine, found.split_m)
 
 
 def _named(folder: Path) -> Iterator[tuple[Path, str]]:

@@ -129,6 +129,8 @@ class ModuliModel(Section, frozen=True):
     file: TableFileModel | None = None
     fractional_zener: ZenerModel | None = None
     constant: ConstantModel | None = None
+    strain: Annotated[float, Quantity("%", gt=0, le=100)] | None = None
+    """amplitude of the strain at which the points were measured, if they have no column of it"""
     beyond: Literal["refuse", "hold"] = "refuse"
     """at frequencies beyond a table: no value, or that of its end"""
 

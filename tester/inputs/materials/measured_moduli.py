@@ -6,7 +6,7 @@ Nothing is repaired: a table is used unchanged, refused, or used with its doubts
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import isfinite, log10
 
@@ -21,6 +21,18 @@ SLOWEST_HZ, FASTEST_HZ = 1e-4, 1e4
 """Frequency range of instruments [A]: a value beyond it is another quantity, or was shifted already."""
 SOFTEST_PA, STIFFEST_PA = 1e4, 2e10
 """Range of storage moduli of rubber and its glass [A]."""
+GLASS_LEAST_PA = 1e8
+"""Storage modulus between that of rubber and that of its glass [A]: a filled rubber reaches some 30 MPa."""
+GLASS_PA = (3e8, 1e10)
+"""Range of the storage modulus of a rubber's glass [A]: polymers' glasses have 1 to 4 GPa."""
+COLD_K = 30.0
+"""So far below the peak of tan delta a rubber is a glass [A]."""
+PEAK_C = 100.0
+"""Warmest peak of a rubber's tan delta [A]."""
+FLANK_SHARE = 0.8
+"""Tan delta has its peak inside a sweep if it falls below this share of it on both sides [A]."""
+TAN_LEAST = 0.02
+"""A rubber's tan delta exceeds this somewhere [A]."""
 NOISE_K = 1.0
 """Noise of a sweep's temperatures [A]: they go back by less than this."""
 ALIKE = 1.05
@@ -39,6 +51,8 @@ class ModuliRow:
     frequency_hz: float
     storage_pa: float
     loss_pa: float
+    strain_percent: float | None = None
+    """Amplitude of the strain; None where it is not stated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,16 +71,34 @@ class ModuliTable:
         """Return the lowest and the highest temperature."""
         return min(row.temperature_c for row in self.rows), max(row.temperature_c for row in self.rows)
 
+    @property
+    def strains_percent(self) -> tuple[float, float] | None:
+        """Return the least and the greatest stated strain, None where none is stated."""
+        strains = [row.strain_percent for row in self.rows if row.strain_percent is not None]
+        return (min(strains), max(strains)) if strains else None
+
+    def at_strain(self, percent: float) -> ModuliTable:
+        """Return the table with a strain for the points that state none."""
+        rows = (row if row.strain_percent is not None else replace(row, strain_percent=percent) for row in self.rows)
+        return ModuliTable(tuple(rows))
+
     def describe(self) -> str:
         """Return its ranges, in words."""
         low, high = self.temperatures_c
         frequencies = self.frequencies_hz
         at = f"{frequencies[0]:g} Hz" if len(frequencies) == 1 else f"{frequencies[0]:g} to {frequencies[-1]:g} Hz"
         storage = sorted(row.storage_pa for row in self.rows)
+        strains = self.strains_percent
         return (
             f"{len(self.rows)} points, {low:g} to {high:g} degC, {at}, "
-            f"E' {storage[0] / 1e6:.3g} to {storage[-1] / 1e6:.3g} MPa"
+            f"E' {storage[0] / 1e6:.3g} to {storage[-1] / 1e6:.3g} MPa, "
+            f"{f'strain {strain_words(*strains)}' if strains is not None else 'strain not stated'}"
         )
+
+
+def strain_words(low: float, high: float) -> str:
+    """Return a range of strains in words."""
+    return f"{low:g} %" if low == high else f"{low:g} to {high:g} %"
 
 
 def judge(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
@@ -135,6 +167,47 @@ def _doubts(rows: Sequence[ModuliRow], above: Sequence[int], place: Place, findi
     if unlike:
         doubt = f"E': {rows[unlike[0]].storage_pa:g} Pa is not that of a rubber"
         findings.doubt(place(unlike[0]), f"{doubt} ({SOFTEST_PA:g} to {STIFFEST_PA:g} Pa): is the unit right?")
+    else:
+        _units_doubt(rows, place, findings)
+
+
+def _units_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:
+    """Add doubts where height or place of tan delta's peak, or the glass below it, are not those of a rubber."""
+    slowest = min(row.frequency_hz for row in rows)
+    sweep = [number for number, row in enumerate(rows) if row.frequency_hz <= ALIKE * slowest]
+    top = max(sweep, key=lambda number: rows[number].loss_pa / rows[number].storage_pa)
+    tan, peak_c = rows[top].loss_pa / rows[top].storage_pa, rows[top].temperature_c
+    if tan < TAN_LEAST:
+        findings.doubt(place(top), f"tan delta is {tan:.2g} at most: is E'' in the unit of E'?")
+        return
+    ends = (rows[find(sweep, key=lambda number: rows[number].temperature_c)] for find in (min, max))
+    if any(row.loss_pa > FLANK_SHARE * tan * row.storage_pa for row in ends):
+        return  # no peak within the sweep
+    if peak_c > PEAK_C:
+        findings.doubt(place(top), f"tan delta is greatest at {peak_c:g} degC: are the temperatures in K?")
+    cold = [number for number in sweep if rows[number].temperature_c <= peak_c - COLD_K]
+    glass = max(cold, key=lambda number: rows[number].storage_pa, default=None)
+    if glass is not None and not GLASS_PA[0] <= rows[glass].storage_pa <= GLASS_PA[1]:
+        findings.doubt(
+            place(glass),
+            f"E' is {rows[glass].storage_pa / 1e6:.3g} MPa at most {COLD_K:g} K and more below the peak of tan delta at"
+            f" {peak_c:g} degC; a rubber's glass has {GLASS_PA[0] / 1e6:g} to {GLASS_PA[1] / 1e6:g} MPa: is the unit"
+            " right?",
+        )
+
+
+def strain_doubts(table: ModuliTable) -> Iterator[str]:
+    """Yield doubts on the strain of a table, on which the moduli of a filled rubber depend (paper S, Fig 11)."""
+    strains = table.strains_percent
+    if strains is None:
+        yield "the strain is not stated: moduli of filled rubber fall with strain (state it as moduli: {strain: 0.1 %})"
+        return
+    unstated = sum(row.strain_percent is None for row in table.rows)
+    if unstated:
+        yield f"the strain is not stated at {unstated} of {len(table.rows)} points"
+    if strains[1] > ALIKE * strains[0]:
+        phrase = strain_words(*strains)
+        yield f"measured at strains of {phrase}: moduli of filled rubber fall with strain, and laws assume one strain"
 
 
 def _swapped_doubt(rows: Sequence[ModuliRow], place: Place, findings: Findings) -> None:

@@ -174,3 +174,72 @@ def test_check_of_a_recipe_warns_of_doubts(folder: Path, capsys: pytest.CaptureF
     path.write_text('name: "1#"\nTg: -53\n', encoding="utf-8")
     assert invoke(["check", "r.yaml"]) == 3
     assert "one.yaml:2:5: Tg: -53 has no unit" in capsys.readouterr().err
+
+
+def test_show_gives_the_facts_of_a_sweep(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert invoke(["materials", "show", "tread"]) == 0
+    lines = {line[:9].strip(): line[9:] for line in capsys.readouterr().out.splitlines()}
+    # The formulas of tread.csv: 0.12 + 0.55 at -15 degC, 7 MPa to 2 GPa; strain as its file states.
+    assert lines["tan peak"].startswith("0.670") and " at -15.0" in lines["tan peak"]
+    assert lines["E0"].startswith("7.000") and lines["Einf"].startswith("1999.")
+    assert lines["Einf/E0"].startswith("285.6") and "kelvins a decade: 1 frequency" in lines["unknown"]
+    assert "strain 1 %" in lines["holds"]
+
+
+def test_show_of_a_formula_gives_its_maxima_over_the_frequency(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["materials", "show", "SBR", "--json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)
+    # omega of the loss factor 3162 rad/s, of the loss modulus 1e6 rad/s at 20 degC.
+    assert one["facts"]["at 20 °C"] == [
+        "tan delta has its peak, 1.24, at 503 Hz",
+        "the loss modulus has its peak at 1.59e+05 Hz",
+    ]
+    assert one["content"]["sources"]["Tg"].startswith("[A]")
+
+
+@pytest.mark.parametrize(
+    ("name", "waves"),
+    [
+        ("road", ["as the file states them (length, Ra):"]),
+        ("asphalt", ["found in the spectrum, divided at 500 um; each has rms height and slope of its side (length, "
+                     "amplitude, which counts as Ra):"]),
+    ],
+)  # fmt: skip
+def test_show_tells_stated_waves_from_found_ones(
+    name: str, waves: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["materials", "show", name, "--json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)
+    assert one["facts"]["waves"] == waves and one["facts"]["coarse"] and one["facts"]["fine"]
+
+
+def test_a_prediction_with_found_waves_says_so(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["predict", "--law", "greta", "--compound", "tread", "--slip", "1 m/s", "--load", "30 N",
+                 "--temperature", "25 degC", "--surface"]  # fmt: skip
+    assert invoke([*arguments, "asphalt"]) == 0
+    assert "the two waves of asphalt are found in its spectrum, divided at 500 um" in capsys.readouterr().err
+    assert invoke([*arguments, "road"]) == 0
+    assert "waves" not in capsys.readouterr().err
+
+
+def test_a_strain_survives_an_import(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = DMA.splitlines()
+    lines[3], lines[4] = lines[3] + ";Strain", lines[4] + ";[%]"
+    for name, strains in (("one", ("0,1", "0,1")), ("two", ("0,1", "3"))):
+        rows = [f"{line};{strains[i % 2]}" for i, line in enumerate(lines[5:])]
+        (folder / "d.csv").write_text("\n".join([*lines[:5], *rows]), encoding="utf-8")
+        assert invoke(["materials", "import", "dma", "d.csv", "--name", name, "-o", f"{name}.yaml"]) == 0
+        table = load_compound(Path(f"{name}.yaml")).table
+        assert table is not None
+        assert [row.strain_percent for row in table.rows[:2]] == [float(one.replace(",", ".")) for one in strains]
+    assert "measured at strains of 0.1 to 3 %" in capsys.readouterr().err
+    (folder / "d.csv").write_text(DMA, encoding="utf-8")
+    arguments = ["materials", "import", "dma", "d.csv", "--name", "x", "-o", "x.yaml", "--force"]
+    assert invoke(arguments) == 0
+    assert "the strain is not stated" in capsys.readouterr().err
+    assert invoke([*arguments, "--strain", "0.2 %"]) == 0
+    assert "the strain is not stated" not in capsys.readouterr().err
+    table = load_compound(Path("x.yaml")).table
+    assert table is not None and table.strains_percent == (0.2, 0.2)

@@ -12,7 +12,8 @@ from tester.inputs.materials.compound import LoadedCompound, load_compound
 from tester.inputs.materials.surface_file import load_surface
 
 ROWS = "".join(f"      - [{-60 + 5 * i}, 1, {2000 / (i + 1):.3f}, {200 / (i + 1):.3f}]\n" for i in range(20))
-TABLE = f"moduli:\n  table:\n    columns: [temperature degC, frequency Hz, E' MPa, E'' MPa]\n    rows:\n{ROWS}"
+COLUMNS = "columns: [temperature degC, frequency Hz, E' MPa, E'' MPa]"
+TABLE = f"moduli:\n  strain: 0.1 %\n  table:\n    {COLUMNS}\n    rows:\n{ROWS}"
 FULL = f"""\
 name: tread A
 note: of the laboratory

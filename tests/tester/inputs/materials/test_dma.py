@@ -236,33 +236,58 @@ def with_strain(*percent: float, heading: str = "Strain [%]") -> str:
 
 
 @pytest.mark.parametrize(
-    ("heading", "told"),
+    ("heading", "cell", "percent"),
     [
-        ("Strain [%]", 'strain: 0.1 %, from "Strain [%]"'),
-        ("Dynamic strain / %", 'strain: 0.1 %, from "Dynamic strain / %"'),
-        ("Strain", 'strain: 0.1, from "Strain", without a unit'),
+        ("Strain [%]", 0.1, 0.1), ("Dynamic strain / %", 0.1, 0.1), ("Oscillation strain (%)", -0.1, 0.1),
+        ("Shear strain [-]", 0.001, 0.1), ("Deformation %", 0.1, 0.1),
     ],
-)
-def test_the_strain_of_a_measurement_is_kept(heading: str, told: str) -> None:
-    _, found = read(with_strain(0.1, heading=heading))
-    assert told in found.notes and found.doubts == []
-    assert f'columns not used: "{heading}"' in found.notes
+)  # fmt: skip
+def test_the_strain_of_a_measurement_is_kept(heading: str, cell: float, percent: float) -> None:
+    table, found = read(with_strain(cell, heading=heading))
+    assert table.strains_percent == pytest.approx((percent, percent))
+    assert f'strain: {percent:g} %, from "{heading}"' in found.notes and found.doubts == []
+    assert not any(note.startswith("columns not used") for note in found.notes)
 
 
-def test_moduli_at_several_strains_are_doubted_for_good() -> None:
-    _, found = read(with_strain(0.1, 3.0))
-    assert "strain: 0.1 to 3 %" in " ".join(found.notes)
-    (doubt,) = found.lasting
-    assert "measured at strains of 0.1 to 3 %" in doubt
+@pytest.mark.parametrize("heading", ["Strain", "Strain [um]", "Dynamic deformation [mm]"])
+def test_a_strain_without_its_unit_is_not_used_and_it_is_noted(heading: str) -> None:
+    table, found = read(with_strain(0.1, heading=heading))
+    assert table.strains_percent is None
+    assert f'strain: "{heading}" has no unit of a strain and is not used (% or 1)' in found.notes
+
+
+def test_the_unit_of_a_strain_may_be_stated() -> None:
+    table, _ = read(with_strain(0.1, heading="Strain"), DmaOptions(units={"Strain": "%"}))
+    assert table.strains_percent == (0.1, 0.1)
+
+
+def test_moduli_at_several_strains_keep_each() -> None:
+    table, found = read(with_strain(0.1, 3.0))
+    assert [row.strain_percent for row in table.rows[:3]] == [3.0, 0.1, 3.0]
+    assert any(note.startswith("strain: 0.1 to 3 %") for note in found.notes)
+
+
+def test_a_strain_that_is_missing_in_a_row_stays_unknown() -> None:
+    content = with_strain(0.5).replace(";0.5\n", ";-\n", 2).replace(";0.5\n", ";0\n", 1)
+    table, _ = read(content)
+    assert [row.strain_percent for row in table.rows[:4]] == [None, None, None, 0.5]
+
+
+def test_a_strain_may_be_stated_where_no_column_has_it() -> None:
+    table, found = read(text(), DmaOptions(strain_percent=0.2))
+    assert table.strains_percent == (0.2, 0.2) and found.doubts == []
+    table, found = read(with_strain(0.1), DmaOptions(strain_percent=1.0))
+    assert table.strains_percent == (0.1, 0.1)
+    assert [one.message for one in found.doubts] == ["strain: 1 % is stated; the file has 0.1 %, which counts"]
 
 
 def test_a_unit_row_may_have_a_strain_in_per_cent() -> None:
     content = with_strain(0.1, heading="Strain").replace("\n", "\n[degC];[Hz];[MPa];[MPa];[%]\n", 1)
     content = content.replace("Temperature [degC];Frequency [Hz];E' [MPa];E'' [MPa]", "Temperature;Frequency;E';E''")
-    _, found = read(content)
-    assert 'strain: 0.1 %, from "Strain"' in found.notes
+    table, found = read(content)
+    assert table.strains_percent == (0.1, 0.1) and 'strain: 0.1 %, from "Strain"' in found.notes
 
 
 def test_a_strain_rate_is_no_strain() -> None:
-    _, found = read(with_strain(0.1, heading="Strain rate [%/s]"))
-    assert not any(note.startswith("strain:") for note in found.notes)
+    table, found = read(with_strain(0.1, heading="Strain rate [%/s]"))
+    assert table.strains_percent is None and not any(note.startswith("strain:") for note in found.notes)

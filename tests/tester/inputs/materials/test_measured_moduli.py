@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from math import exp
+
+import pytest
 
 from tester.inputs.materials.files import Findings
-from tester.inputs.materials.measured_moduli import FEW_ROWS, LEAST_ROWS, ModuliRow, ModuliTable, judge, shift_doubts
+from tester.inputs.materials.measured_moduli import (
+    FEW_ROWS,
+    LEAST_ROWS,
+    ModuliRow,
+    ModuliTable,
+    judge,
+    shift_doubts,
+    strain_doubts,
+)
 
 
 def sweep(count: int = 20) -> list[ModuliRow]:
@@ -134,3 +146,61 @@ def test_noise_of_a_chamber_is_no_second_sweep() -> None:
     temperatures = [-60.0 + 2.0 * i - 2.9 * (i % 2) for i in range(20)]
     rows = [ModuliRow(t, 1.0, 2e9 / (i + 1), 2e8 / (i + 1)) for i, t in enumerate(temperatures)]
     assert found_in(rows) == ([], [])
+
+
+def transition(
+    rubber_pa: float = 7e6, glass_pa: float = 2e9, tan: float = 0.8, peak_c: float = -15.0
+) -> list[ModuliRow]:
+    """Return a sweep through a glass transition, 40 points."""
+    rows: list[ModuliRow] = []
+    for i in range(40):
+        celsius = -100.0 + 5.0 * i
+        share = 1.0 / (1.0 + exp((celsius - peak_c + 10.0) / 6.0))
+        storage = rubber_pa * (glass_pa / rubber_pa) ** share
+        rows.append(ModuliRow(celsius, 1.0, storage, storage * (0.05 + tan * exp(-(((celsius - peak_c) / 18.0) ** 2)))))
+    return rows
+
+
+@pytest.mark.parametrize("rubber_pa", [1e6, 7e6, 5e7])
+@pytest.mark.parametrize("glass_pa", [1e9, 2e9, 4e9])
+def test_moduli_in_a_unit_off_by_1000_are_doubted_and_right_ones_are_not(rubber_pa: float, glass_pa: float) -> None:
+    right = transition(rubber_pa, glass_pa)
+    assert found_in(right) == ([], [])
+    for factor in (1e-3, 1e3):
+        rows = [replace(row, storage_pa=factor * row.storage_pa, loss_pa=factor * row.loss_pa) for row in right]
+        problems, doubts = found_in(rows)
+        assert problems == [] and any("is the unit right?" in doubt for doubt in doubts), (factor, doubts)
+
+
+def test_a_loss_modulus_in_another_unit_is_doubted_or_refused() -> None:
+    low = [replace(row, loss_pa=1e-3 * row.loss_pa) for row in transition()]
+    (doubt,) = found_in(low)[1]
+    assert "tan delta is 0.00085 at most: is E'' in the unit of E'?" in doubt
+    high = [replace(row, loss_pa=1e3 * row.loss_pa) for row in transition()]
+    assert "swapped?" in found_in(high)[0][0]
+
+
+def test_swapped_moduli_of_a_transition_are_refused_or_doubted() -> None:
+    rows = [replace(row, storage_pa=row.loss_pa, loss_pa=row.storage_pa) for row in transition(tan=1.5)]
+    problems, doubts = found_in(rows)
+    assert problems == [] and any("E'' is above E' at 3" in doubt for doubt in doubts)
+
+
+def test_kelvins_that_are_taken_for_degrees_celsius_are_doubted() -> None:
+    rows = [replace(row, temperature_c=row.temperature_c + 273.15) for row in transition()]
+    doubts = found_in(rows)[1]
+    assert any("tan delta is greatest at 258.15 degC: are the temperatures in K?" in doubt for doubt in doubts)
+
+
+def test_a_table_without_its_strain_is_doubted_and_several_strains_are() -> None:
+    table = ModuliTable(tuple(sweep()))
+    (doubt,) = strain_doubts(table)
+    assert doubt.startswith("the strain is not stated: moduli of filled rubber fall with strain")
+    assert table.describe().endswith("strain not stated")
+    assert [*strain_doubts(table.at_strain(0.1))] == []
+    assert table.at_strain(0.1).describe().endswith("strain 0.1 %")
+    rows = [replace(row, strain_percent=(0.1, 3.0, None)[i % 3]) for i, row in enumerate(sweep())]
+    assert [*strain_doubts(ModuliTable(tuple(rows)))] == [
+        "the strain is not stated at 6 of 20 points",
+        "measured at strains of 0.1 to 3 %: moduli of filled rubber fall with strain, and laws assume one strain",
+    ]

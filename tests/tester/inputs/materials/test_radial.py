@@ -76,7 +76,9 @@ def test_small_and_flat_maps_are_refused() -> None:
         radial_spectrum(np.zeros((32, 32)), PIXEL)
 
 
-def ringed(generator: np.random.Generator, points: int, pixel_m: float, rings: tuple[tuple[float, float], ...]) -> Array:
+def ringed(
+    generator: np.random.Generator, points: int, pixel_m: float, rings: tuple[tuple[float, float], ...]
+) -> Array:
     """Return a map of waves in all directions with random phases: length and rms height, m, of each ring."""
     q = np.fft.fftfreq(points, pixel_m)
     length = 1.0 / np.maximum(np.hypot(q[:, None], q[None, :]), 1e-9)
