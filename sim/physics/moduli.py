@@ -203,6 +203,10 @@ class TabulatedModulus:
             x = np.clip(x, self._least, self._most)
         return self._to_shear * (10.0 ** self._log_storage(x) + 1j * 10.0 ** self._log_loss(x))
 
+    def reduced_hz(self, frequency_hz: float, temperature_c: float, at_c: float) -> float:
+        """Return the frequency at ``at_c`` at which the modulus is that of another temperature. Raises PoleError."""
+        return frequency_hz * 10.0 ** (self._decade_of(temperature_c) - self._decade_of(at_c))
+
     def limits_hz(self, temperature_c: float) -> tuple[float, float]:
         """Return the least and the greatest known frequency of the modulus at a temperature, Hz. Raises PoleError."""
         offset = self._decade_of(temperature_c)

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from tester.inputs.materials.compound import LoadedCompound
     from tester.inputs.materials.material_schema import CompoundModel
     from tester.inputs.materials.surface_file import LoadedSurface
+    from tester.report.chart import Chart
 
     Loaded = LoadedCompound | LoadedSurface
 
@@ -142,3 +143,22 @@ def _of_surface(loaded: LoadedSurface) -> Iterable[str]:
         )
     for label, wave in (("coarse", surface.coarse), ("fine", surface.fine)):
         yield f"{label:8} {length_text(wave.wavelength_m)}, {length_text(wave.ra_m)}"
+
+
+def material_chart(material: Loaded, celsius: float) -> Chart:
+    """Return the figure of a material. Raises ValueError for one without moduli or spectrum."""
+    from tester.cli.material_charts import compound_chart, surface_chart, unshifted_chart
+    from tester.inputs.materials.library import MissingModuliError, rubber_of, surface_of
+    from tester.inputs.materials.material_schema import CompoundModel
+
+    if not isinstance(material.model, CompoundModel):
+        loaded = cast("LoadedSurface", material)
+        return surface_chart(surface_of(loaded), loaded.radial)
+    compound = cast("LoadedCompound", material)
+    rows = compound.table.rows if compound.table is not None else ()
+    try:
+        return compound_chart(rubber_of(compound), rows, celsius)
+    except MissingModuliError as error:
+        if not rows:
+            raise
+        return unshifted_chart(compound.model.name, rows, str(error).rpartition(": ")[2])

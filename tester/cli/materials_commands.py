@@ -35,7 +35,7 @@ force_option = click.option("--force", is_flag=True, help="Replace an existing f
 
 @click.group()
 def materials() -> None:
-    """Compounds and surfaces as files: list, show and check them, or import an instrument's file."""
+    """Compounds and surfaces as files: list, show, draw and check them, or import an instrument's file."""
 
 
 def _library(recipe: Path | None) -> Library:
@@ -70,6 +70,17 @@ def list_(recipe: Path | None, as_json: bool) -> None:
 @json_option
 def show(name: str, recipe: Path | None, as_json: bool) -> None:
     """Show the content of the file of the compound or the surface NAME, its hash, and its doubts."""
+    loaded = _loaded(name, recipe)
+    if as_json:
+        print_json([summary_of(material) for material in loaded])
+        return
+    for material in loaded:
+        for line in lines_of(material):
+            click.echo(line)
+
+
+def _loaded(name: str, recipe: Path | None) -> list[Loaded]:
+    """Return the compound, the surface, or both of a name; none is a usage error."""
     from difflib import get_close_matches
 
     library = _library(recipe)
@@ -79,12 +90,38 @@ def show(name: str, recipe: Path | None, as_json: bool) -> None:
         near = get_close_matches(name, [entry.name for role in ROLES for entry in library.entries(role)], 1)
         meant = f', did you mean "{near[0]}"?' if near else ""
         raise click.UsageError(f'no compound and no surface has the name "{name}"{meant}')
-    if as_json:
-        print_json([summary_of(material) for material in loaded])
-        return
-    for material in loaded:
-        for line in lines_of(material):
-            click.echo(line)
+    return loaded
+
+
+@materials.command("draw")
+@click.argument("name")
+@click.option(
+    "-o", "--out", type=click.Path(dir_okay=False, path_type=Path), required=True, help="The figure: .png, .svg, .pdf."
+)
+@click.option("--temperature", type=QuantityType("degC"), default="20 degC", show_default=True, help="Of a compound.")
+@recipe_option
+def draw_(name: str, out: Path, temperature: float, recipe: Path | None) -> None:
+    """Draw the compound NAME (E', E'', tan delta over the frequency) or the surface NAME (its spectrum), with the
+    points of its file.
+    """
+    from tester.base.plugins import MissingExtraError
+    from tester.base.trouble import in_words
+    from tester.cli.material_words import lines_of, material_chart
+    from tester.report.draw import draw
+
+    loaded = _loaded(name, recipe)
+    if len(loaded) > 1:
+        raise click.UsageError(f'"{name}" is a compound and a surface; a figure shows one of them')
+    try:
+        draw(material_chart(loaded[0], temperature), out)
+    except (MissingExtraError, ValueError) as error:
+        raise click.ClickException(str(error)) from error
+    except OSError as error:
+        raise click.UsageError(f"{out} cannot be written: {in_words(error)}") from error
+    for line in lines_of(loaded[0]):
+        if line.startswith(("rough", "waves", "coarse", "fine", "tan peak", "doubt")):
+            click.echo(line, err=True)
+    click.echo(str(out))
 
 
 @materials.command()

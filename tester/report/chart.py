@@ -58,6 +58,8 @@ class ChartPanel:
     """Label of its horizontal axis, if other than the chart's."""
     joined: bool = True
     """Whether a line joins measured points that no law goes through."""
+    log_y: bool = False
+    """Whether its vertical axis is logarithmic."""
 
 
 @dataclass(frozen=True, slots=True)

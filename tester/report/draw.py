@@ -126,6 +126,10 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
             # its own formatter writes a formula, and text here is never read as a formula
             place.xaxis.set_major_formatter("{x:g}")
             place.xaxis.set_minor_formatter(_two_and_five if _narrow(panel) else "")
+        if panel.log_y:
+            place.set_yscale("log")
+            place.yaxis.set_major_formatter("{x:g}")
+            place.yaxis.set_minor_formatter("")
         place.set_ylabel(panel.y_label or chart.y_label)
     if chart.from_zero:  # last: an axis with a fixed limit ignores further points, also of panels that share it
         places[0].set_ylim(bottom=0.0)

@@ -243,3 +243,33 @@ def test_a_strain_survives_an_import(folder: Path, capsys: pytest.CaptureFixture
     assert "the strain is not stated" not in capsys.readouterr().err
     table = load_compound(Path("x.yaml")).table
     assert table is not None and table.strains_percent == (0.2, 0.2)
+
+
+@pytest.mark.parametrize(("name", "texts"), [("tread", ["tan", "20"]), ("asphalt", ["rms slope 1.17", "found"])])
+def test_a_material_is_drawn_with_its_words(
+    name: str, texts: list[str], folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
+    from tester.report import draw
+
+    monkeypatch.setitem(draw.RC, "svg.fonttype", "none")  # text as text
+    assert invoke(["materials", "draw", name, "--out", "a.svg"]) == 0
+    assert capsys.readouterr().out == "a.svg\n"
+    drawn = Path("a.svg").read_text(encoding="utf-8")
+    assert drawn.startswith("<?xml") and all(text in drawn for text in texts)
+
+
+def test_a_drawing_names_the_extra_the_format_and_what_it_cannot_draw(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import sys
+
+    assert invoke(["materials", "draw", "tread", "-o", "a.bmp"]) == 1
+    assert "a figure is one of png, svg, pdf" in capsys.readouterr().err
+    assert invoke(["materials", "draw", "road", "-o", "a.png"]) == 1
+    assert "road has two waves and no spectrum" in capsys.readouterr().err
+    assert invoke(["materials", "draw", "1#", "-o", "a.png"]) == 1
+    assert "holds no moduli" in capsys.readouterr().err
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert invoke(["materials", "draw", "tread", "-o", "a.png"]) == 1
+    assert 'pip install "friction-tester[report]"' in capsys.readouterr().err
