@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final, Generic, TypeVar
 
 from tester.analysis.stability import REPEAT_WINDOWS
+from tester.base.deriving import mypyc_attr
 from tester.inputs.recipe.plan import ConditionStep
 from tester.machine.context import AnyContext
 from tester.machine.measured import ConditionEnd, Ending, MeasuredRepeat, RepeatOutcome
@@ -19,6 +20,7 @@ StepT = TypeVar("StepT", bound=ConditionStep)
 RepeatT = TypeVar("RepeatT", bound=MeasuredRepeat)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
     """The activity of one condition. A kind implements ``begin`` (the repeat) and ``ready`` (the work before it)."""
 

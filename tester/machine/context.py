@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import nan
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeAlias, TypeVar
 
+from tester.base.deriving import mypyc_attr
 from tester.inputs.rig import Rig
 from tester.machine.image import BaseDemand, BaseReadings
 from tester.machine.prompts import Prompts
@@ -49,6 +50,7 @@ ReadingsT_co = TypeVar("ReadingsT_co", bound=BaseReadings, covariant=True)
 DemandT_co = TypeVar("DemandT_co", bound=BaseDemand, covariant=True)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
     """The context of one run: the only object that activities read and write. A kind adds its specimen, gates and
     devices.

@@ -1,7 +1,6 @@
 """One control step of any machine: readings and demand in, bounded setpoints out. No I/O, no clock.
 
-Modes, requests, the timing of interlocks and the consequences of a trip are the same for every kind. A kind inherits
-from ``Control`` and implements the commands of each mode (``tester.machine.mode_commands``).
+Modes, requests, timing and trips are the same for every kind, which implements each mode's commands (``ModeCommands``).
 """
 
 from __future__ import annotations
@@ -9,6 +8,7 @@ from __future__ import annotations
 from math import inf
 from typing import Any, Final
 
+from tester.base.deriving import mypyc_attr
 from tester.machine.interlock_table import InterlockTable, RigTable
 from tester.machine.mode_commands import DemandT, InputsT, ModeCommands, ReadingsT, StateT
 from tester.machine.row import Interlock, Reaction
@@ -27,10 +27,10 @@ _AT_REST: Final = frozenset({Mode.IDLE, Mode.ARMED, Mode.LATCHED})
 _WORKING: Final = frozenset({Mode.RUN, Mode.HOLD})
 
 VOLTAGE_S: Final = 0.5
-"""A drive that needs no power any more has its voltage disabled after this time, s [A]: a yaw axis, which no stop waits
-for, comes down from 20 deg/s in 0.25 s."""
+"""A drive that needs no power loses its voltage after this, s [A]: no stop waits for yaw, which ends within 0.25 s."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
     """A machine's control: its state, its interlock table and the inputs of the table."""
 

@@ -17,6 +17,7 @@ from drivers.modbus import ModbusLink
 from drivers.ports import BusLost, CanPort, ForeseeingPort, LinePort
 from drivers.sensor import Sensor
 from drivers.servo import ServoDrive
+from tester.base.deriving import mypyc_attr
 from tester.machine.image import NEVER, BaseReadings, BaseSetpoints
 from tester.machine.modbus_health import FieldDevice, Inspector
 from tester.machine.rig_drivers import RigDrivers
@@ -45,6 +46,7 @@ class CountedInRun(Protocol):
         ...
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class DeviceList:
     """Drivers and their ports. A kind inherits from this class and implements ``fill`` and ``apply``.
 

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Sequence
 from typing import Generic, TypeVar
 
+from tester.base.deriving import mypyc_attr
 from tester.inputs.recipe.plan import Plan, Step
 from tester.machine.activity import Activity, MoveFailedError, Resumable
 from tester.machine.condition import MeasureCondition
@@ -33,6 +34,7 @@ class Unforeseen(Generic[ContextT]):
         self.failed = failed
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Procedures(Generic[ContextT]):
     """Selects the activity for each step; a kind of machine implements it."""
 

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
+from tester.base.deriving import mypyc_attr
+
 NEVER: Final = float("-inf")
 """Time stamp of a source that has not reported: older than any real one, hence stale."""
 
@@ -17,6 +19,7 @@ NAN: Final = float("nan")
 """Value of a source that has not reported, or of a missing demand."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 @dataclass(slots=True)
 class BaseReadings:
     """The readings of any machine, with time stamps in seconds of the scan's clock."""
@@ -70,6 +73,7 @@ class BaseReadings:
         return [text for text in texts if text]
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 @dataclass(slots=True)
 class BaseDemand:
     """The demand of a step on any machine; control bounds it and may refuse it."""
@@ -80,6 +84,7 @@ class BaseDemand:
     """A person was asked to come near: hands may be in danger."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 @dataclass(slots=True)
 class BaseSetpoints:
     """Setpoints for the drives of any machine at the end of a scan."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from math import inf, nan
 from typing import Any, Final
 
+from tester.base.deriving import mypyc_attr
 from tester.inputs.rig import Rig
 from tester.inputs.rig.further_sensors import further_channels
 from tester.inputs.rig.parameter import Values
@@ -25,6 +26,7 @@ _ARMED: Final = Mode.ARMED
 _LATCHED: Final = Mode.LATCHED
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 @dataclass(slots=True)
 class ScanInputs:
     """One scan, as the interlock table sees it."""

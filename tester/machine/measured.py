@@ -9,6 +9,7 @@ from typing import Any
 
 from tester.analysis.blocks import BlockCounter
 from tester.analysis.results import ConditionStatus, RepeatStatus
+from tester.base.deriving import mypyc_attr
 from tester.store.sql import Ticket
 
 
@@ -37,6 +38,7 @@ CONDITION_STATUS: dict[Ending, ConditionStatus] = {
 }
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class MeasuredRepeat:
     """The activity that measures one repeat: it steps until ``ending`` is set. A kind implements ``step``."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from math import copysign, isfinite
 from typing import Generic, TypeVar
 
+from tester.base.deriving import mypyc_attr
 from tester.machine.image import BaseDemand, BaseReadings, BaseSetpoints
 from tester.machine.inputs import ScanInputs
 from tester.machine.state import ControlState
@@ -18,6 +19,7 @@ DemandT = TypeVar("DemandT", bound=BaseDemand)
 InputsT = TypeVar("InputsT", bound=ScanInputs)
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class ModeCommands(Generic[StateT, ReadingsT, DemandT, InputsT]):
     """A kind's part of its control: the commands in each mode, and how its stops end."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tester.base.deriving import mypyc_attr
 from tester.inputs.rig import Rig
 from tester.inputs.rig.parameter import Parameter
 from tester.machine.control import Control
@@ -11,6 +12,7 @@ from tester.machine.mode_commands import DemandT, InputsT, ReadingsT, StateT, ma
 from tester.machine.state import Mode
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class StandstillControl(Control[StateT, ReadingsT, DemandT, InputsT]):
     """Outputs of every mode but RUN and HOLD. A kind implements ``stand``, ``motion_over`` and ``stop_ended``."""
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from tester.base.deriving import derivable
 from tester.machine.image import NEVER, BaseDemand, BaseReadings, BaseSetpoints
 
 
-@dataclass(slots=True)
+@derivable
 class PlainReadings(BaseReadings):
     """Newest values, NaN until read. A kind adds a field for each of its channels and fills them in ``update``."""
 
@@ -32,14 +33,14 @@ class PlainReadings(BaseReadings):
         """Derive the kind's channels from ``drives`` and ``sensors``; ``dt``: time since the scan before, s."""
 
 
-@dataclass(slots=True)
+@derivable
 class PlainDemand(BaseDemand):
     """The demand of a step on the drives; a drive that is not listed is at rest."""
 
     speeds: dict[str, float] = field(default_factory=dict[str, float])
 
 
-@dataclass(slots=True)
+@derivable
 class PlainSetpoints(BaseSetpoints):
     """The setpoints of every drive."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Final, Generic, TypeAlias, TypeVar
 
+from tester.base.deriving import derivable
 from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.inputs.rig.plain_rig import PlainRig
 from tester.machine.drive_rows import (
@@ -39,7 +40,7 @@ class PlainLimits:
     """Longest times of a drive from its greatest speed to standstill: by its ramp, and by its quick stop."""
 
 
-@dataclass(slots=True)
+@derivable
 class PlainInputs(ScanInputs, Generic[ReadingsT]):
     """One scan, as the rows of a plain machine see it. ``loaded`` stays True: contact cannot be excluded."""
 
