@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 import math
 import os
 import subprocess
@@ -39,17 +40,15 @@ STUDENT = {2: 12.706, 3: 4.303, 4: 3.182, 5: 2.776, 6: 2.571, 7: 2.447, 8: 2.365
 """97.5 % quantile of Student's t by the number of rounds."""
 TESTER = "from tester.cli.main import main; main()"
 PROFILED = """
-import cProfile, pstats, sys
+import cProfile, json, os, pstats, sys
 from tester.cli.main import invoke
 profile = cProfile.Profile()
 profile.runcall(invoke, sys.argv[1:])
-parts = {}
-for (file, _, _), (_, calls, own, _, _) in pstats.Stats(profile).stats.items():
-    places = [place for place in (sys.path[0], *sys.path) if place and file.startswith(place)]
-    names = file[len(places[0]):].strip("/").split("/") if places else ["others"]
-    part = "/".join(names[:2]) if names[0] == "tester" else names[0] if names[0] in ("drivers", "sim") else "others"
-    parts[part] = parts.get(part, 0.0) + own
-print("parts", *(f"{part}={own:.3f}" for part, own in parts.items()))
+root, own = sys.path[0] + os.sep, {}
+for (file, _, _), (_, _, alone, _, _) in pstats.Stats(profile).stats.items():
+    name = file[len(root):].replace(os.sep, "/") if file.startswith(root) else "others"
+    own[name] = own.get(name, 0.0) + alone
+print("own " + json.dumps(own))
 """
 
 Changes = Mapping[str, Any]
@@ -99,11 +98,20 @@ class Tree(NamedTuple):
         after = os.times()
         return after.children_user - before.children_user + after.children_system - before.children_system
 
+    def own_s(self, recipe: str, out: Path, *options: str) -> dict[str, float]:
+        """Return the CPU seconds in each file of the packages, by a profile; ``others``: outside them."""
+        printed = self.run(PROFILED, "run", recipe, "--yes", "--out", str(out), *options)
+        line = next(line for line in printed.splitlines() if line.startswith("own "))
+        return json.loads(line.removeprefix("own "))
+
     def parts(self, recipe: Path, out: Path) -> dict[str, float]:
         """Return the CPU seconds that each part of the packages takes for a recipe, by a profile."""
-        printed = self.run(PROFILED, "run", str(recipe), "--yes", "--seed", "1", "--out", str(out))
-        words = next(line for line in printed.splitlines() if line.startswith("parts ")).split()[1:]
-        return {name: float(value) for name, value in (word.split("=") for word in words)}
+        parts: dict[str, float] = {}
+        for file, own_s in self.own_s(str(recipe), out, "--seed", "1").items():
+            names = file.split("/")
+            part = "/".join(names[:2]) if names[0] == "tester" else names[0]
+            parts[part] = parts.get(part, 0.0) + own_s
+        return parts
 
 
 class Ratio(NamedTuple):

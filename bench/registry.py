@@ -36,6 +36,7 @@ TOPICS: dict[str, Topic] = {
     "recorder": Topic("bench.recording", "rows per second, CPU share, samples lost at 1 kHz, a disk hog beside it"),
     "startup": Topic("bench.startup", "CPU time of the commands up to their first work"),
     "recipe": Topic("bench.big_recipe", "a recipe of 100,000 conditions"),
+    "modules": Topic("bench.modules", "what each compiled module brings: its share of a plain scan, and its C"),
     "model": Topic("bench.model", "friction model on arrays beside bare NumPy"),
 }
 """In the order in which they are measured and shown."""

@@ -1,9 +1,9 @@
 """`python -m tests.campaigns.compiled [--sample | --full]`: is the compiled scan its source, bit by bit?
 
 Every case is run twice: by the `tester` that is installed, which has to be the compiled one, and by this checkout's
-source. Exit code, tables, every event with its time and every stored sample have to be the same. `--sample`: recipes
-and some faults; `--full`: every fault of the catalogue too. Prints a line a figure; exit code 1 where one misses, 2
-where there is no compiled installation to compare with.
+source. Exit code, tables, every event with its time and every stored sample have to be the same. `--sample`: recipes,
+some faults, a laboratory's own kind of rig; `--full`: pin-on-disc and every fault of the catalogue too. Prints a line a
+figure; exit code 1 where one misses, 2 where there is no compiled installation to compare with.
 """
 
 from __future__ import annotations
@@ -23,12 +23,15 @@ from sim.machines.wheel_on_belt.faults import CATALOGUE
 from tests.campaigns.acceptance.figure import Figure, equal
 from tests.campaigns.compiled.worker import Case
 from tests.campaigns.faults.recipes import HEATED, QUICK, SIDESLIP
+from tests.extension.installing import EXAMPLES, describe
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 
 CHECKOUT = Path(__file__).parents[3]
 WORKER = Path(__file__).with_name("worker.py")
 SAMPLE_EVERY = 12
 """Of the catalogue's faults, one in so many belongs to the sample."""
+OWN_KIND = EXAMPLES / "kind"
+"""A package with a kind of rig of a laboratory's own: its classes stay Python and inherit from compiled ones."""
 FAULT_AT_S = 40.0
 """A short run slides under load at this time (s of rig time)."""
 
@@ -40,22 +43,29 @@ def cases(full: bool) -> list[Case]:
     found = [_case(f"{name}, seed {seed}", text, seed) for name, text in recipes.items() for seed in (0, 1)]
     found.append(_case("short, perfect sensors", SHORT, 0, QUIET))
     found.append(_case("quickstart", quickstart, 0))
+    own = OWN_KIND / "lab_sledge"
+    own_recipe, own_rig = (own / "recipe.yaml").read_text(encoding="utf-8"), str(own / "rig.yaml")
+    for faults in ((), ("step slide + 1 s: sledge jams",)):
+        found.append(_case(f"own kind {faults}", own_recipe, 0, faults=faults, rig=own_rig))
+    if full:
+        found.append(_case("pin-on-disc", find("pin-on-disc").read_text(encoding="utf-8"), 0, rig="pin-on-disc"))
     for phrase in list(CATALOGUE)[:: 1 if full else SAMPLE_EVERY]:
         found.append(_case(f"fault: {phrase}", SHORT, 0, faults=(f"t={FAULT_AT_S:g} s: {phrase}",)))
     return found
 
 
 def _case(
-    name: str, recipe: str, seed: int, overrides: tuple[str, ...] = (), faults: tuple[str, ...] = ()
+    name: str, recipe: str, seed: int, overrides: tuple[str, ...] = (), faults: tuple[str, ...] = (), rig: str = "sim"
 ) -> Case:
-    return {"name": name, "recipe": recipe, "seed": seed, "overrides": list(overrides), "faults": list(faults)}
+    return {
+        "name": name, "rig": rig, "recipe": recipe, "seed": seed, "overrides": list(overrides), "faults": list(faults),
+    }  # fmt: skip
 
 
 def side(file: Path, source: bool) -> subprocess.Popen[str]:
     """Start a worker on the installed `tester`, or on this checkout's."""
-    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    if source:
-        environment["PYTHONPATH"] = str(CHECKOUT)
+    own = [str(file.with_name("site")), str(OWN_KIND)]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([*own, str(CHECKOUT)] if source else own)}
     # -P: the worker's own folder is not searched; outside the checkout nothing else is but what is installed.
     command = [sys.executable, "-P", str(WORKER), str(file)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=file.parent, env=environment)
@@ -74,13 +84,14 @@ def main(arguments: list[str] | None = None) -> int:
     """Compare; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tests.campaigns.compiled", description=__doc__)
     kind = parser.add_mutually_exclusive_group(required=True)
-    kind.add_argument("--sample", action="store_true", help="recipes and some faults")
-    kind.add_argument("--full", action="store_true", help="every fault of the catalogue too")
+    kind.add_argument("--sample", action="store_true", help="recipes, some faults, an own kind")
+    kind.add_argument("--full", action="store_true", help="pin-on-disc and every fault too")
     options = parser.parse_args(arguments)
     todo = cases(options.full)
     with TemporaryDirectory(prefix="compiled-") as folder:
         file = Path(folder) / "cases.json"
         file.write_text(json.dumps(todo), encoding="utf-8")
+        describe(OWN_KIND / "pyproject.toml", file.with_name("site"))
         with side(file, source=False) as installed, side(file, source=True) as source:
             return report(todo, lines(installed), lines(source))
 

@@ -2,8 +2,8 @@
 
     python -P worker.py CASES.json
 
-A case is {"name", "recipe", "seed", "overrides", "faults"}. The first line says where `tester` is and whether its scan
-is compiled.
+A case is {"name", "rig", "recipe", "seed", "overrides", "faults"}. The first line says where `tester` is and whether
+its scan is compiled.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ class Case(TypedDict):
     """One run."""
 
     name: str
+    rig: str
     recipe: str
     seed: int
     overrides: list[str]
@@ -61,6 +62,7 @@ def digests(case: Case) -> dict[str, str]:
         screen = Silent()
         options = SessionOptions(
             recipe=str(recipe),
+            rig=case["rig"],
             out=Path(folder) / "runs",
             seed=case["seed"],
             overrides=tuple(case["overrides"]),
