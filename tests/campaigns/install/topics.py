@@ -29,6 +29,8 @@ TESTS_BEGIN_WITHIN_S = 90.0
 """Wall time where `python3 -c pass` takes PASS_S or less; more on a slower machine, as for the CPU time."""
 COMPILED_AT_MOST = 0.6
 """Two cores against one."""
+BUILD_CPU_AT_MOST_S = 110.0
+"""Of a compiled wheel, mypy's installation included, where `python3 -c pass` takes PASS_S: a minute on two cores."""
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
 _ROW = re.compile(r"^1#\s+300\s+(100|200)\s+0\s+40\s+0\.\d{3}\s+0\.\d{3}\s+\d of \d", re.MULTILINE)
 _SDIST = "import sys; sys.path.insert(0, '.'); from compiling import backend; backend.build_sdist(sys.argv[1])"
@@ -141,12 +143,45 @@ def compiled(work: Path) -> Iterator[Figure]:
     yield holds("without a compiler", clear, f"exit {refused.code}", "fails and says why")
 
 
+def wheel(work: Path) -> Iterator[Figure]:
+    """A compiled wheel: CPU time to build; used where no compiler is, with a laboratory's own kind. Takes minutes."""
+    copy = fresh_copy(work / "wheel")
+    must(carry_out("python3 -m venv builder && python3 -m venv user", copy))
+    told = must(carry_out("builder/bin/pip wheel -v --no-deps -w dist .", copy, FRICTION_TESTER_COMPILE="1"))
+    unit = pass_s(copy / "user" / "bin" / "python")
+    limit = round(BUILD_CPU_AT_MOST_S * max(1.0, unit / PASS_S), 1)
+    note = f" (wall {told.wall_s:.0f} s, load {os.getloadavg()[0]:.1f}, `python3 -c pass` {1e3 * unit:.1f} ms)"
+    yield at_most("CPU time to build", told.cpu_s, limit, "s", 1, note=note)
+    (built,) = (copy / "dist").glob("*.whl")
+    yield holds("wheel", "-py3-none-any" not in built.name, built.name, "for this platform")
+    elsewhere = work / "elsewhere"
+    elsewhere.mkdir()
+    for folder in ("tests", "docs"):
+        shutil.copytree(copy / folder, elsewhere / folder)
+    tools = work / "tools"  # a shell, and nothing else of this computer
+    tools.mkdir()
+    (tools / "bash").symlink_to(shutil.which("bash") or "/bin/bash")
+    bare = {"PATH": f"{copy / 'user' / 'bin'}{os.pathsep}{tools}", "CC": "/nonexistent"}
+    must(carry_out(f"pip install -q {built} pytest", elsewhere, **bare))
+    found = carry_out("command -v cc gcc clang", elsewhere, **bare)
+    yield equal("compilers that can be found", found.text.split(), [])
+    ran = must(carry_out("tester run quickstart --yes --seed 0", elsewhere, **bare))
+    rows = {match[1] for match in _ROW.finditer(ran.text)}
+    yield equal("loads in the quickstart's table (N)", sorted(rows), ["100", "200"])
+    where = carry_out("python -c 'import tester.machine.control as found; print(found.__file__)'", elsewhere, **bare)
+    yield holds("scan", ".py" not in Path(where.text.strip()).suffix, Path(where.text.strip()).name, "compiled")
+    extension = "tests/extension --ignore tests/extension/test_counts.py"  # which counts files of a checkout
+    extended = carry_out(f"python -m pytest -q -p no:cacheprovider {extension}", elsewhere, **bare)
+    yield holds("tests of extensions", extended.code == 0, without_warnings(extended.text, 1), "pass")
+
+
 TOPICS: dict[str, Callable[[Path], Iterator[Figure]]] = {
     "main": main_command,
     "tests": test_command,
     "ways": ways,
     "interpreters": interpreters,
     "compiled": compiled,
+    "wheel": wheel,
 }
 SAMPLE = ("main", "tests", "ways")
 """What takes two minutes together."""
