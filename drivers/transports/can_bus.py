@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from threading import Thread
 from typing import TYPE_CHECKING, Any, Final
 
@@ -127,7 +128,8 @@ class PythonCanPort(FrameByFrame):
         """Stop receiving and close the adapter; the port is lost afterwards."""
         self._closing = True
         self._thread.join(timeout=10 * POLL_S)
-        self._bus.shutdown()
+        with suppress(*self._errors):  # an adapter that is gone cannot close its channel
+            self._bus.shutdown()
         self._lose("closed")
 
     def _check(self) -> None:

@@ -193,6 +193,21 @@ def test_bus_off_is_a_lost_bus() -> None:
     port.close()
 
 
+def test_an_adapter_that_is_gone_is_closed_without_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    bus = StubBus([])
+    port = PythonCanPort(bus)
+
+    def gone() -> None:
+        raise can.CanOperationError("Could not write to serial device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(bus, "shutdown", gone)
+        port.close()
+    with pytest.raises(BusLost, match="closed"):
+        port.receive(0.0)
+    bus.shutdown()
+
+
 def test_frames_before_the_loss_are_still_delivered() -> None:
     port = PythonCanPort(StubBus([can.Message(arbitration_id=0x185, is_extended_id=False), OSError("gone")]))
     assert collect(port, 1) == [(100.0, 0x185, b"")]
