@@ -8,6 +8,7 @@ from typing import Any, Protocol
 from sim.faults.common import plain_language, with_sensors
 from sim.faults.kinds import FaultKind
 from sim.faults.language import FaultLanguage
+from sim.hands import REPEAT, SPECIMEN, Verb
 from sim.machines import SimulatedMachine
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.sensor_slave import PlantQuantity, SensorSlave
@@ -91,6 +92,7 @@ def plain_machine(
     log_columns: tuple[str, ...],
     log_row: Callable[..., tuple[float, ...]],
     log_decimals: tuple[int, ...],
+    verbs: tuple[Verb, ...] = (SPECIMEN, REPEAT),
 ) -> SimulatedMachine:
     """Return a plain machine's simulation: its twin, and the language of the faults of its parts.
 
@@ -105,4 +107,4 @@ def plain_machine(
         sensors = [title_of(name) for name in shows if name in spec.devices]
         return with_sensors(plain_language(spec.axes, sensors, *faults), spec)
 
-    return SimulatedMachine(world, language, log_columns, log_row, log_decimals)
+    return SimulatedMachine(world, language, log_columns, log_row, log_decimals, verbs)

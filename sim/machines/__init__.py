@@ -12,6 +12,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from sim.faults.language import FaultLanguage
+from sim.hands import Verb
 from sim.rig import RigSpec, SimRig
 
 
@@ -33,6 +34,8 @@ class SimulatedMachine:
     log_row: Callable[..., tuple[float, ...]]
     """``log_row(rig)``: true values for a log of its state, one for each column, each with its number of decimals."""
     log_decimals: tuple[int, ...]
+    verbs: tuple[Verb, ...] = ()
+    """What a person does at it, as commands of its console."""
 
 
 def names() -> tuple[str, ...]:

@@ -120,6 +120,10 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON o
 yes_option = click.option(
     "--yes", is_flag=True, help="Answer prompts with yes, but those that ask a person to a real rig."
 )
+hands_option = click.option(
+    "--hands", default="", metavar="HOST:PORT",
+    help="Simulated machine in another process (`tester sim --control`): its hands do what prompts ask for.",
+)  # fmt: skip
 operator_option = click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
 lapse_option = click.option(
     "--speed", type=SpeedType(), default="max", metavar="max|X",

@@ -12,6 +12,7 @@ from tester.cli.options import (
     RigChoice,
     bus_log_option,
     command,
+    hands_option,
     json_option,
     lapse_option,
     operator_option,
@@ -26,7 +27,7 @@ from tester.cli.stored_runs import run_folder
 
 NOT_DETACHED = {
     "out": "--out", "bus_log": "--bus-log", "faults": "--fault", "jobs": "--jobs", "as_json": "--json",
-    "no_leaps": "--no-leaps", "accept_risk": "--accept-risk",
+    "hands": "--hands", "no_leaps": "--no-leaps", "accept_risk": "--accept-risk",
 }  # fmt: skip
 """Options that the service has no command for, or chooses itself."""
 
@@ -43,6 +44,7 @@ NOT_DETACHED = {
     help="Simulated rig: processes in which specimens run side by side; the results are the same.",
 )
 @bus_log_option
+@hands_option
 @click.option(
     "--no-leaps", is_flag=True,
     help="Simulated rig: make every scan, also while only heat flows; coefficients differ by 0.02 % at most.",
@@ -58,8 +60,8 @@ NOT_DETACHED = {
 @click.pass_context
 def run(
     context: click.Context, recipe: str, rig: RigChoice, out: Path, yes: bool, seed: int, speed: float | None,
-    jobs: int, bus_log: Path | None, no_leaps: bool, faults: tuple[str, ...], operator: str, detach: bool, take: bool,
-    as_json: bool,
+    jobs: int, bus_log: Path | None, hands: str, no_leaps: bool, faults: tuple[str, ...], operator: str, detach: bool,
+    take: bool, as_json: bool,
 ) -> int:  # fmt: skip
     """Run RECIPE (a file, or the name of a shipped recipe) and print the run's folder as the last line.
 
@@ -89,7 +91,7 @@ def run(
 
     options = SessionOptions(
         recipe, *rig, out=out, seed=seed, lapse=speed, bus_log=bus_log, operator=operator, jobs=jobs, faults=faults,
-        leaps=not no_leaps,
+        leaps=not no_leaps, hands=hands,
     )
     return _carried_out(Session(options, Console(as_json=as_json, answer_yes=yes)).run)
 
@@ -129,12 +131,13 @@ def _carried_out(work: Callable[[], int]) -> int:
 )
 @lapse_option
 @bus_log_option
+@hands_option
 @operator_option
 @risk_option
 @json_option
 def resume(
-    run: str, yes: bool, reason: str, speed: float | None, bus_log: Path | None, operator: str, accept_risk: str,
-    as_json: bool,
+    run: str, yes: bool, reason: str, speed: float | None, bus_log: Path | None, hands: str, operator: str,
+    accept_risk: str, as_json: bool,
 ) -> int:  # fmt: skip
     """Resume RUN (its folder, its name under runs, or latest) at the first repeat that is not committed.
 
@@ -145,6 +148,6 @@ def resume(
     from tester.run.session_options import SessionOptions
 
     folder = run_folder(run)
-    options = SessionOptions(accept_risk=accept_risk, lapse=speed, bus_log=bus_log, operator=operator)
+    options = SessionOptions(accept_risk=accept_risk, lapse=speed, bus_log=bus_log, operator=operator, hands=hands)
     session = Session(options, Console(as_json=as_json, answer_yes=yes))
     return _carried_out(lambda: session.resume(folder, reason))

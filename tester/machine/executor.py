@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from tester.base.deriving import mypyc_attr
 from tester.inputs.recipe.plan import Plan, Step
@@ -13,6 +13,17 @@ from tester.machine.condition import MeasureCondition
 from tester.machine.context import AnyContext
 
 ContextT = TypeVar("ContextT", bound=AnyContext)
+
+
+class Hands(Protocol):
+    """An attendant that works beside the scan: at a simulated machine in another process."""
+
+    failed: str
+    """Why something was not done; "" if all was."""
+
+    def busy(self, now: float) -> bool:
+        """Return whether something asked for is not done yet at ``now``, s."""
+        ...
 
 
 class Unforeseen(Generic[ContextT]):
@@ -75,6 +86,8 @@ class Executor(Generic[ContextT]):
         self.activity: Activity[ContextT] | None = None
         self.finished = False
         self.failed = ""
+        self.hands: Hands | None = None
+        """While it is busy, no activity advances."""
 
     @property
     def measuring(self) -> bool:
@@ -95,6 +108,13 @@ class Executor(Generic[ContextT]):
     def step(self, ctx: ContextT) -> None:
         """Advance the run by one scan."""
         while not self.finished:
+            hands = self.hands
+            if hands is not None:
+                if hands.busy(ctx.now):
+                    return
+                if hands.failed:
+                    self.failed, self.finished = f"{ctx.progress.title}: {hands.failed}", True
+                    return
             if self.activity is None:
                 if not self.steps:
                     self.finished = True

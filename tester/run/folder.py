@@ -50,6 +50,8 @@ class Job:
     """The last good run on the rig, for comparison with the parameters read while connecting."""
     leaps: bool = True
     """Whether a simulated rig leaps time in which only heat flows."""
+    hands: str = ""
+    """HOST:PORT of the console of a simulated machine in another process; "" if nothing is asked of one."""
 
 
 @dataclass(frozen=True, slots=True)

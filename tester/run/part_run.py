@@ -25,6 +25,7 @@ from tester.run.folder import Begin, Job, Work
 from tester.run.kept import record_kept
 from tester.run.kind_lookup import run_parts
 from tester.run.provenance import record_parameters, record_statistics
+from tester.run.remote_hands import RemoteHands, remote_hands
 from tester.run.rig_wires import connect_ports
 from tester.run.set_up import GoodRun
 from tester.run.simulated import Witnessed, spec_of, truth_of
@@ -169,6 +170,7 @@ def _execute(
     rig = work.rig
     log = BusLog(_log_folder(job.bus_log, work, part), rig) if job.bus_log is not None else None
     ports: Ports | None = None
+    hands: RemoteHands | None = None
     try:
         faults = rig.faults + job.faults
         spoilable = {"faulty": True} if faults else {}
@@ -179,8 +181,11 @@ def _execute(
         truth = truth_of(world, rig.plant) if world is not None else None
         if truth is not None:
             attendant = Witnessed(attendant, truth, part.plan, writer)
+        if job.hands:
+            attendant = hands = remote_hands(job.hands, rig, writer)
         setup = RunSetup(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
         run = run_parts(rig).build(setup)
+        run.engine.executor.hands = hands
         run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be part of a larger plan
         watch.track.begin_part(part.plan)
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
@@ -198,6 +203,8 @@ def _execute(
     except BusLost as lost:
         return Outcome.UNREACHABLE, str(lost), 0.0
     finally:
+        if hands is not None:
+            hands.close()
         if ports is not None:
             ports.close()
         if log is not None:

@@ -44,6 +44,7 @@ from tester.run.part_run import PartWatch, run_part
 from tester.run.pool import WorkerPool
 from tester.run.preconditions import Prepared, enough_room, hold_rig, hold_run, not_measured, prepared, warnings_before
 from tester.run.provenance import accepted_risks, recipe_source, rig_source, run_info, session_info
+from tester.run.remote_hands import unattended
 from tester.run.reporter import LastingScreen, ReportScreen
 from tester.run.resumed_run import prepare
 from tester.run.run_materials import KeptFile, kept_files, write_materials
@@ -208,7 +209,8 @@ class Session(PartWatch):
 
     def _foretell(self, rig: Rig) -> None:
         """Show warnings before a rig starts. Raises CannotStartError."""
-        for text in warnings_before(rig, date.fromisoformat(utc_now()[:10])):
+        lonely = unattended(self.options.hands, rig, answered=self.screen.answer_yes)
+        for text in (*warnings_before(rig, date.fromisoformat(utc_now()[:10])), *([lonely] if lonely else [])):
             self.screen.message(text)
 
     def _job(self, folder: Path, seed: int, rig: Rig) -> Job:
@@ -216,7 +218,7 @@ class Session(PartWatch):
         history = self.aside(lambda: run_parts(rig).history(folder.parent, rig))
         # A rig simulated in this process keeps no settings, because it is rebuilt from its file for each run.
         good = self.aside(lambda: last_good_run(rig, folder.parent)) if rig.can.interface != "sim" else None
-        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history, good, o.leaps)
+        return Job(folder, seed, o.lapse, o.bus_log, o.samples, o.faults, history, good, o.leaps, o.hands)
 
     def _beginning(
         self, folder: Path, path: Path, recipe: LoadedRecipe, work: Work, kept: Sequence[KeptFile]

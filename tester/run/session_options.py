@@ -11,6 +11,7 @@ from tester.inputs.rig import Rig
 from tester.inputs.rig.risks import counts_as_simulated
 from tester.run.endings import CannotStartError
 from tester.run.kind_lookup import run_parts
+from tester.run.remote_hands import refused_hands
 from tester.run.reporter import ReportScreen
 
 
@@ -36,6 +37,8 @@ class SessionOptions:
     """Whether a simulated rig leaps time in which only heat flows (``tester.machine.leaps``)."""
     faults: tuple[str, ...] = ()
     """Lines of a fault script (sim.faults.language), in addition to the rig file's."""
+    hands: str = ""
+    """HOST:PORT of the console of a simulated machine in another process (``tester.run.remote_hands``)."""
 
 
 def only_plain(**texts: str) -> None:
@@ -49,6 +52,8 @@ def only_plain(**texts: str) -> None:
 
 def refusal(options: SessionOptions, rig: Rig, screen: ReportScreen) -> str:
     """Return why the options do not fit the rig or the screen; "" if they do."""
+    if refused := refused_hands(options.hands, rig):
+        return refused
     jobs = options.jobs
     if jobs > 1 and not rig.simulated:
         return f"--jobs {jobs}: only a simulated rig can run several parts at a time, and this rig is real"

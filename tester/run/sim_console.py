@@ -1,13 +1,15 @@
-"""Commands that a person or a script gives a simulated rig while it runs: faults, its speed, its state."""
+"""Commands that a person or a script gives a simulated rig while it runs: faults, hands at it, its speed, its state."""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import inf, isfinite
 
 from sim.faults import FaultLanguage, FaultScript, FaultTextError, Scene
 from sim.faults.cabinet import OfComputer
+from sim.hands import DONE, REFUSED, Verb, by_word
 from sim.machines import SimulatedMachine
 from sim.rig import SimRig
 from tester.base import clock
@@ -146,6 +148,7 @@ class SimConsole:
         self._rig = rig
         self._clock = clock
         self._language = language
+        self._verbs = by_word(machine.verbs)
         self.ended = False
 
     def command(self, line: str, now: float) -> Sequence[str]:
@@ -176,9 +179,18 @@ class SimConsole:
                 self.ended = True
                 return ("ending",)
             case ["help" | "?"]:
-                return HELP
+                return (*HELP, *(f"{verb.form:<31} {verb.about}" for verb in self._verbs.values()))
+            case [word, *_] if word in self._verbs:
+                return (self._hand(self._verbs[word], line),)
             case _:
                 return (f"unknown command {line!r}; help lists them",)
+
+    def _hand(self, verb: Verb, line: str) -> str:
+        try:
+            verb.act(self._rig, shlex.split(line)[1:])
+        except ValueError as error:
+            return f"{REFUSED}{' '.join(str(error).split())}"
+        return DONE + line.strip()
 
     def happened(self) -> list[str]:
         """Return the faults that began and ended since the last call."""

@@ -23,6 +23,7 @@ from tester.run.simulated import spec_of
 from tester.store.run_reader import RunReader
 from tester.tui.playback import load
 from tests.extension.installing import EXAMPLES, installed
+from tests.tester.run.rehearsed import Rehearsal
 
 RIG = ["--rig", "rig.yaml", "--yes"]
 QUICK = """
@@ -193,3 +194,11 @@ def test_its_zero_is_taken_when_the_sledge_is_put_down(folder: Path) -> None:
     (row,) = table(run_of(folder))
     assert not isnan(float(row["mu"]))
     assert float(row["mu"]) == pytest.approx(0.434, abs=0.005)
+
+
+def test_it_is_rehearsed_through_its_console_with_the_verbs_of_a_plain_twin() -> None:
+    rig = load_rig("rig.yaml")
+    here, there = (Rehearsal(rig, QUICK, remote=remote).to_the_end() for remote in (False, True))
+    assert there.kept.hands == ["specimen 1 '1#'", "repeat 1 1 1"]
+    (ours,), (theirs,) = here.kept.repeats, there.kept.repeats
+    assert theirs.valid and theirs.mu_resultant == pytest.approx(ours.mu_resultant, rel=2e-3)

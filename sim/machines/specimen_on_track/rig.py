@@ -70,6 +70,8 @@ class TrackRig(SimRig):
         self.metres = _METRES[spec.axes["track"].unit]
         """Metres in the track's unit of length."""
         self._linear = parameters.motion == "linear"
+        self.mounted = 0, ""
+        """Specimen and rubber on the arm."""
         self.switches_work = True
         """Whether the end switches work."""
         self.beyond_switch = False
@@ -158,6 +160,12 @@ class TrackRig(SimRig):
     def install(self, specimen: int, compound: str) -> None:
         """Put specimen ``specimen`` of a rubber on the arm."""
         self.plant.install(specimen, compound)
+        self.mounted = specimen, compound
+
+    def keep(self, specimen: int, compound: str) -> None:
+        """Put the specimen of an interrupted run on the arm, unless this rig has lived on with it."""
+        if self.mounted != (specimen, compound):
+            self.install(specimen, compound)
 
     def put_on(self, weights_n: float) -> None:
         """Hang calibrated weights on the arm, N."""

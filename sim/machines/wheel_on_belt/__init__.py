@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sim.hands import COUNT, FLAG, REPEAT, TEXT, VALUES, Argument, Verb
 from sim.machines import SimulatedMachine
 from sim.machines.wheel_on_belt.rig import WheelRig
 
@@ -35,4 +36,21 @@ def _language(spec: RigSpec) -> FaultLanguage:
     return with_sensors(LANGUAGE, spec)
 
 
-MACHINE = SimulatedMachine(WheelRig, _language, LOG_COLUMNS, log_row, LOG_DECIMALS)
+_WHEEL = (Argument("specimen", COUNT), Argument("wheel", COUNT), Argument("compound", TEXT))
+_WORN = (*_WHEEL, Argument("diameter_mm", "mm"), Argument("sliding_m", "m"))
+VERBS = (
+    Verb(
+        "wheel", "install", "mount a new wheel; yes: of a new specimen, after the rig has cooled down",
+        (*_WHEEL, Argument("new_specimen", FLAG)),
+    ),
+    Verb("again", "mount_again", "mount an earlier wheel again: cold diameter, sliding distance", _WORN),
+    Verb("same", "keep", "the same, unless that wheel is on already", _WORN),
+    Verb("belt", "belt_travelled", "wear a fresh belt by its travel under load", (Argument("travel_m", "m"),)),
+    Verb(
+        "weight", "hang", "hang a weight on the load cell; zeros remove it",
+        (Argument("fx", "N"), Argument("fy", "N"), Argument("fz", "N")),
+    ),
+    Verb(REPEAT.word, REPEAT.method, REPEAT.about, (*REPEAT.arguments, Argument("held", VALUES))),
+)  # fmt: skip
+
+MACHINE = SimulatedMachine(WheelRig, _language, LOG_COLUMNS, log_row, LOG_DECIMALS, VERBS)

@@ -62,8 +62,8 @@ class WheelRig(SimRig):
     __slots__ = (
         "_belt", "_belt_creep", "_held_n", "_limit_nm", "_press", "_pressed_mm", "_pushed_n", "_roller_m", "_screw",
         "_seen_s", "_sideslip", "_slip_nm", "_spring_mm_s", "_stalled", "_travelled_m", "_turned_rad", "_wheel",
-        "_yields", "belt_shaft", "belt_slip", "cell", "cells", "ir", "jacket", "plant", "relay", "swapped", "turned",
-        "wheel_shaft",
+        "_yields", "belt_shaft", "belt_slip", "cell", "cells", "ir", "jacket", "mounted", "plant", "relay", "swapped",
+        "turned", "wheel_shaft",
     )  # fmt: skip
 
     def __init__(
@@ -92,6 +92,8 @@ class WheelRig(SimRig):
         self.relay = StandstillRelay() if parameters.standstill_relay else None
         self.swapped = False
         """Whether the drives of wheel and belt are swapped: each moves the other's part."""
+        self.mounted = 0, 0, ""
+        """Specimen, wheel and compound on the rig."""
         self.turned: set[str] = set()
         """Press or positioned axes that move the wrong way round: the motor's direction was never set."""
         self._turned_rad = self._travelled_m = self._seen_s = 0.0
@@ -285,21 +287,31 @@ class WheelRig(SimRig):
 
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         """Mount a new wheel."""
+        self.mounted = specimen, wheel, compound
         self.plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, new_specimen)
 
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
         """Mount a worn wheel: diameter in mm, sliding distance in m; the rig is at ambient temperature."""
+        self.mounted = specimen, wheel, compound
         self.plant.install(specimen, wheel, compound, True, diameter_mm, sliding_m)
+
+    def keep(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Mount the wheel of an interrupted run as ``remount`` does, unless this rig has lived on with it."""
+        if self.mounted != (specimen, wheel, compound):
+            self.remount(specimen, wheel, compound, diameter_mm, sliding_m)
 
     def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
         """Mount a wheel again that was on before: diameter in mm, sliding distance in m; the rig stays warm."""
+        self.mounted = specimen, wheel, compound
         self.plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, False, diameter_mm, sliding_m)
 
     def belt_travelled(self, travel_m: float) -> None:
-        """Mount the belt of an interrupted run, worn by its travel under load, m."""
-        self.plant.travel(travel_m, self.ambient_c)
+        """Wear a fresh belt by the travel of an interrupted run under load, m; a rig that has lived on has that belt.
+        """
+        if self.plant.belt_grip == 1.0:
+            self.plant.travel(travel_m, self.ambient_c)
 
     def truth(self, held: Mapping[str, float]) -> dict[str, float]:
         """Return the plant's truth about the repeat that has begun, at setpoints by axis (speeds m/s, N, deg, degC)."""

@@ -27,6 +27,10 @@ SAMPLES = 40.0
 class TrackAttendant(PlainAttendant, Protocol):
     """What a person does at the rig, in addition to mounting a specimen."""
 
+    def keep(self, specimen: int, compound: str) -> None:
+        """Keep the specimen of an interrupted run on the arm, or put it back."""
+        ...
+
     def put_on(self, weights_n: float) -> None:
         """Hang weights on the arm, N."""
         ...

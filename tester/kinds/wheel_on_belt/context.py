@@ -40,7 +40,11 @@ class Attendant(Protocol):
         ...
 
     def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        """Mount the wheel of an interrupted run again, with its wear (mm, m)."""
+        """Mount a worn wheel, with its wear (mm, m)."""
+        ...
+
+    def keep(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        """Keep the wheel of an interrupted run on the rig, or mount it with its wear (mm, m)."""
         ...
 
     def mount_again(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:

@@ -110,3 +110,37 @@ def test_after_a_hold_the_activity_in_progress_is_resumed(procedures: LampProced
     executor.resume(ctx)
     assert isinstance(executor.activity, Scans) and executor.activity.resumed == 1
     assert (ctx.repeat_key, ctx.burst) == (0, 0)
+
+
+class BusyHands:
+    """Hands that need some scans."""
+
+    def __init__(self, scans: int, failed: str = "") -> None:
+        self.scans, self.then = scans, failed
+        self.failed = ""
+
+    def busy(self, now: float) -> bool:
+        self.scans -= 1
+        self.failed = self.then if self.scans < 0 else ""
+        return self.scans >= 0
+
+
+def test_no_activity_advances_while_hands_are_busy(procedures: LampProcedures) -> None:
+    executor, ctx = Executor(Plan("toy", (PromptStep(1, "a"),), (), (), 0.0, 1), procedures), make_context()
+    executor.hands = BusyHands(3)
+    for _ in range(3):
+        executor.step(ctx)
+        assert not procedures.began and not executor.finished
+    executor.step(ctx)
+    executor.step(ctx)
+    assert procedures.began == ["a"] and executor.finished and not executor.failed
+
+
+def test_work_that_hands_did_not_do_ends_the_run_with_the_reason(procedures: LampProcedures) -> None:
+    executor, ctx = Executor(Plan("toy", (PromptStep(1, "a"),), (), (), 0.0, 1), procedures), make_context()
+    executor.step(ctx)
+    executor.hands = BusyHands(1, "the hands are stuck")
+    executor.step(ctx)
+    assert not executor.finished
+    executor.step(ctx)
+    assert executor.finished and executor.failed == "a: the hands are stuck"

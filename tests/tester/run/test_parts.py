@@ -139,8 +139,8 @@ class Acting:
         if wheel == self.wheel:
             self.act()
 
-    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        self.hands.remount(specimen, wheel, compound, diameter_mm, sliding_m)
+    def keep(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        self.hands.keep(specimen, wheel, compound, diameter_mm, sliding_m)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
         self.hands.begin_repeat(condition, repeat, attempt, held)

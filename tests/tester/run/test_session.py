@@ -138,8 +138,8 @@ class Interrupting:
     def install(self, specimen: int, wheel: int, compound: str, *, new_specimen: bool) -> None:
         self.hands.install(specimen, wheel, compound, new_specimen=new_specimen)
 
-    def remount(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
-        self.hands.remount(specimen, wheel, compound, diameter_mm, sliding_m)
+    def keep(self, specimen: int, wheel: int, compound: str, diameter_mm: float, sliding_m: float) -> None:
+        self.hands.keep(specimen, wheel, compound, diameter_mm, sliding_m)
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, held: Mapping[str, float]) -> None:
         self.hands.begin_repeat(condition, repeat, attempt, held)

@@ -10,6 +10,7 @@ import pytest
 from drivers.ports import BusLost
 from sim import machines
 from sim.faults.can import FaultyCanWire
+from sim.machines.specimen_on_track.rig import TrackRig
 from tester.kinds import load_rig
 from tester.run.sim_console import HELP, RigClock, SimConsole, SpoiledLife
 from tester.run.simulated import simulated_ports, spec_of
@@ -136,12 +137,42 @@ def test_the_catalogue_is_searched_by_words(bench: Bench) -> None:
 
 def test_state_help_and_end(bench: Bench) -> None:
     assert "wheel_m_s 0.00000" in bench.say("state")
-    assert bench.say("help") == HELP
+    assert tuple(bench.say("help"))[: len(HELP)] == HELP
     assert bench.say("") == ()
     assert not bench.console.ended
     bench.say("end")
     assert bench.console.ended
     assert "nothing wrong" in bench.console.status()
+
+
+def test_a_machine_s_own_verbs_are_listed_and_carried_out() -> None:
+    bench = Bench("pin-on-disc")
+    assert isinstance(bench.rig, TrackRig)
+    listed = " | ".join(bench.say("help"))
+    assert "specimen SPECIMEN COMPOUND" in listed and "hang WEIGHTS_N N" in listed and "track dry|wet|talc" in listed
+    for line in ("specimen 1 SBR", "lower", "hang 20 N", "track wet"):
+        assert bench.say(line) == (f"done: {line}",)
+    plant = bench.rig.plant
+    assert (bench.rig.lift_mm, plant.weights_n, plant.interface) == (0.0, 20.0, "wet")
+    bench.say("raise")
+    assert bench.rig.lift_mm > 0.0
+    assert "wheel SPECIMEN WHEEL COMPOUND yes|no" in " | ".join(Bench().say("help"))
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("hang 20", "expected WEIGHTS_N N: a number in N"),
+        ("hang -20 N", "at least 0 N"),
+        ("specimen 1 XYZ", "XYZ"),
+        ("track oily", "expected dry|wet|talc, not 'oily'"),
+        ("specimen 1 'SBR", "No closing quotation"),
+    ],
+)
+def test_a_verb_that_cannot_be_carried_out_is_refused_in_one_line(line: str, why: str) -> None:
+    bench = Bench("pin-on-disc")
+    [answer] = bench.say(line)
+    assert answer.startswith("not done: ") and why in answer and "\n" not in answer
 
 
 def test_the_clock_of_the_rig_runs_at_its_speed_and_never_jumps() -> None:

@@ -34,7 +34,10 @@ class InstallSpecimen(AskBesideTrack):
         if not super().step(ctx):
             return False
         one = self.install
-        ctx.attendant.install(one.specimen, one.compound)
+        if one.again:
+            ctx.attendant.keep(one.specimen, one.compound)
+        else:
+            ctx.attendant.install(one.specimen, one.compound)
         ctx.attendant.raise_arm()
         if ctx.rig.axes.lift is None:
             ctx.devices.by_hand_mm = ctx.rig.arm.raised_mm

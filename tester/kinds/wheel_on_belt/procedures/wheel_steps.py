@@ -130,7 +130,7 @@ class InstallWheel:
     def _remount(self, ctx: Context, worn: Mounted) -> None:
         """Resume with a wheel from the store: it keeps its record, its first tare and its number."""
         step = self.install
-        ctx.attendant.remount(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
+        ctx.attendant.keep(step.specimen, step.wheel, step.compound, worn.diameter_mm, worn.sliding_m)
         wheel = wheel_of(
             ctx.rig.geometry, step.specimen, step.replicate, step.wheel, step.compound, worn.diameter_mm
         )

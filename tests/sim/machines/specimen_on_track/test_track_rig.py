@@ -176,3 +176,12 @@ def test_a_further_sensor_that_shows_what_the_plant_does_not_have_is_refused() -
     devices = {**spec.devices, "second": replace(cell, unit_id=9, shows={"fx": "no_such_quantity"})}
     with pytest.raises(UnknownQuantityError, match="no_such_quantity"):
         TrackRig(type(spec)(spec.bitrate, spec.axes, spec.lines, devices), parameters("grosch"), 1)
+
+
+def test_a_rig_that_has_lived_on_keeps_the_specimen_of_an_interrupted_run() -> None:
+    rig = drive(lower(made()), 5.0)
+    slid_m = run(rig, 2.0).plant.slid_m
+    rig.keep(0, "SBR")
+    assert rig.plant.slid_m == slid_m > 0.0
+    rig.keep(1, "NR")
+    assert rig.plant.slid_m == 0.0 and rig.mounted == (1, "NR")

@@ -272,3 +272,14 @@ def test_a_copied_rig_goes_on_as_its_original(world: WheelRig) -> None:
     copied.advance(2.0)
     assert copied.plant.forces_measured(2.0) == world.plant.forces_measured(2.0)
     assert copied.can.receive(2.0) == world.can.receive(2.0)
+
+
+def test_a_rig_that_has_lived_on_keeps_the_wheel_and_the_belt_of_an_interrupted_run() -> None:
+    world = Simulation().world
+    world.keep(1, 2, "3#", 85.0, 10.0)
+    assert (world.mounted, world.plant.cold_mm) == ((1, 2, "3#"), 85.0)
+    world.keep(1, 2, "3#", 84.0, 20.0)
+    assert world.plant.cold_mm == 85.0
+    world.plant.belt_grip = 0.9
+    world.belt_travelled(1000.0)
+    assert world.plant.belt_grip == 0.9
