@@ -13,7 +13,7 @@ from operator import itemgetter
 from typing import NamedTuple, TypeAlias, cast
 
 AxisValue: TypeAlias = float | str
-"""Value of an axis: a number in the axis's ``recipe_unit``, or one of its ``choices``."""
+"""Value of an axis: a number in the axis's ``recipe_unit``, or a text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Axis:
     le: float | None = None
     """Range in any recipe, in ``recipe_unit``: at least, more than, at most."""
     choices: tuple[str, ...] = ()
-    """The values of an axis that is not a number."""
+    """The values of an axis that is not a number; without choices such an axis takes any name."""
     in_measure: bool = False
     """Whether a recipe sets it in ``measure``, for all grids without their own value."""
     limit: str = ""
@@ -53,6 +53,11 @@ class Axis:
     drive: str = ""
     """The rig's drive for it, such as ``axes.camber``, where a person may set it instead; only 0 is then possible
     without the drive. "" where a device always sets it."""
+
+    @property
+    def textual(self) -> bool:
+        """Return whether the values are texts: one of ``choices``, or names, with a text as default."""
+        return bool(self.choices) or isinstance(self.default, str)
 
     @property
     def recipe_default(self) -> AxisValue | None:
@@ -65,7 +70,7 @@ class Axis:
         return value if isinstance(value, str) else round(self.scale * value, 6) + 0.0
 
     def number(self, held: Setpoint) -> float:
-        """Return the axis's value in ``unit``; raises TypeError for an axis of choices."""
+        """Return the axis's value in ``unit``; raises TypeError for an axis of texts."""
         return _number(self.of(held), self.name)
 
     def at_default(self, held: Setpoint) -> bool:
@@ -93,12 +98,12 @@ class Setpoint(NamedTuple):
         return self.values[self.axes.places[name]]
 
     def number(self, name: str) -> float:
-        """Return the value of a numeric axis; raises KeyError, and TypeError for an axis of choices."""
+        """Return the value of a numeric axis; raises KeyError, and TypeError for an axis of texts."""
         return _number(self.value(name), name)
 
     def numbers(self) -> dict[str, float]:
         """Return the values of the numeric axes, in their ``recipe_unit``, by name."""
-        return {axis.name: self.number(axis.name) for axis in self.axes if not axis.choices}
+        return {axis.name: self.number(axis.name) for axis in self.axes if not axis.textual}
 
     def key(self, without: str = "") -> tuple[str, tuple[AxisValue, ...]]:
         """Return the compound and the values of the axes, as shown to people, except the axis ``without``."""

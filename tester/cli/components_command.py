@@ -74,7 +74,8 @@ def _lines(pairs: Sequence[FilmPair], means: Sequence[SharesMean]) -> Iterator[s
     )
     yield from plain_lines(Table(columns, tuple(pairs)))
     for mean in means:
-        of = f"{mean.compound}, {mean.interface}: share of hysteresis, mean of {mean.conditions} conditions"
+        on = f" on {mean.surface}" if mean.surface else ""
+        of = f"{mean.compound}, {mean.interface}{on}: share of hysteresis, mean of {mean.conditions} conditions"
         yield f"{shown(of)}: {_with_u(mean.share)}"
     if any(not isfinite(pair.parts.share.expanded) for pair in pairs):
         yield "no U: a condition measured once does not show its repeatability (measure: repeats: 2 or more)"
@@ -111,6 +112,7 @@ def _mean_json(mean: SharesMean) -> dict[str, Json]:
     return {
         "compound": mean.compound,
         "interface": mean.interface,
+        "surface": mean.surface,
         "conditions": mean.conditions,
         "hysteresis_share": _estimate_json(mean.share),
     }

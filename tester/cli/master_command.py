@@ -36,6 +36,7 @@ GLASS = "glass"
     help="Ts of the shift: such as -3degC, or glass, which is Tg + 50 K of the compound's file. Else it is fitted.",
 )
 @click.option("--compound", metavar="NAME", help="Which compound, where there are several.")
+@click.option("--surface", metavar="NAME", help="Which surface, where there are several.")
 @click.option("--interface", metavar="NAME", help="Which interface, where there are several: dry, wet, talc.")
 @click.option("--load", metavar="LOAD", help="Which load, where there are several, such as 20N.")
 @click.option("--format", "ending", type=click.Choice(FORMATS), default=None, help="By the ending of the file.")
@@ -49,6 +50,7 @@ def master(
     reference_c: float,
     ts_words: str | None,
     compound: str | None,
+    surface: str | None,
     interface: str | None,
     load: str | None,
     ending: str | None,
@@ -70,7 +72,7 @@ def master(
     kind_of_file = _ending(ending, out)
     found = _runs(runs)
     points = [point for one in found for point in one.points]
-    points = _chosen(points, compound, interface, _quantity("--load", load, "N"))
+    points = _chosen(points, compound, surface, interface, _quantity("--load", load, "N"))
     name = points[0].compound
     file = _compound_file(runs[0], name)
     glass_c = file.model.Tg if file is not None else None
@@ -157,12 +159,16 @@ def _part(kind: Kind) -> MasterPart:
 
 
 def _chosen(
-    points: Iterable[MasterPoint], compound: str | None, interface: str | None, load_n: float | None
+    points: Iterable[MasterPoint],
+    compound: str | None,
+    surface: str | None,
+    interface: str | None,
+    load_n: float | None,
 ) -> list[MasterPoint]:
     """Return the conditions that were asked for; a usage error where they differ in more than speed and temperature."""
     left = [*points]
     load = None if load_n is None else f"{load_n:g} N"
-    wanted = {"compound": compound, "interface": interface, "load": load}
+    wanted = {"compound": compound, "surface": surface, "interface": interface, "load": load}
     for name, value in wanted.items():
         there = sorted({_held(one, name) for one in left} - {""})
         if value is not None:

@@ -45,7 +45,8 @@ class Draft:
 
     def hint(self, axis: Axis) -> str:
         """Return an axis with the form of its answer: ``load (a load such as "100 N"; units accepted: N, kN)``."""
-        return f"{axis.name} ({', '.join(axis.choices) if axis.choices else expected(axis.recipe_unit)})"
+        texts = ", ".join(axis.choices) or "a name"
+        return f"{axis.name} ({texts if axis.textual else expected(axis.recipe_unit)})"
 
     def default_of(self, axis: Axis) -> str:
         """Return the value of an axis that a recipe may leave out, "" for any other."""

@@ -127,7 +127,7 @@ def _varied(values: Sequence[ChartValue]) -> list[Axis]:
     if not values:
         return []
     axes = values[0].held.axes.differing(value.held for value in values)
-    return sorted((axis for axis in axes if axis.plotted and not axis.choices), key=lambda axis: axis.plotted)
+    return sorted((axis for axis in axes if axis.plotted and not axis.textual), key=lambda axis: axis.plotted)
 
 
 def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None:
@@ -165,12 +165,17 @@ def _styles(panel: ChartPanel) -> int:
 
 
 def _panelled(values: Iterable[ChartValue]) -> list[list[ChartValue]]:
-    """Return the values of each panel: of one compound, and of one choice where an axis has choices (dry, wet)."""
+    """Return the values of each panel: of one compound, and of one text of each axis of texts (glass; dry, wet)."""
     panels: dict[tuple[str, ...], list[ChartValue]] = {}
     for value in values:
-        choices = (axis.choices.index(str(axis.of(value.held))) for axis in value.held.axes if axis.choices)
-        panels.setdefault((value.held.compound, *map(str, choices)), []).append(value)
+        texts = (_rank(axis, str(axis.of(value.held))) for axis in value.held.axes if axis.textual)
+        panels.setdefault((value.held.compound, *texts), []).append(value)
     return [panels[key] for key in sorted(panels)]
+
+
+def _rank(axis: Axis, text: str) -> str:
+    """Return what sorts a text of an axis: its place among the choices, or itself."""
+    return str(axis.choices.index(text)) if axis.choices else text
 
 
 def _panel(material: Material, values: Sequence[ChartValue], along: Axis, across: Axis | None) -> ChartPanel | None:

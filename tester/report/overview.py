@@ -41,7 +41,7 @@ def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
     axes = placed[0].measured.info.setpoint.axes
     varied = axes.differing(condition.measured.info.setpoint for condition in placed)
     strips = [ChartPanel("", tuple(_coefficients(placed, several)), "coefficient")]
-    for axis in (each for each in varied if each.plotted and not each.choices):
+    for axis in (each for each in varied if each.plotted and not each.textual):
         marks = [
             Mark(c.at, axis.number(c.measured.info.setpoint), width=c.half, name=_words(c, several)) for c in placed
         ]

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple, TypeAlias
 from tester.analysis.components import ByFilm, PartValue, by_film, mean_of
 from tester.analysis.kelvin import UNKNOWN, Slope, slope_of_pairs
 from tester.base.axes import AxisValue
+from tester.inputs.recipe.recipe_schema import SURFACE
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured
 
@@ -33,11 +34,19 @@ class FilmPair(NamedTuple):
         return str(self.film.info.setpoint.value(AXIS))
 
 
+    @property
+    def surface(self) -> str:
+        """Return the surface that the recipe's grid names; "" for the recipe's abrasive."""
+        held = self.film.info.setpoint
+        return str(held.value(SURFACE)) if SURFACE in held.axes.places else ""
+
+
 class SharesMean(NamedTuple):
-    """The mean share of hysteresis over the conditions of a compound with one film."""
+    """The mean share of hysteresis over the conditions of a compound with one film, on one surface."""
 
     compound: str
     interface: str
+    surface: str
     conditions: int
     share: PartValue
 
@@ -65,12 +74,12 @@ def film_pairs(results: RunResults) -> Iterator[FilmPair]:
 
 
 def means_of(pairs: Sequence[FilmPair]) -> Iterator[SharesMean]:
-    """Yield the mean share of each compound with each film."""
-    shares_of: dict[tuple[str, str], list[PartValue]] = {}
+    """Yield the mean share of each compound with each film on each surface."""
+    shares_of: dict[tuple[str, str, str], list[PartValue]] = {}
     for pair in pairs:
-        shares_of.setdefault((pair.dry.info.compound, pair.interface), []).append(pair.parts.share)
-    for (compound, interface), shares in shares_of.items():
-        yield SharesMean(compound, interface, len(shares), mean_of(shares))
+        shares_of.setdefault((pair.dry.info.compound, pair.interface, pair.surface), []).append(pair.parts.share)
+    for (compound, interface, surface), shares in shares_of.items():
+        yield SharesMean(compound, interface, surface, len(shares), mean_of(shares))
 
 
 def _slope(measured: Measured, valued: Sequence[Measured]) -> Slope:

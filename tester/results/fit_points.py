@@ -39,6 +39,10 @@ def _no_heat(measured: Measured) -> float:
     return 0.0
 
 
+def _compound(measured: Measured) -> str:
+    return measured.info.setpoint.compound
+
+
 @dataclass(frozen=True, slots=True)
 class ConditionReader:
     """A kind's reader of conditions for a fit; values of variables are in a law's own units."""
@@ -51,6 +55,8 @@ class ConditionReader:
     """Why the kind rejects a condition that has a value without doubt, "" where it accepts it."""
     scatter: Mapping[str, Scatter] = field(default_factory=dict[str, Scatter])
     """Declared standard deviation between conditions by compound; "": of any other."""
+    group: Callable[[Measured], str] = _compound
+    """The group of a condition: those of one are fitted together."""
     own_heat_k: Callable[[Measured], float] = _no_heat
     """Warming of the contact by friction above the measured temperature, K."""
 
@@ -114,7 +120,7 @@ def _point_of(label: str, condition: Measured, source: Source, info: RunInfo, by
     known = _repeatability(condition, info.metadata)
     return FitPoint(
         label=label,
-        group=condition.info.setpoint.compound,
+        group=by.group(condition),
         nominal=by.nominal(condition),
         measured=by.measured(condition),
         value=condition.result.mu_resultant,

@@ -18,7 +18,7 @@ from tester.base.source import InvalidSource
 from tester.inputs.materials.files import FOLDERS, MaterialFile, Role
 from tester.inputs.materials.library import Library
 from tester.inputs.materials.material_schema import CompoundModel
-from tester.inputs.recipe.recipe_schema import Recipe
+from tester.inputs.recipe.recipe_schema import Recipe, surfaces_of
 from tester.inputs.rig import Rig
 from tester.run.kind_lookup import recipe_part
 from tester.store.disk import write_whole
@@ -91,8 +91,8 @@ def described_compounds(recipe: Recipe, path: Path, rig: Rig) -> dict[str, Compo
 def _named(recipe: Recipe) -> Iterator[tuple[Role, str]]:
     for name in dict.fromkeys(specimen.compound for specimen in recipe.specimens):
         yield "compound", name
-    if recipe.abrasive is not None:
-        yield "surface", recipe.abrasive.name
+    for name in surfaces_of(recipe):
+        yield "surface", name
 
 
 def kept_files(files: Sequence[MaterialFile], taken: Iterable[str] = ()) -> tuple[KeptFile, ...]:

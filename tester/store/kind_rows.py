@@ -136,7 +136,7 @@ def axis_rows(axes: Axes) -> Iterator[Statement]:
     for position, (axis, data) in enumerate(zip(axes, axes.as_data(), strict=True)):
         row = {_RENAMED.get(name, name): cast("Cell", value) for name, value in data.items()}
         yield insert("axis", {"position": position} | row | {"choices": "\n".join(axis.choices)})
-        yield f"ALTER TABLE condition ADD COLUMN {axis.field} {'TEXT' if axis.choices else 'REAL'}", ()
+        yield f"ALTER TABLE condition ADD COLUMN {axis.field} {'TEXT' if axis.textual else 'REAL'}", ()
 
 
 def axes_of(rows: Iterable[Mapping[str, object]]) -> Axes:

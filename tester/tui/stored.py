@@ -79,7 +79,7 @@ class Stored:
     def plotted(self) -> tuple[Axis, ...]:
         """Axes against which to plot the coefficient: the paper's, and others that differ between these conditions."""
         more = self.axes.differing(row.held for row in self.rows)
-        shown = (axis for axis in self.axes if not axis.choices and (axis.paper or axis in more))
+        shown = (axis for axis in self.axes if not axis.textual and (axis.paper or axis in more))
         return tuple(sorted(shown, key=lambda axis: axis.plotted))
 
 

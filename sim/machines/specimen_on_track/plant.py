@@ -11,6 +11,7 @@ Every public attribute is the truth.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import copysign, exp
 from typing import Final
 
@@ -35,8 +36,8 @@ class TrackPlant:
 
     __slots__ = (
         "_air", "_drift_n_k", "_dry", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m",
-        "_specimen", "_stick_slip", "_zero_n", "air_c", "force_n", "grip", "interface", "load_n", "mu", "parameters",
-        "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "weights_n",
+        "_specimen", "_stick_slip", "_zero_n", "air_c", "compound", "force_n", "grip", "interface", "load_n", "mu",
+        "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "weights_n",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
@@ -65,6 +66,8 @@ class TrackPlant:
         self._stick_slip: StickSlip | None = None
         if p.stick_slip > 0.0:
             self._stick_slip = StickSlip(p.stick_slip, p.stick_slip_frequency, unused)
+        self.compound = ""
+        """Of the specimen on the arm; "" before the first."""
         self.interface: Interface = "dry"
         self.weights_n = 0.0
         self.slid_m = 0.0
@@ -80,8 +83,8 @@ class TrackPlant:
 
         Raises ValueError for a rubber that is missing in the parameters, or in the setting's materials.
         """
-        self._dry = self.parameters.friction_of(compound, self.setting)
-        self._law = self.parameters.contact.through(self._dry, self.interface)
+        self.compound = compound
+        self._look_up_law()
         self._specimen = 1.0 + self.parameters.scatter * SPECIMEN_SIGMA * normal(self._seed, "specimen", specimen)
         self._repeat = 1.0
         self.specimen_c = self.parameters.ambient
@@ -95,6 +98,23 @@ class TrackPlant:
         if not 0.0 <= weights_n < float("inf"):
             raise ValueError(f"weights must be finite and at least 0 N, not {weights_n!r}")
         self.weights_n = weights_n
+
+    def cover(self, surface: str) -> None:
+        """Cover the track with a surface, clean and dry; it matters to laws of materials.
+
+        Raises ValueError for a surface that is missing in the setting's materials.
+        """
+        self.setting = replace(self.setting, surface=surface)
+        self.interface = "dry"
+        if self.compound:
+            self._look_up_law()
+
+    def _look_up_law(self) -> None:
+        """Take the law of rubber and surface; none before the track is covered, where the law needs a surface."""
+        p, setting = self.parameters, self.setting
+        bare = p.of_materials and setting.materials is not None and not (p.surface or setting.surface)
+        self._dry = None if bare else p.friction_of(self.compound, setting)
+        self._law = None if self._dry is None else p.contact.through(self._dry, self.interface)
 
     def prepare(self, interface: Interface) -> None:
         """Dry, wet or powder the track."""

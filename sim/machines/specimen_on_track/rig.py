@@ -171,6 +171,10 @@ class TrackRig(SimRig):
         """Hang calibrated weights on the arm, N."""
         self.plant.put_on(weights_n)
 
+    def cover(self, surface: str) -> None:
+        """Cover the track with a surface of this name, clean and dry."""
+        self.plant.cover(surface)
+
     def prepare(self, interface: Interface) -> None:
         """Dry, wet or powder the track."""
         self.plant.prepare(interface)

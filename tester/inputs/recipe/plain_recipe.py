@@ -12,10 +12,10 @@ from itertools import count, product
 from typing import ClassVar
 
 from tester.analysis.stability import REPEAT_WINDOWS
-from tester.base.axes import Setpoint
+from tester.base.axes import AxisValue, Setpoint
 from tester.base.source import Problem, Tree
 from tester.base.units import Quantity, UnitError, show
-from tester.inputs.recipe.conditions import conditions_of, metadata_of, ordered
+from tester.inputs.recipe.conditions import Condition, conditions_of, metadata_of, ordered
 from tester.inputs.recipe.plan import ConditionStep, Plan, Settings, Specimen, Stand, Step
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
@@ -79,6 +79,14 @@ class SpecimenPart(RecipePart):
     mount: ClassVar[type[Mount]] = Mount
     """The class of the steps that put a specimen on."""
 
+    def in_turns(self, conditions: Sequence[Condition[Settings]]) -> Sequence[Sequence[Condition[Settings]]]:
+        """Return the conditions of a specimen in the parts that it goes through one after the other."""
+        return (conditions,)
+
+    def before_turn(self, index: int, values: tuple[AxisValue, ...], settings: Settings, rig: Rig) -> Sequence[Step]:
+        """Return the steps before such a part, from ``index`` on; ``values``: of its first condition."""
+        return ()
+
     def before_block(self, index: int, value: float, settings: Settings) -> Sequence[Step]:
         """Return the steps before a block of conditions with this value of the axis ``blocks``, from ``index`` on."""
         return ()
@@ -90,6 +98,7 @@ class SpecimenPart(RecipePart):
     def expand(self, recipe: Recipe, rig: Rig, estimator: object = None) -> Plan:
         """Return the plan: each replicate of a specimen is mounted and goes through its conditions."""
         conditions = conditions_of(recipe, self.settings)
+        turns = self.in_turns(conditions) if conditions else ()
         block_value = self.axes.number_of(self.axes.blocks)
         specimens = tuple(
             Specimen(i, specimen_model.compound, specimen_model.note)
@@ -101,16 +110,19 @@ class SpecimenPart(RecipePart):
         for piece, (specimen, replicate) in enumerate(pieces, start=1):
             steps.append(self.mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.note))
             before: Setpoint | None = None
-            for block in ordered(conditions, block_value, recipe.order, specimen.index, replicate):
-                steps += self.before_block(len(steps), block_value(block[0].values), block[0].settings)
-                for values, row, grid, how in block:
-                    setpoint = Setpoint(specimen.compound, values, self.axes)
-                    steps += self.before_condition(len(steps), setpoint, before)
-                    before = setpoint
-                    steps.append(self.condition(
-                        index=len(steps), condition=next(numbers), row=(specimen.index - 1) * len(conditions) + row,
-                        specimen=specimen.index, replicate=replicate, grid=grid, setpoint=setpoint, **vars(how),
-                    ))  # fmt: skip
+            for turn in turns:
+                steps += self.before_turn(len(steps), turn[0].values, turn[0].settings, rig)
+                for block in ordered(turn, block_value, recipe.order, specimen.index, replicate):
+                    steps += self.before_block(len(steps), block_value(block[0].values), block[0].settings)
+                    for values, row, grid, how in block:
+                        setpoint = Setpoint(specimen.compound, values, self.axes)
+                        steps += self.before_condition(len(steps), setpoint, before)
+                        before = setpoint
+                        steps.append(self.condition(
+                            index=len(steps), condition=next(numbers),
+                            row=(specimen.index - 1) * len(conditions) + row,
+                            specimen=specimen.index, replicate=replicate, grid=grid, setpoint=setpoint, **vars(how),
+                        ))  # fmt: skip
         least = min((condition.settings.min_valid for condition in conditions), default=1)
         return Plan(recipe.recipe, tuple(steps), specimens, least, metadata_of(recipe), recipe.kind, self.axes)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeAlias, cast
 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 MAX_REPEATS = 1000
 MAX_FREE_FIELD = 500
+MAX_NAME = 200
 MAX_GRIDS = 1000
 MAX_CONDITIONS = 250_000
 """Conditions of one plan, over all specimens and replicates: some five years of rig time."""
@@ -32,28 +33,31 @@ MAX_CONDITIONS = 250_000
 
 @dataclass(frozen=True, slots=True)
 class Listed(Quantity):
-    """Mark a field as an axis: a list of quantities or of ``choices``, or a single one for a list of one."""
+    """Mark a field as an axis: a list of quantities or of texts, or a single one for a list of one."""
 
-    choices: tuple[str, ...] = ()
+    choices: tuple[str, ...] | None = None
+    """The texts; (): any name. None: quantities."""
 
     def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Return a schema of a list of at least one value; errors carry the index of the element."""
         from pydantic_core import core_schema
 
-        items: CoreSchema = (
-            core_schema.literal_schema(list(self.choices))
-            if self.choices
-            else Quantity.__get_pydantic_core_schema__(self, float, handler)
-        )
+        items: CoreSchema
+        if self.choices is None:
+            items = Quantity.__get_pydantic_core_schema__(self, float, handler)
+        elif self.choices:
+            items = core_schema.literal_schema(list(self.choices))
+        else:
+            items = core_schema.str_schema(min_length=1, max_length=MAX_NAME)
         return core_schema.no_info_before_validator_function(_as_list, core_schema.list_schema(items, min_length=1))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         """Describe both forms to editors."""
-        one: JsonSchemaValue = (
-            {"enum": list(self.choices)}
-            if self.choices
-            else Quantity.__get_pydantic_json_schema__(self, schema, handler)
-        )
+        one: JsonSchemaValue
+        if self.choices is None:
+            one = Quantity.__get_pydantic_json_schema__(self, schema, handler)
+        else:
+            one = {"enum": list(self.choices)} if self.choices else {"type": "string", "maxLength": MAX_NAME}
         return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
 
 
@@ -101,7 +105,7 @@ class Extent:
         return cls(number, "rev" if unit == "rev" else "s")
 
 
-Text: TypeAlias = Annotated[str, Field(min_length=1, max_length=200)]
+Text: TypeAlias = Annotated[str, Field(min_length=1, max_length=MAX_NAME)]
 Load: TypeAlias = Annotated[float, Quantity("N", gt=0)]
 Seconds: TypeAlias = Annotated[float, Quantity("s", ge=0)]
 Band: TypeAlias = Annotated[float, Quantity("K", gt=0, le=20)]
@@ -259,7 +263,7 @@ def grid_model(axes: Axes, base: type[GridModel] = GridModel) -> type[GridModel]
 def _axis_field(axis: Axis) -> tuple[object, object]:
     """Return annotation and default of an axis: left out, it has the value of ``measure`` or its default, or is
     missing."""
-    if axis.choices:
+    if axis.textual:
         listed: Any = Annotated[list[str], Listed("1", choices=axis.choices)]
     else:
         listed = Annotated[list[float], Listed(axis.recipe_unit, gt=axis.gt, ge=axis.ge, le=axis.le)]
@@ -267,6 +271,18 @@ def _axis_field(axis: Axis) -> tuple[object, object]:
         return listed | None, None
     default = axis.recipe_default
     return listed, ... if default is None else [default]
+
+
+SURFACE: Final = "surface"
+"""Name of the axis of a kind that changes the surface under the rubber."""
+
+
+def surfaces_of(recipe: Recipe) -> list[str]:
+    """Return the names of the surfaces of a recipe, each once: the abrasive's, and those on the axis ``surface``."""
+    named = [recipe.abrasive.name] if recipe.abrasive is not None else []
+    for grid in recipe.grids:
+        named += [name for name in getattr(grid, SURFACE, ()) if name]
+    return list(dict.fromkeys(named))
 
 
 class OrderModel(Section, frozen=True):

@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 from tester.base.axes import Axes, Axis, Setpoint
+from tester.inputs.recipe.recipe_schema import SURFACE
 
 NAME: Final = "specimen_on_track"
 INTERFACES: Final = ("dry", "wet", "talc")
 
 AXES: Final = Axes(
     (
+        Axis(SURFACE, "1", "surface", "", 1.0, "surface", "Surface", "Surface", "on", "", False, 5),
         Axis("interface", "1", "interface", "", 1.0, "interface", "Interface", "Interface", "", "dry", False, 4,
              choices=INTERFACES),
         Axis("load", "N", "load_n", "N", 1.0, "load_n", "Load /N", "Load N", "", None, True, 3, gt=0.0,
@@ -22,10 +24,11 @@ AXES: Final = Axes(
     ),
     blocks="temperature",
 )  # fmt: skip
-"""All axes, in the order of texts for people: weights and interface (a person changes them) before the speed.
+"""All axes, in the order of texts for people: what a person changes (surface, interface, weights) before the speed.
 
 Track speed is the speed of the track under the standing specimen, load the force of the weights on the arm,
-temperature that of the air around the specimen, interface the state of the track: dry, wet or powdered.
+temperature that of the air around the specimen, surface the name of what the track is covered with ("": the recipe's
+abrasive), interface its state: dry, wet or powdered.
 """
 
 
@@ -36,9 +39,12 @@ class TrackHeld(NamedTuple):
     load_n: float
     temperature_c: float
     interface: str
+    surface: str
 
 
 def held_by(setpoint: Setpoint) -> TrackHeld:
     """Return the values of a setpoint by their names."""
     number = setpoint.number
-    return TrackHeld(number("track_speed"), number("load"), number("temperature"), str(setpoint.value("interface")))
+    surface = str(setpoint.value(SURFACE)) if SURFACE in setpoint.axes.places else ""  # a record of an earlier version
+    interface = str(setpoint.value("interface"))
+    return TrackHeld(number("track_speed"), number("load"), number("temperature"), interface, surface)

@@ -35,6 +35,10 @@ class TrackAttendant(PlainAttendant, Protocol):
         """Hang weights on the arm, N."""
         ...
 
+    def cover(self, surface: str) -> None:
+        """Cover the track with a surface of this name, clean and dry."""
+        ...
+
     def prepare(self, interface: str) -> None:
         """Dry, wet or powder the track."""
         ...

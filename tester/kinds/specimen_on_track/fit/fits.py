@@ -2,45 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
-from tester.analysis.fit.fit_law import FitError, FitPoint, Law, Sourced
+from tester.analysis.fit.fit_law import FitError, Law, Sourced
 from tester.analysis.fit.fit_part import FitPart
 from tester.base.source import InvalidSource
 from tester.kinds.specimen_on_track.axes import INTERFACES
 from tester.kinds.specimen_on_track.fit.laws import GRETA, LAWS, OF_MATERIALS, WLF_BELL, reference_band
-from tester.kinds.specimen_on_track.fit.run_data import INTERFACE, LOAD, SPEED
+from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED
+from tester.kinds.specimen_on_track.fit.track_group import group_of
 
 if TYPE_CHECKING:
     from sim.physics.materials import Materials
-
-_TEXT: Final = re.compile(rf"(.*), ({'|'.join(INTERFACES)})(?: on (.*))?", re.DOTALL)
-
-
-class TrackGroup(NamedTuple):
-    """Conditions that are fitted together: one compound, interface and surface ("" if the run names none)."""
-
-    compound: str
-    interface: str
-    surface: str
-
-    @property
-    def text(self) -> str:
-        """Return the group as people read it."""
-        return f"{self.compound}, {self.interface}" + (f" on {self.surface}" if self.surface else "")
-
-
-def group_of(text: str) -> TrackGroup:
-    """Return the group of a text that ``TrackGroup.text`` made."""
-    match = _TEXT.fullmatch(text)
-    if match is None:
-        return TrackGroup(text, INTERFACES[0], "")
-    compound, interface, surface = match.groups()
-    return TrackGroup(compound, interface, surface or "")
 
 
 def _library() -> Materials:
@@ -62,12 +38,8 @@ class TrackFits(FitPart):
     def run_points(self, folder: Path) -> Sourced:
         """Return the conditions of a run, a group for each compound, interface and surface; raises StoreError."""
         from tester.kinds.specimen_on_track.fit.run_data import run_points
-        from tester.store.run_reader import RunReader
 
-        sourced = run_points(folder)
-        with RunReader(folder) as reader:
-            surface = reader.run().info.metadata.get("abrasive", "")
-        return Sourced(tuple(_grouped(point, surface) for point in sourced.points), sourced.left_out)
+        return run_points(folder)
 
     def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
         """Return a law for a group, with the moduli of its compound and its surface if needed; raises FitError."""
@@ -99,13 +71,6 @@ class TrackFits(FitPart):
             return law
         bands = {"t_ref": reference_band(glass_c)}
         return replace(law, parameters=tuple(replace(p, band=bands.get(p.name, p.band)) for p in law.parameters))
-
-
-def _grouped(point: FitPoint, surface: str) -> FitPoint:
-    """Return a point without its interface, which is part of its group."""
-    interface = INTERFACES[round(point.nominal[INTERFACE])]
-    group = TrackGroup(point.group, interface, surface).text
-    return replace(point, group=group, nominal=point.nominal[:INTERFACE], measured=point.measured[:INTERFACE])
 
 
 FITS: Final = TrackFits()

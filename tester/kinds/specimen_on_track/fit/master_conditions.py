@@ -13,10 +13,9 @@ from typing import Final
 
 from tester.analysis.fit.fit_law import FitPoint
 from tester.analysis.master_curve.points import MasterPart, MasterPoint, MasterRun, MasterSource
-from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
+from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.fit.run_data import (
     BEYOND_BAND,
-    INTERFACE,
     LOAD,
     SPEED,
     TEMPERATURE,
@@ -25,6 +24,7 @@ from tester.kinds.specimen_on_track.fit.run_data import (
     rise_of,
     warmed_k,
 )
+from tester.kinds.specimen_on_track.fit.track_group import group_of
 from tester.results.run_results import RunResults, results_of
 from tester.store.run_reader import RunReader
 
@@ -56,9 +56,11 @@ def _point(point: FitPoint) -> MasterPoint:
     common = point.source.common
     thermometer = next(c.standard for c in common if c.variable == TEMPERATURE)
     gain = hypot(*(c.standard for c in common if c.variable is None and c.piece in (0, point.piece)))
-    held = {"interface": INTERFACES[round(point.nominal[INTERFACE])], "load": f"{point.nominal[LOAD]:g} N"}
+    group = group_of(point.group)
+    surface = {"surface": group.surface} if group.surface else {}
+    held = {**surface, "interface": group.interface, "load": f"{point.nominal[LOAD]:g} N"}
     return MasterPoint(
-        point.label, point.group, point.measured[SPEED], point.measured[TEMPERATURE], point.nominal[TEMPERATURE],
+        point.label, group.compound, point.measured[SPEED], point.measured[TEMPERATURE], point.nominal[TEMPERATURE],
         point.value, MasterSource(point.source.name, gain, thermometer), held,
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The conditions of a run for fits and master curves: measured speed, temperature and load, and interface."""
+"""The conditions of a run for fits and master curves: measured speed, temperature and load, in groups."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from tester.analysis.fit.fit_law import Sourced, Variable
 from tester.base.config_reader import read
 from tester.base.source import Tree, load_tree
 from tester.inputs.rig.packaged import complete
-from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
+from tester.kinds.specimen_on_track.axes import held_by
+from tester.kinds.specimen_on_track.fit.track_group import TrackGroup
 from tester.kinds.specimen_on_track.rig import HeatConfig, TrackConfig
 from tester.results import fit_points
 from tester.results.run_results import RunResults, results_of
@@ -19,13 +20,12 @@ from tester.results.table_rows import Measured
 from tester.store.records import RunInfo
 from tester.store.run_reader import RunReader
 
-SPEED, TEMPERATURE, LOAD, INTERFACE = range(4)
-"""Indexes of the variables; an interface is given by its index in ``INTERFACES``."""
+SPEED, TEMPERATURE, LOAD = range(3)
+"""Indexes of the variables."""
 VARIABLES: Final = (
     Variable("speed", "mm/s", 1e3),
     Variable("temperature", "degC", ratio=False),
     Variable("load", "N"),
-    Variable("interface", "", ratio=False),
 )
 BEYOND_BAND: Final = "friction warms the contact beyond its band of temperature"
 
@@ -39,16 +39,24 @@ def run_points(folder: Path) -> Sourced:
 def points_of(name: str, results: RunResults) -> Sourced:
     """Return the conditions in the results of a run: speed in m/s, temperature in degC, load in N.
 
+    Those of one compound, interface and surface are a group (``track_group``).
     It omits conditions without a value, conditions with a flagged value, and those in which friction warms the
     contact beyond its temperature band.
     """
     rise_k_w = rise_of(results.run.info)
+    abrasive = results.run.info.metadata.get("abrasive", "")
+
+    def group(condition: Measured) -> str:
+        held = held_by(condition.info.setpoint)
+        return TrackGroup(condition.info.setpoint.compound, held.interface, held.surface or abrasive).text
+
     reader = fit_points.ConditionReader(
         TEMPERATURE,
         _nominal,
         _measured,
         lambda condition: _unmeasured(condition) or beyond_band(condition, rise_k_w),
         own_heat_k=partial(warmed_k, rise_k_w=rise_k_w),
+        group=group,
     )
     return fit_points.points_of(name, results, reader)
 
@@ -82,15 +90,11 @@ def _unmeasured(condition: Measured) -> str:
     return "no measured speed, temperature or load"
 
 
-def _measured(condition: Measured) -> tuple[float, float, float, float]:
+def _measured(condition: Measured) -> tuple[float, float, float]:
     means = condition.result.measured
-    return abs(means.sliding), means.temperature, means.normal, _interface(condition)
+    return abs(means.sliding), means.temperature, means.normal
 
 
-def _interface(condition: Measured) -> float:
-    return float(INTERFACES.index(held_by(condition.info.setpoint).interface))
-
-
-def _nominal(condition: Measured) -> tuple[float, float, float, float]:
+def _nominal(condition: Measured) -> tuple[float, float, float]:
     held = held_by(condition.info.setpoint)
-    return held.track_m_s, held.temperature_c, held.load_n, _interface(condition)
+    return held.track_m_s, held.temperature_c, held.load_n

@@ -1,4 +1,4 @@
-"""The activities of a plan's steps: mount a specimen, change weights and interface, temper the air, measure."""
+"""The activities of a plan's steps: mount a specimen, change surface, weights, interface, temper the air, measure."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds.specimen_on_track.context import TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
 from tester.kinds.specimen_on_track.procedures.slide import MeasureTrackCondition
-from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import Cover, MountSpecimen, Prepare, Temper, TrackCondition
 from tester.machine.activity import Activity
 from tester.machine.context import MountedSpecimen
 from tester.machine.executor import Procedures
@@ -46,6 +46,22 @@ class InstallSpecimen(AskBesideTrack):
             ctx.mounted = MountedSpecimen(one.piece, one.specimen, one.compound, one.sliding_m)
         else:
             ctx.mount(one)
+        return True
+
+
+class CoverTrack(AskBesideTrack):
+    """Ask a person to cover the track with another surface."""
+
+    def __init__(self, step: Cover) -> None:
+        """The step of the plan."""
+        super().__init__(f"cover the track with {step.surface}, clean and dry")
+        self.cover = step
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when it is covered."""
+        if not super().step(ctx):
+            return False
+        ctx.attendant.cover(self.cover.surface)
         return True
 
 
@@ -97,6 +113,8 @@ class TrackProcedures(Procedures[TrackContext]):
         match step:
             case MountSpecimen():
                 return InstallSpecimen(step)
+            case Cover():
+                return CoverTrack(step)
             case Prepare():
                 return PrepareTrack(step)
             case Temper():

@@ -13,11 +13,12 @@ from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step
+from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.repeats_section import expected
 from tester.inputs.recipe.time_estimate import NEW, Estimator, Outlook, StepEstimate
 from tester.kinds.specimen_on_track.axes import TrackHeld, held_by
 from tester.kinds.specimen_on_track.budget import instruments_budget
-from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import Cover, MountSpecimen, Prepare, Temper, TrackCondition
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 PERSON_S: Final = 300.0
@@ -56,6 +57,11 @@ class TrackEstimator(Estimator):
         self.recipe = recipe
         self._laws: dict[tuple[str, str, str], FrictionLaw] = {}
 
+    @classmethod
+    def of(cls, rig: TrackConfig, recipe: Recipe, path: Path) -> TrackEstimator:
+        """Return the estimator of a recipe at a path."""
+        return cls(rig, surface=recipe.abrasive.name if recipe.abrasive is not None else "", recipe=path)
+
     def mu(self, setpoint: Setpoint) -> float:
         """Return the expected coefficient at a setpoint."""
         return self.mu_of(setpoint.compound, held_by(setpoint))
@@ -63,16 +69,19 @@ class TrackEstimator(Estimator):
     def mu_of(self, compound: str, held: TrackHeld) -> float:
         """Return the expected coefficient, by the simulated rig's law if it has one."""
         try:
-            return self.law(compound, held.interface).mu(held.temperature_c, held.load_n, held.track_m_s)
+            return self.law(compound, held.interface, held.surface).mu(held.temperature_c, held.load_n, held.track_m_s)
         except (ValueError, InvalidSource):
             return LIKELY_MU
 
-    def law(self, compound: str, interface: str) -> FrictionLaw:
-        """Return the simulated rig's law of a rubber; raises ValueError or InvalidSource if it has none."""
-        key = compound, interface, self.surface
+    def law(self, compound: str, interface: str, surface: str = "") -> FrictionLaw:
+        """Return the simulated rig's law of a rubber on a surface ("": the recipe's abrasive); raises ValueError or
+        InvalidSource if it has none.
+        """
+        named = surface or self.surface
+        key = compound, interface, named
         if key not in self._laws:
             sim = self.rig.sim
-            setting = law_setting(self.surface, self.recipe) if sim.of_materials else NO_SETTING
+            setting = law_setting(named, self.recipe) if sim.of_materials else NO_SETTING
             law = sim.law_of(compound, setting)
             self._laws[key] = sim.contact.through(law, interface)  # type: ignore[arg-type]
         return self._laws[key]
@@ -94,7 +103,7 @@ class TrackEstimator(Estimator):
 
     def _step(self, step: Step, air_c: float) -> StepEstimate:
         person_s = 0.0 if self.rig.simulated else PERSON_S
-        if isinstance(step, MountSpecimen | Prepare | PromptStep):
+        if isinstance(step, MountSpecimen | Cover | Prepare | PromptStep):
             return StepEstimate(person_s + 2.0)
         if isinstance(step, Temper):
             way_s = abs(step.temperature_c - air_c) / CHAMBER_K_S if self.rig.chamber else 0.0

@@ -4,6 +4,7 @@ low, a simulated law without its rubber or surface."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Final
 
@@ -13,7 +14,7 @@ from tester.base.axes import Setpoint, condition_words
 from tester.base.source import InvalidSource, Location, Problem, Tree
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.conditions import conditions_of
-from tester.inputs.recipe.recipe_schema import Recipe
+from tester.inputs.recipe.recipe_schema import Recipe, surfaces_of
 from tester.kinds.specimen_on_track.axes import AXES
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.schema import track_settings
@@ -49,8 +50,7 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
     """Yield a problem for each compound with conditions whose expected friction counts as a lost contact."""
     if not rig.simulated:
         return  # the friction of a real specimen is unknown
-    surface = recipe.abrasive.name if recipe.abrasive is not None else ""
-    estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
+    estimator = TrackEstimator.of(rig, recipe, Path(tree.name))
     lost = rig.interlocks.lost_share
     for number, specimen in enumerate(recipe.specimens):
         result: list[tuple[float, str]] = []
@@ -70,15 +70,18 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
 
 
 def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
-    """Yield a problem for every compound that has no simulated law on the recipe's surface."""
+    """Yield a problem for every compound that has no simulated law on a surface of the recipe."""
     sim = rig.sim
-    surface = recipe.abrasive.name if recipe.abrasive is not None else ""
-    setting = law_setting(surface, Path(tree.name)) if sim.of_materials else NO_SETTING
-    checked: set[str] = set()
-    for number, specimen in enumerate(recipe.specimens):
-        if specimen.compound in checked:
+    surfaces = (surfaces_of(recipe) or [""]) if sim.of_materials else [""]
+    if sim.surface and len(surfaces) > 1:
+        fault = f'surface: the simulated track is covered with "{sim.surface}" throughout (sim.surface; expected "")'
+        yield tree.problem(("grids",), fault)
+    checked: set[tuple[str, str]] = set()
+    for (number, specimen), surface in product(enumerate(recipe.specimens), surfaces):
+        if (specimen.compound, surface) in checked:
             continue
-        checked.add(specimen.compound)
+        checked.add((specimen.compound, surface))
+        setting = law_setting(surface, Path(tree.name)) if sim.of_materials else NO_SETTING
         try:
             sim.known_everywhere(specimen.compound, setting)
         except OutsideError as error:

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Final
 
 from tester.analysis.terms import Term
-from tester.base.axes import Axes, Setpoint, condition_words, numbers
+from tester.base.axes import Axes, AxisValue, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.base.words import rough_duration
-from tester.inputs.recipe.conditions import conditions_of
+from tester.inputs.recipe.conditions import Condition, conditions_of
 from tester.inputs.recipe.plain_recipe import Mount, SpecimenPart
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Settings, Stand, Step, fields_of
-from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
+from tester.inputs.recipe.recipe_schema import SURFACE, GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
 from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
 from tester.inputs.rig import Rig
@@ -24,7 +24,14 @@ from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.feasible import law_problems, low_friction, out_of_reach
-from tester.kinds.specimen_on_track.recipe.plan_steps import INSERTED, MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import (
+    INSERTED,
+    Cover,
+    MountSpecimen,
+    Prepare,
+    Temper,
+    TrackCondition,
+)
 from tester.kinds.specimen_on_track.recipe.schema import (
     TrackGrid,
     TrackMeasure,
@@ -33,6 +40,8 @@ from tester.kinds.specimen_on_track.recipe.schema import (
 )
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
+OPENED_K: Final = 10.0
+"""Greatest difference from the room's air at which a chamber is opened to change the surface, K [A]."""
 UNUSED: Final = ("window", "extend_to")
 """Keys of the common sections without effect here: a condition slides for a ``distance``."""
 
@@ -65,6 +74,12 @@ class TrackPart(SpecimenPart):
             for key in UNUSED:
                 if isinstance(node, dict) and key in node:
                     yield tree.problem((*at, key), f"{key}: this machine slides for a way (expected distance)")
+        named = [isinstance(node, dict) and SURFACE in node for _, node in nodes[1:]]
+        if any(named) and top.get("abrasive") is not None:
+            yield tree.problem(("abrasive",), "abrasive: the grids name surfaces (expected one of both)")
+        for (at, _), names in zip(nodes[1:], named, strict=True):
+            if any(named) and not names:
+                yield tree.problem(at, "surface is missing: another grid names its own (expected one in every grid)")
 
     def terms(self, rig: Rig) -> tuple[Term, ...]:
         """Return the possible errors of the measuring chain."""
@@ -81,7 +96,8 @@ class TrackPart(SpecimenPart):
         for number, grid in enumerate(recipe.grids):
             at: Location = ("grids", number)
             values = axis_values(measure, grid)
-            yield from _limits(own, {name: numbers(values[name]) for name in values if name != "interface"}, at, tree)
+            numeric = {name: numbers(listed) for name, listed in values.items() if not AXES[name].textual}
+            yield from _limits(own, numeric, at, tree)
             within_k = track_settings(measure, grid).soak.within_k
             yield from out_of_reach(own, numbers(values["temperature"]), within_k, at, tree)
             yield from self._heat(own, recipe, measure, grid, at, tree)
@@ -96,8 +112,7 @@ class TrackPart(SpecimenPart):
         """Yield the least speed of a grid at which friction would warm a tempered contact beyond its band."""
         if not rig.chamber:
             return  # without a chamber the contact is not tempered; the plan shows its warming
-        surface = recipe.abrasive.name if recipe.abrasive is not None else ""
-        estimator = TrackEstimator(rig, surface=surface, recipe=Path(tree.name))
+        estimator = TrackEstimator.of(rig, recipe, Path(tree.name))
         band_k = track_settings(measure, grid).temperature_band_k
         found: dict[float, tuple[float, str]] = {}
         for one in conditions_of(recipe.model_copy(update={"grids": [grid]}), self.settings):
@@ -119,6 +134,22 @@ class TrackPart(SpecimenPart):
         """Return the estimator of durations on a rig."""
         return TrackEstimator(TrackConfig.of(rig), repeatability)
 
+    def in_turns(self, conditions: Sequence[Condition[Settings]]) -> list[list[Condition[Settings]]]:
+        """Return the conditions of one surface after the other: a surface is changed at the temperature of the room."""
+        place, turns = AXES.places[SURFACE], dict[object, list[Condition[Settings]]]()
+        for condition in conditions:
+            turns.setdefault(condition.values[place], []).append(condition)
+        return list(turns.values())
+
+    def before_turn(self, index: int, values: tuple[AxisValue, ...], settings: Settings, rig: Rig) -> Sequence[Step]:
+        """Return the steps to a surface that the grids name, in air that a person can open the chamber to."""
+        surface = str(values[AXES.places[SURFACE]])
+        if not surface:
+            return ()
+        own, soak = TrackConfig.of(rig), settings.soak
+        cover = Cover(index + 1 if own.chamber else index, surface)
+        return (Temper(index, own.ambient_c, OPENED_K, 0.0, soak.at_most_s), cover) if own.chamber else (cover,)
+
     def before_block(self, index: int, value: float, settings: Settings) -> tuple[Temper]:
         """Return the step that brings the air to the temperature of a block."""
         soak = settings.soak
@@ -127,6 +158,8 @@ class TrackPart(SpecimenPart):
     def before_condition(self, index: int, setpoint: Setpoint, before: Setpoint | None) -> tuple[Prepare, ...]:
         """Return the step that asks for other weights or another interface; nothing where both stay."""
         last = None if before is None else _prepared(before)
+        if before is not None and held_by(before).surface != held_by(setpoint).surface:
+            last = held_by(before).load_n, "dry"  # as it was covered
         return () if last == _prepared(setpoint) else (_prepare(index, last, _prepared(setpoint)),)
 
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
@@ -158,6 +191,8 @@ class TrackPart(SpecimenPart):
                 return f"put specimen {step.piece} on the arm"
             case Prepare():
                 return f"ask: {step.text}"
+            case Cover():
+                return f"ask: {step.title}"
             case Temper():
                 return f"temper to {step.temperature_c:g} degC, {rough_duration(step.for_s)} within {step.within_k:g} K"
             case TrackCondition():

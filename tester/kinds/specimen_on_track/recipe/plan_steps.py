@@ -1,4 +1,4 @@
-"""Steps of this machine: specimens put on, weights and interface changed, the air tempered, conditions slid.
+"""Steps of this machine: specimens put on, surface, weights and interface changed, air tempered, conditions slid.
 
 Units are in the names: _m, _m_s, _n, _c (temperature in degC), _k (temperature difference in K), _s.
 """
@@ -31,6 +31,18 @@ class MountSpecimen(Mount):
     @property
     def title(self) -> str:
         return f"install specimen {self.piece} ({self.compound})"
+
+
+@dataclass(frozen=True, slots=True)
+class Cover(Step):
+    """A person covers the track with another surface, clean and dry."""
+
+    kind: ClassVar[str] = "cover"
+    surface: str
+
+    @property
+    def title(self) -> str:
+        return f"cover the track with {self.surface}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from sim.physics import laws
 from sim.physics.laws import LawSetting, make
+from sim.physics.materials import Surface
 from tester.base.source import InvalidSource
 from tester.inputs.materials.library import Library
 from tester.inputs.materials.setting import VARIABLE
@@ -52,6 +54,36 @@ def test_a_run_measures_what_the_law_says() -> None:
         held = steps[condition]
         expected = law.mu(result.means["contact_c"], held.load_n, held.track_m_s)
         assert result.valid and result.mu_resultant == pytest.approx(expected, rel=0.01)
+
+
+class BySurface:
+    """A law of materials that is known at once: a coefficient for each surface."""
+
+    def __init__(self, surface: Surface) -> None:
+        self.coefficient = {"S0": 0.9, "glass": 0.6}[surface.name]
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        return self.coefficient
+
+
+def test_a_run_measures_every_surface_by_its_own_law(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = laws._LAWS  # pyright: ignore[reportPrivateUsage]
+    monkeypatch.setitem(known, "by_surface", laws.OfMaterials(lambda rubber, on, area, figures: BySurface(on)))
+    text = GROSCH.replace("{name: one,", "{name: one, surface: [S0, glass],")
+    bench = TrackBench("grosch", text, ("sim.scatter=0", "sim.law=by_surface")).to_the_end()
+    assert bench.run.outcome is Outcome.DONE and not bench.kept.trips
+    surfaces = {step.condition: held_by(step.setpoint).surface for step in bench.plan.conditions()}
+    measured = [(surfaces[condition], result.mu_resultant) for condition, result in bench.kept.results]
+    assert measured == [(name, pytest.approx(mu, rel=0.01)) for name, mu in
+                        (("S0", 0.9), ("S0", 0.9), ("glass", 0.6), ("glass", 0.6))]  # fmt: skip
+
+
+def test_a_rig_that_states_its_surface_is_not_covered_with_another(tmp_path: Path) -> None:
+    text = GROSCH.replace("{name: one,", "{name: one, surface: [S0, glass],")
+    (said,) = problems(tmp_path, text, "sim.law=persson", "sim.surface=S0")
+    assert 'surface: the simulated track is covered with "S0" throughout' in said
+    (said,) = problems(tmp_path, text.replace("glass", "slate"), "sim.law=persson")
+    assert 'no file of a surface has the name "slate"' in said
 
 
 def test_the_table_is_kept_for_the_next_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ from tester.inputs.recipe.plan import Mounted, Plan, Stand
 from tester.inputs.recipe.plan_text import lines
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
-from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import Cover, MountSpecimen, Prepare, Temper, TrackCondition
 from tests.tester.inputs.recipe.texts import load_recipe
 from tests.tester.kinds.specimen_on_track.bench import DISC, GROSCH
 
@@ -91,3 +91,58 @@ def test_what_is_left_begins_with_what_has_to_be_done_again() -> None:
 
 def test_nothing_is_left_of_a_plan_that_is_done() -> None:
     assert PART.remaining(plan(), Stand(frozenset({1, 2}))).steps == ()
+
+
+SURFACES = "grids:\n  - {name: one, surface: [glass, silicon carbide], "
+
+
+def test_a_surface_is_changed_in_the_air_of_the_room_before_its_temperatures() -> None:
+    text = GROSCH.replace("grids:\n  - {name: one, ", SURFACES).replace("23 degC", "[0 degC, 20 degC]")
+    steps = [step for step in plan(text, "grosch").steps if not isinstance(step, MountSpecimen)]
+    shown = [
+        step.surface if isinstance(step, Cover)
+        else step.temperature_c if isinstance(step, Temper)
+        else step.text if isinstance(step, Prepare)
+        else str(step.setpoint.value("surface"))[:1] if isinstance(step, TrackCondition)
+        else None
+        for step in steps
+    ]  # fmt: skip
+    asked = "hang 20 N of weights on the arm and make the track clean and dry"
+    assert shown == [
+        23.0, "glass", 0.0, asked, "g", "g", 20.0, "g", "g",
+        23.0, "silicon carbide", 0.0, "s", "s", 20.0, "s", "s",
+    ]  # fmt: skip
+    assert [step.index for step in plan(text, "grosch").steps] == [*range(len(steps) + 1)]
+
+
+def test_a_new_surface_is_dry() -> None:
+    text = DISC.replace("grids:\n  - {name: one, ", SURFACES)
+    asked = [step.text if isinstance(step, Prepare) else step.surface for step in plan(text).steps
+             if isinstance(step, Cover | Prepare)]  # fmt: skip
+    assert asked == [
+        "glass", "hang 10 N of weights on the arm and make the track clean and dry", "make the track wet",
+        "silicon carbide", "make the track wet",
+    ]  # fmt: skip
+
+
+def test_what_is_left_begins_on_its_surface() -> None:
+    text = DISC.replace("grids:\n  - {name: one, ", SURFACES)
+    ended = frozenset({1, 2, 3})
+    left = PART.remaining(plan(text), Stand(ended, ended, (Mounted(1, 1, 1, float("nan"), 0.2, False),)))
+    assert [step.kind for step in left.steps] == ["install", "cover", "temper", "prepare", "condition"]
+    assert isinstance(left.steps[1], Cover) and left.steps[1].surface == "silicon carbide"
+
+
+def test_conditions_on_a_surface_name_it() -> None:
+    text = DISC.replace("grids:\n  - {name: one, ", SURFACES)
+    said = "\n".join(lines(made := plan(text), PART.estimate(made, load_rig("pin-on-disc")), PART))
+    assert "on glass, 10 N" in said and "ask: cover the track with silicon carbide" in said
+
+
+def test_surfaces_are_named_in_one_place() -> None:
+    text = DISC.replace("grids:\n  - {name: one, ", SURFACES)
+    (said,) = problems(text.replace("specimens:", "abrasive: {name: road}\nspecimens:"), "pin-on-disc")
+    assert said == "abrasive: the grids name surfaces (expected one of both)"
+    more = "  - {name: two, load: 20 N, temperature: 23 degC, track_speed: 0.1 m/s}\n"
+    (said,) = problems(text + more, "pin-on-disc")
+    assert said == "surface is missing: another grid names its own (expected one in every grid)"

@@ -20,8 +20,9 @@ from sim.physics.simple import PowerLaw, PowerParameters
 from sim.physics.wlf import WlfBell, WlfBellParameters
 from tester.analysis.fit.fit_law import FitError, FitPoint, Law, Source
 from tester.analysis.fit.joint import GroupFit, fit_group
-from tester.kinds.specimen_on_track.fit.fits import TrackFits, TrackGroup, group_of
+from tester.kinds.specimen_on_track.fit.fits import TrackFits
 from tester.kinds.specimen_on_track.fit.laws import GRETA, PERSSON, POWER, WLF_BELL, reference_band
+from tester.kinds.specimen_on_track.fit.track_group import TrackGroup, group_of
 from tests.sim.physics.greta_example import SHEAR, road, rubber
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 

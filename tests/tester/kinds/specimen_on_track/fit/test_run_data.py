@@ -9,19 +9,19 @@ import pytest
 
 from tester.analysis.terms import Acts
 from tester.kinds.specimen_on_track.budget import TERMS
-from tester.kinds.specimen_on_track.fit.run_data import BEYOND_BAND, INTERFACE, LOAD, SPEED, TEMPERATURE, run_points
+from tester.kinds.specimen_on_track.fit.run_data import BEYOND_BAND, LOAD, SPEED, TEMPERATURE, run_points
 from tester.store.record_schema import StoreError
 from tests.tester.kinds.specimen_on_track.fit.made import WARM_K, law, made_track_run
 
-PLACES = (SPEED, TEMPERATURE, LOAD, INTERFACE)
+PLACES = (SPEED, TEMPERATURE, LOAD)
 
 
 def test_measured_and_nominal_conditions_stand_side_by_side(tmp_path: Path) -> None:
     found = run_points(made_track_run(tmp_path / "one", (0.0, 20.0), (1e-5, 1e-3), interfaces=("wet",), scatter=0.0))
     last = found.points[-1]
-    assert [last.nominal[place] for place in PLACES] == [1e-3, 20.0, 20.0, 1.0]
-    assert [last.measured[place] for place in PLACES] == pytest.approx([1e-3, 20.0 + WARM_K, 20.0, 1.0])
-    assert (last.group, last.value) == ("SBR", pytest.approx(law(20.0 + WARM_K, 1e-3)))
+    assert [last.nominal[place] for place in PLACES] == [1e-3, 20.0, 20.0]
+    assert [last.measured[place] for place in PLACES] == pytest.approx([1e-3, 20.0 + WARM_K, 20.0])
+    assert (last.group, last.value) == ("SBR, wet", pytest.approx(law(20.0 + WARM_K, 1e-3)))
     assert len(found.points) == 4 and found.left_out == ()
 
 
