@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sim.hands import REPEAT, SPECIMEN, Argument, Verb
+from sim.hands import REPEAT, SPECIMEN, TEXT, Argument, Verb
 from sim.machines import SimulatedMachine
 from sim.machines.specimen_on_track.rig import TrackRig
 
@@ -34,6 +34,7 @@ VERBS = (
     SPECIMEN,
     Verb("same", "keep", "put it back, unless it is on the arm already", SPECIMEN.arguments),
     Verb("hang", "put_on", "hang weights on the arm, in place of those on it", (Argument("weights_n", "N"),)),
+    Verb("cover", "cover", "cover the track with a surface, clean and dry", (Argument("surface", TEXT),)),
     Verb("track", "prepare", "dry, wet or powder the track", (Argument("interface", "dry|wet|talc"),)),
     Verb("raise", "raise_arm", "raise an arm that has no drive"),
     Verb("lower", "lower_arm", "lower an arm that has no drive"),
