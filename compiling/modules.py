@@ -123,7 +123,7 @@ NEEDED = (
     "sim/wires/can_traffic.py",
     "tester/kinds/specimen_on_track/procedures/steps.py",
     "tester/kinds/specimen_on_track/process.py",
-    "tester/kinds/wheel_on_belt/commission/moves.py",
+    "tester/machine/commission/moves.py",
     "tester/kinds/wheel_on_belt/control/stop_modes.py",
     "tester/kinds/wheel_on_belt/image/process_image.py",
     "tester/kinds/wheel_on_belt/procedures/condition.py",

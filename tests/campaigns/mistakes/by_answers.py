@@ -17,8 +17,8 @@ from typing import Any, Final
 
 from drivers.gearing import gear_ratio
 from tester.kinds.wheel_on_belt.commission.commission_steps import STEPS
-from tester.kinds.wheel_on_belt.commission.jog import ROLLER_SHARE
 from tester.kinds.wheel_on_belt.commission.twin import TwinPerson
+from tester.machine.commission.jog_axis import ROLLER_SHARE
 from tester.machine.commission.stages import ONCE_MORE
 from tester.machine.commission.step_engine import Ended
 from tester.machine.prompts import BACK, Asks, Prompt, Question

@@ -1,7 +1,4 @@
-"""A rig armed as before every run, with a commissioning's moves in place of a recipe.
-
-Control, interlocks, limits and stops are those of a run; only the demand comes from elsewhere.
-"""
+"""The wheel's rig armed as before every run (tester.machine.commission.armed_seat)."""
 
 from __future__ import annotations
 
@@ -10,77 +7,35 @@ from math import inf, isfinite
 from typing import Any
 
 from tester.inputs.rig import Rig
-from tester.kinds.wheel_on_belt.commission.moves import COMMISSIONING, MovesExecutor
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.control.permissives import rig_bounds
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
-from tester.machine.activity import Activity
-from tester.machine.commission.commission_step import Dialogue, Waits
+from tester.machine.commission.armed_seat import ArmedSeat
+from tester.machine.commission.commission_step import Waits
+from tester.machine.commission.moves import COMMISSIONING
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
 from tester.machine.run_parts import RunSetup
-from tester.machine.state import Mode
 from tester.store.recorder import NullRecorder
 
 
-class ArmedSeat:
-    """The rig during the later steps (tester.machine.commission.commission_step.Seat)."""
+class WheelSeat(ArmedSeat):
+    """The wheel's rig during the later steps."""
 
     def __init__(self, rig: Rig, ports: Ports, hands: Any) -> None:
         """Send nothing; the simulated rig gets a new wheel."""
         self.rig = believed = RigConfig.of(rig)
         plan = WheelPlan(COMMISSIONING, (), (), 1)
-        self.run = build_run(RunSetup(believed, plan, ports, hands, NullRecorder(), Prompts()))
-        self.executor = MovesExecutor()
+        super().__init__(build_run(RunSetup(believed, plan, ports, hands, NullRecorder(), Prompts())), plan)
         engine = self.run.engine
-        engine.executor = self.executor
         engine.control.bounds = rig_bounds(believed)
         self.ctx: Context = engine.ctx
         hands.install(1, 1, "1#", new_specimen=True)
-        self._stopped = False
-
-    @property
-    def ready(self) -> bool:
-        """Whether the rig is armed and in RUN."""
-        return self.run.connected and self.run.engine.control.state.mode is Mode.RUN
-
-    @property
-    def finished(self) -> bool:
-        """Whether the rig is at rest and released."""
-        return self.run.finished
-
-    @property
-    def reason(self) -> str:
-        """Reason for an unrequested end: a refusal to arm, a trip, a failed move."""
-        trip = self.run.engine.control.state.trip
-        if trip is not None:
-            return f"{trip.name}: {trip.text}"
-        return self.executor.failed or ("" if self._stopped else self.run.reason)
-
-    def tick(self, now: float) -> float:
-        """Advance the rig by one tick."""
-        return self.run.tick(now)
-
-    def stop(self, why: str, *, fast: bool = False) -> None:
-        """Stop as a run does; a warm wheel keeps turning until it may come to rest."""
-        self._stopped = True
-        self.executor.activity = None
-        self.run.request_stop(why, fast=fast)
-
-    def abandon(self) -> None:
-        """Send safe outputs once."""
-        self.run.abandon()
-
-    def do(self, activity: Activity[Any]) -> Dialogue:
-        """Yield until an activity is done."""
-        self.executor.activity = activity
-        executor = self.executor
-        yield lambda now_s: executor.activity is None and not executor.failed
 
 
-def mean_temperatures(seat: ArmedSeat, seconds: float) -> Generator[Waits, str, tuple[float, float]]:
+def mean_temperatures(seat: WheelSeat, seconds: float) -> Generator[Waits, str, tuple[float, float]]:
     """Return the means of surface and hub over a time, degC."""
     surfaces, hubs, began_s = list[float](), list[float](), inf
 

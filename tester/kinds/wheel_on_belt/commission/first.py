@@ -13,6 +13,7 @@ from tester.kinds.wheel_on_belt.commission.thermometer import HUB_C
 from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.machine.commission.commission_step import Notes, RunRecipe, StepRefused
+from tester.machine.commission.compound import FirstCoefficient, first_text
 
 RECIPE: Final = """\
 recipe: {title}
@@ -46,13 +47,6 @@ WHEEL_M_S: Final = 0.8
 PAIRS: Final = 5
 """Pairs of repeats in both directions [A]: with 2 % scatter the angle is known to 0.5 degrees (95 %); with three pairs
 only to 1.4."""
-WARNED_SHARE: Final = 0.25
-REFUSED_SHARE: Final = 0.5
-"""Deviation of a first coefficient from its compound's model that gives a warning, or a refusal [A]: the paper's
-compounds are a quarter to a third apart.
-"""
-LEAST_MU, MOST_MU = 0.1, 3.0
-"""Range for rubber on an abrasive, of any composition [A]: the paper has 0.31 to 2.59."""
 ANGLE_DEG: Final = 1.5
 """An apparent angle beyond this plus its uncertainty is refused [A]: 0.5 degrees from mounting, 0.5 % crosstalk."""
 
@@ -119,33 +113,13 @@ def coefficient(rig: Rig, run_recipe: RunRecipe, notes: Notes) -> None:
     warm_c, compound = as_soaked_c(RigConfig.of(rig), notes.done), mounted(notes)
     recipe = _recipe("a first condition three times", compound, warm_c, both=False)
     results = run_recipe("commissioning-first", recipe)
-    row: dict[str, Any] = results["conditions"][0]
-    plausible = _plausible(notes, compound, float(row["mu"]), round(warm_c, 1))
-    notes.values = {**results, "compound": compound, "temperature_c": round(warm_c, 1), **plausible}
-    spread = f"{100 * row['s'] / row['mu']:.1f} % between its {row['n']} repeats" if row["s"] is not None else ""
-    uncertain = f", U {row['expanded']:.3f} (95 %)" if row["expanded"] is not None else ""
-    notes.text = f"coefficient of {compound} {row['mu']:.3f}{uncertain}; {spread}; run {results['run']}"
-
-
-def _plausible(notes: Notes, compound: str, mu: float, surface_c: float) -> dict[str, Any]:
-    """Compare a coefficient with the model of its compound; raises StepRefused for an impossible one.
-
-    A belt of another grade, or another laboratory's mix of the compound, changes it by some tens of per cent. A wrong
-    scale or zero that passed the earlier steps, or a wrong compound, changes it more.
-    """
-    if compound not in KNOWN:
-        if not LEAST_MU <= mu <= MOST_MU:
-            raise StepRefused(f"coefficient {mu:.3f}: rubber on an abrasive has {LEAST_MU:g} to {MOST_MU:g}")
-        notes.tell(f"  {compound} is unknown: its coefficient must be between {LEAST_MU:g} and {MOST_MU:g}")
-        return {"expected_mu": None}
-    expected = predict(compound, SLIP_M_S, LOAD_N, surface_c, 0.0, WHEEL_M_S)
-    off = mu / expected - 1.0
-    text = f"coefficient {mu:.3f} of {compound} is {100 * off:+.0f} % off what its model gives, {expected:.3f}"
-    if not abs(off) <= REFUSED_SHARE:
-        raise StepRefused(
-            f"{text} (more than {100 * REFUSED_SHARE:g} %): is the wheel of another compound? Else the load cell's"
-            " zero, or a belt that is worn or greasy"
-        )
-    if abs(off) > WARNED_SHARE:
-        notes.tell(f"  {text}: take care; the cause may be a belt of another grade, or another compound")
-    return {"expected_mu": expected, "off_share": off}
+    mu = float(results["conditions"][0]["mu"])
+    at_c = round(warm_c, 1)
+    expected = predict(compound, SLIP_M_S, LOAD_N, at_c, 0.0, WHEEL_M_S) if compound in KNOWN else None
+    found = FirstCoefficient(
+        compound, mu, expected,
+        "is the wheel of another compound? Else the load cell's zero, or a belt that is worn or greasy",
+        "take care; the cause may be a belt of another grade, or another compound",
+    )  # fmt: skip
+    notes.values = {**results, "compound": compound, "temperature_c": at_c, **found.plausible(notes)}
+    notes.text = first_text(compound, results)

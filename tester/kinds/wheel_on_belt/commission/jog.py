@@ -1,57 +1,18 @@
-"""Jog an axis: first a short way, to check its identity and direction; then further, to check its scale.
-
-A person reads a ruler, a protractor or a dial gauge and types the value. The scale is this value over the way that the
-drive reports. A value beyond the tolerance is asked for once more; then the step is refused, and the message gives the
-correct increments, if a diameter or a gear explains them. The first way is
-so short and slow that a motion ten times as far and fast is harmless.
-"""
+"""The wheel rig's axes for jogging (tester.machine.commission.jog_axis)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import degrees, nan, pi
+from math import degrees, pi
 from typing import Final
 
-from drivers.gearing import WITHIN, gear_ratio
-from tester.kinds.wheel_on_belt.commission.quiet import JogSeat, JogSpeeds
-from tester.machine.commission.commission_step import Dialogue, Measured, Notes, StepRefused, choose, press, wait
-from tester.machine.commission.stages import in_stages, measured_twice
-
-FIRST_SHARE: Final = 0.3
-"""Tolerance of the first, short way, share [A]: a ruler on a few millimetres."""
-SPRING_S: Final = 1.5
-"""Time for a spring to take the press back, s [A]: 4 mm at 20 mm/s take 0.2 s."""
-ROLLER_SHARE: Final = 1.2
-"""Greatest factor of a scale that a roller's diameter or a spindle's lead explains [A]; beyond it a gear has to."""
-RIGHT, REVERSED, OTHER, NOTHING = "yes", "reversed", "other", "nothing"
-
-
-@dataclass(frozen=True, slots=True)
-class JoggedAxis:
-    """Data for jogging an axis. ``tolerance``: of its scale; ``reading``: standard uncertainty, in ``unit``."""
-
-    name: str
-    speeds: JogSpeeds
-    unit: str
-    instrument: str
-    positive: str
-    tolerance: float
-    reading: float
-    back: bool
-    """The axis is moved back afterwards, unlike one that turns endlessly."""
-    holds: bool = False
-    """The axis is read while its drive holds it: without power a spring pulls it back."""
-
-    def shown(self, moved: float) -> float:
-        """Return a way in the unit of the person's instrument."""
-        return degrees(moved) if self.name == "wheel" else 1e3 * moved if self.name == "belt" else moved
-
+from tester.machine.commission.jog_axis import JoggedAxis
+from tester.machine.commission.jogging import JogSpeeds
 
 AXES: Final = (
     JoggedAxis("wheel", JogSpeeds(0.4, 0.4, 1.0, 2.0 * pi), "deg", "a protractor, or marks on the tread and beside it",
-         "so that its lowest point goes the way of the arrow of the belt", 0.01, 0.5, False),
+         "so that its lowest point goes the way of the arrow of the belt", 0.01, 0.5, False, factor=degrees(1.0)),
     JoggedAxis("belt", JogSpeeds(0.02, 0.02, 0.05, 0.25), "mm", "a mark on the belt and a ruler beside it",
-         "so that its upper side goes the way of the arrow", 0.01, 0.5, False),
+         "so that its upper side goes the way of the arrow", 0.01, 0.5, False, factor=1e3),
     JoggedAxis("press", JogSpeeds(0.5, 0.25, 2.0, 4.0), "mm", "a dial gauge on the press", "towards the contact",
          0.01, 0.01, True, True),
     JoggedAxis("sideslip", JogSpeeds(1.0, 0.5, 2.0, 10.0), "deg", "the yaw axis's scale, or an inclinometer",
@@ -63,163 +24,3 @@ AXES: Final = (
 instrument's finest division [A]."""
 
 SPEEDS: Final = {axis.name: axis.speeds for axis in AXES}
-
-
-def jog_axis(axis: JoggedAxis, seat: JogSeat, notes: Notes) -> Dialogue:
-    """Jog an axis for direction and scale; raises StepRefused."""
-    if axis.name not in seat.believed.axes.driven():
-        notes.text = "set by hand: nothing to jog"
-        return
-    jog = _AxisJog(axis, seat, notes)
-    yield from in_stages(
-        notes, jog.first_way, jog.direction, jog.first_read, jog.mark, jog.whole_way, jog.whole_read, jog.back
-    )
-
-
-class _AxisJog:
-    """The stages of an axis' jog."""
-
-    def __init__(self, axis: JoggedAxis, seat: JogSeat, notes: Notes) -> None:
-        """Move nothing yet."""
-        self.axis, self.seat, self.notes = axis, seat, notes
-        self.began = seat.jogging.drive(axis.name).actual
-        self.first = self.whole = nan
-        """What the drive reported of both ways, in the unit of the instrument."""
-        seat.jogging.mark(axis.name)
-
-    def first_way(self) -> Dialogue:
-        """Move a short way, slowly."""
-        yield from _move(self.axis, self.seat, "first", self.axis.speeds.first_way, self.axis.speeds.first)
-        self.first = self.axis.shown(self.seat.jogging.moved)
-
-    def direction(self) -> Dialogue:
-        """Ask which axis moved, and which way."""
-        name = self.axis.name
-        seen = yield from choose(
-            f"jog {name} direction",
-            f"did the {name}, and only it, move {self.axis.positive}?"
-            f" ({REVERSED}: the other way; {OTHER}: another axis moved; {NOTHING}: nothing did)",
-            RIGHT, REVERSED, OTHER, NOTHING,
-        )  # fmt: skip
-        _direction(self.axis, self.seat, seen)
-
-    def first_read(self) -> Dialogue:
-        """Ask for the short way."""
-        axis, shown = self.axis, self.first
-        read = yield from self._read("first", "since it was at rest, at first", FIRST_SHARE, shown)
-        self.notes.read("first way", {"reported": shown, "read": read, "unit": axis.unit})
-        yield from _rest(axis, self.seat)
-        if not self._near(read, shown, FIRST_SHARE):
-            why = "on the first, little way: measure again after the change"
-            raise StepRefused(_wrong_scale(axis, self.seat, read, shown, why))
-
-    def mark(self) -> Dialogue:
-        """Let the person set the instrument to zero."""
-        yield from _mark(self.axis)
-        self.seat.jogging.mark(self.axis.name)
-
-    def whole_way(self) -> Dialogue:
-        """Move the whole way, by as many keys as it takes."""
-        jogging, whole = self.seat.jogging, self.axis.speeds.way
-        while abs(jogging.moved) < abs(whole) - 1e-3 * abs(whole):
-            yield from _move(self.axis, self.seat, "further", whole - jogging.moved, self.axis.speeds.speed)
-        self.whole = self.axis.shown(jogging.moved)
-
-    def whole_read(self) -> Dialogue:
-        """Ask for the whole way; its share of what the drive reports is the scale."""
-        axis, notes, shown = self.axis, self.notes, self.whole
-        read = yield from self._read("whole", "since the mark, not since the last key", axis.tolerance, shown)
-        yield from _rest(axis, self.seat)
-        share = read / shown
-        notes.read("whole way", {"reported": shown, "read": read, "unit": axis.unit, "share": share})
-        if not abs(share - 1.0) <= axis.tolerance:
-            why = f"more than {100 * axis.tolerance:g} % off"
-            raise StepRefused(_wrong_scale(axis, self.seat, read, shown, why))
-        notes.values = {
-            "reported": shown, "read": read, "unit": axis.unit, "scale_error": share - 1.0,
-            "standard_uncertainty": axis.reading / abs(shown),
-        }  # fmt: skip
-        notes.text = (
-            f"direction right; {shown:.2f} {axis.unit} reported, {read:.2f} read: scale off by {100 * (share - 1):+.2f}"
-            f" % (standard uncertainty {100 * axis.reading / abs(shown):.2f} %)"
-        )
-
-    def back(self) -> Dialogue:
-        """Move an axis that does not turn endlessly back."""
-        axis, drive = self.axis, self.seat.jogging.drive(self.axis.name)
-        while axis.back and abs(left := self.began - drive.actual) > 0.02 * abs(axis.speeds.way):
-            yield from _move(axis, self.seat, "back", left, axis.speeds.speed)
-            yield from _rest(axis, self.seat)
-
-    def _near(self, read: float, shown: float, tolerance: float) -> bool:
-        least = 2.0 * self.axis.reading / abs(shown) if tolerance == FIRST_SHARE else 0.0
-        return abs(read / shown - 1.0) <= max(tolerance, least)
-
-    def _read(self, which: str, since: str, tolerance: float, shown: float) -> Measured:
-        """Ask how far the axis has moved; the intended direction is positive."""
-        axis = self.axis
-
-        def refused(read: float) -> str:
-            if self._near(read, shown, tolerance):
-                return ""
-            return f"{read / shown:.3g} times the way that its drive reports; look at its unit, its sign, its decimals"
-
-        text = f"{axis.name}: how far has it moved in all {since}, by {axis.instrument}?"
-        return (yield from measured_twice(f"jog {axis.name} {which} read", text, axis.unit, refused))
-
-
-def _move(axis: JoggedAxis, seat: JogSeat, which: str, way: float, speed: float) -> Dialogue:
-    """Wait for a key, a closed guard, and the axis."""
-    text = f"{axis.name}: hands off, guard closed; it moves by {axis.shown(way):.4g} {axis.unit} at most, and stops"
-    yield from press(f"jog {axis.name} {which}", text, seat.guarded)
-    jog = seat.jogging.begin(axis.name, way, speed, holds=axis.holds)
-    yield lambda now_s: jog.over
-
-
-def _rest(axis: JoggedAxis, seat: JogSeat) -> Dialogue:
-    """Switch off an axis that kept its power to be read."""
-    jog = seat.jogging.rest() if axis.holds else None
-    if jog is not None:
-        yield lambda now_s: jog.over
-        yield from wait(SPRING_S)
-
-
-def _mark(axis: JoggedAxis) -> Dialogue:
-    yield from choose(f"jog {axis.name} mark", f"{axis.name}: set {axis.instrument} to zero now; done?", "yes")
-
-
-def _direction(axis: JoggedAxis, seat: JogSeat, seen: str) -> None:
-    name, node = axis.name, seat.rig.axes.driven()[axis.name].node_id
-    refusals = {
-        REVERSED: f"the {name} axis is reversed: it moves the wrong way round. Set its drive's polarity (0x607E) or"
-        " swap two of its motor's phases and its encoder's direction, by its manual; the rig file has no sign for it",
-        OTHER: f"the {name} axis is not the one that moves at node {node}: node ids or motors are swapped"
-        " (axes.*.node_id)",
-        NOTHING: f"the {name} axis does not move although its drive at node {node} reports motion: motor, encoder or"
-        " coupling",
-    }
-    if seen in refusals:
-        raise StepRefused(refusals[seen])
-
-
-def _wrong_scale(axis: JoggedAxis, seat: JogSeat, read: float, shown: float, why: str) -> str:
-    """Return the error of a scale, with the correct lines of the rig file where a gear explains the error."""
-    config, share = seat.believed.axes.driven()[axis.name], read / shown
-    if not abs(share) > 1e-6:
-        return f"the {axis.name} axis has not moved according to the reading: no scale can be computed"
-    moved = f"scale of the {axis.name} axis: it moved {share:.4g} times as far as its drive reports, {why}."
-    if share < 0.0:
-        return f"{moved} The sign contradicts the direction that was seen: look at both again"
-    if not 1.0 / ROLLER_SHARE <= share <= ROLLER_SHARE:
-        ratio = gear_ratio(share, max(WITHIN, 2.0 * axis.reading / abs(shown)))
-        if ratio is None:
-            return (
-                f"{moved} No gear explains that: look at the instrument, at a coupling or belt that slips, at the"
-                " drive's own gear factors; the rig file stays as it is"
-            )
-        share = float(ratio)
-        moved += f" A gear of {ratio.numerator} : {ratio.denominator} explains it."
-    right = [f"axes.{axis.name}.velocity_increments: {config.velocity_increments / share:.7g}"]
-    if config.position_increments:
-        right.append(f"axes.{axis.name}.position_increments: {config.position_increments / share:.7g}")
-    return f"{moved} In the rig file: {'; '.join(right)} (now {config.velocity_increments:.7g})"

@@ -12,10 +12,10 @@ from statistics import fmean
 from typing import Final, NamedTuple
 
 from drivers.screw import Screw
-from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.kinds.wheel_on_belt.control.interlock_inputs import UNKNOWN_MM
 from tester.kinds.wheel_on_belt.interlocks.monitors import MOVES_MM, UNDER_WAY_MM
 from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, press, wait
+from tester.machine.commission.quiet_seat import JogSeat
 from tester.machine.commission.stages import in_stages, measured_twice
 
 SPEED_MM_S: Final = 2.0

@@ -13,7 +13,7 @@ from collections.abc import Generator
 from math import nan
 from typing import Final
 
-from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
+from tester.kinds.wheel_on_belt.commission.armed import WheelSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.commission.settling import MEAN_S, SettlingFit
 from tester.kinds.wheel_on_belt.control.loops import loss_ratios
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
@@ -39,7 +39,7 @@ AT_MOST_S: Final = 900.0
 """... before this time has passed, s."""
 
 
-def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
+def soak(seat: WheelSeat, notes: Notes) -> Dialogue:
     """Compare cold and soaked; raises StepRefused."""
     air = seat.rig.ambient_c
     surface, hub = yield from mean_temperatures(seat, AVERAGE_S)
@@ -85,7 +85,7 @@ def soak(seat: ArmedSeat, notes: Notes) -> Dialogue:
     notes.text += f" (standard uncertainty) at {warm_hub:.1f} degC of the hub"
 
 
-def _steady(seat: ArmedSeat) -> Generator[Waits, str, tuple[float, float, float]]:
+def _steady(seat: WheelSeat) -> Generator[Waits, str, tuple[float, float, float]]:
     """Wait until the surface's final temperature is known, with the hub held.
 
     Return that temperature, degC, its standard uncertainty, K, and the hub's temperature, degC.

@@ -7,10 +7,11 @@ from functools import partial
 from typing import Any, Final
 
 from sim.physics.friction import KNOWN
-from tester.kinds.wheel_on_belt.commission.armed import ArmedSeat, mean_temperatures
+from tester.kinds.wheel_on_belt.commission.armed import WheelSeat, mean_temperatures
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact, Friction
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn
-from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, choose, line
+from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits
+from tester.machine.commission.compound import ask_compound
 from tester.machine.commission.stages import in_stages, measured_twice
 from tester.machine.motions import Power, Sequence, Settle
 
@@ -37,7 +38,7 @@ RATIO_SHARE: Final = 0.005
 """
 
 
-def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
+def home(seat: WheelSeat, notes: Notes) -> Dialogue:
     """Check positioned axes after homing: a person measures whether their zero is straight."""
     angles: dict[str, Any] = {}
 
@@ -61,7 +62,7 @@ def home(seat: ArmedSeat, notes: Notes) -> Dialogue:
     yield from in_stages(notes, *(partial(angle, name) for name in seat.run.engine.devices.axes.positioned))
 
 
-def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
+def touch(seat: WheelSeat, notes: Notes) -> Dialogue:
     """Measure the wheel, touch it at a small load, check that friction reverses, and tare the cell."""
     believed, values = seat.rig.geometry.wheel_diameter_mm, dict[str, Any]()
 
@@ -81,12 +82,12 @@ def touch(seat: ArmedSeat, notes: Notes) -> Dialogue:
             )
 
     def compound() -> Dialogue:
-        values["compound"] = yield from _compound(notes)
+        values["compound"] = yield from ask_compound(notes, KNOWN, "wheel")
 
     yield from in_stages(notes, diameter, compound, lambda: _touched(seat, notes, values))
 
 
-def _touched(seat: ArmedSeat, notes: Notes, values: dict[str, Any]) -> Dialogue:
+def _touched(seat: WheelSeat, notes: Notes, values: dict[str, Any]) -> Dialogue:
     """Touch the wheel and take the cell's zero; raises StepRefused."""
     yield from seat.do(FirstContact())
     reference: list[float] = []
@@ -103,22 +104,11 @@ def _touched(seat: ArmedSeat, notes: Notes, values: dict[str, Any]) -> Dialogue:
     )
 
 
-def _compound(notes: Notes) -> Generator[Waits, str, str]:
-    """Return the wheel's compound, as given on the command line or by the person."""
-    named, known = notes.given.get("compound", ""), ", ".join(KNOWN)
-    if named:
-        answer = yield from choose("compound given", f"is the wheel of the compound {named}?", "yes", "no")
-        if answer == "yes":
-            return named
-    text = f"which compound is on the wheel? The expected coefficient is known for {known}"
-    return (yield from line("compound", f"{text}; any other name will do"))
-
-
 def _tare(reference: list[float]) -> TakeTare:
     return TakeTare(TARE_S, reference, ends_run=False)
 
 
-def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
+def roll(seat: WheelSeat, notes: Notes) -> Dialogue:
     """Find the slip at which friction reverses, at three speeds: the part proportional to speed gives the scales'
     ratio.
     """
@@ -160,7 +150,7 @@ def roll(seat: ArmedSeat, notes: Notes) -> Dialogue:
     )
 
 
-def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
+def _turns_round(seat: WheelSeat, speed: float) -> Generator[Waits, str, float]:
     """Return the slip (wheel less belt, m/s, as shown) at which friction reverses."""
     reach = SWEEP_SHARE * speed + CREEP_M_S
     low, high = -reach, reach
@@ -180,7 +170,7 @@ def _turns_round(seat: ArmedSeat, speed: float) -> Generator[Waits, str, float]:
     return 0.5 * (low + high)
 
 
-def _friction(seat: ArmedSeat, speed: float, slip: float) -> Generator[Waits, str, float]:
+def _friction(seat: WheelSeat, speed: float, slip: float) -> Generator[Waits, str, float]:
     activity = Friction(speed, speed - slip)
     yield from seat.do(activity)
     return activity.friction_n / activity.count

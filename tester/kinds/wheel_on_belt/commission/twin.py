@@ -1,92 +1,37 @@
-"""A simulated person who commissions the simulated rig: the plant's true values replace ruler, weight, thermometer.
-
-It serves ``--yes`` on the simulated rig, tests and campaigns. Each answer takes rig time, as a person's does.
-"""
+"""The simulated person of the wheel's rig."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import inf
-from typing import Any, Final
+from typing import Final
 
 from tester.kinds.wheel_on_belt.commission.jog import AXES as JOGGED
-from tester.machine.commission.person import Person
-from tester.machine.commission.stages import ONCE_MORE
-from tester.machine.prompts import GO, Asks, Prompt, Prompts, Question
+from tester.machine.commission.scripted import ScriptedPerson, words_of
+from tester.machine.prompts import Asks, Question
 
-THINKS_S: Final = 15.0
-"""Rig time for an answer that needs a reading or a hung weight, s [A]."""
 STILL_M_S: Final = 0.002
 """Slowest motion that a person sees, m/s [A]."""
-KEY_S: Final = 2.0
-"""Rig time from a question to a key, s [A]."""
 
 
-class TwinPerson(Person):
-    """Answers every question of the steps correctly, as a careful person at the machine would."""
-
-    time_stands = False
-    scripted = True
-
-    def __init__(self, say: Callable[[str], None] = lambda text: None) -> None:
-        """``say`` receives the messages to the person."""
-        self.hands: Any = None
-        """The simulated rig (sim.machines.wheel_on_belt.rig.WheelRig)."""
-        self.asked: list[Question] = []
-        self._say = say
-        self._prompt: Prompt | None = None
-        self._from: dict[str, float] = {}
-        """Position of each axis when its instrument was set to zero."""
-
-    def at(self, hands: Any) -> None:
-        self.hands = hands
-        self._from.clear()
-
-    def message(self, text: str) -> None:
-        self._say(text)
-
-    def attend(self, prompts: Prompts) -> None:
-        prompt = prompts.waiting
-        if prompt is None:
-            return
-        question = prompt.question
-        if prompt is not self._prompt:
-            self._prompt = prompt
-            self.put(question)
-            self.prepare(question)
-        takes_s = THINKS_S if question.asks is Asks.QUANTITY else KEY_S
-        if prompt.at_s == inf or prompts.now_s - prompt.at_s >= takes_s:
-            prompt.reply(self.answer(question))
-
-    def put(self, question: Question) -> None:
-        """Receive a new question."""
-        self.asked.append(question)
+class TwinPerson(ScriptedPerson):
+    """Reads the instruments of a simulated wheel rig (sim.machines.wheel_on_belt.rig.WheelRig)."""
 
     def prepare(self, question: Question) -> None:
-        """Do the question's task, if any, before the answer."""
-        words = question.key.removeprefix(ONCE_MORE).split()
-        if words[0] == "jog" and (words[2] == "first" or words[2] == "mark"):
-            self._from.setdefault(words[1], self.hands.ruler(words[1]))
-        if words[0] == "hang":
+        super().prepare(question)
+        if words_of(question)[0] == "hang":
             self.hands.hang(*self.hung(question))
 
     def hung(self, question: Question) -> tuple[float, float, float]:
         """Return the forces of the weight in a question, N: key ``hang CHANNEL NEWTONS``."""
-        _, channel, newtons = question.key.removeprefix(ONCE_MORE).split()
+        _, channel, newtons = words_of(question)
         force = float(newtons)
         return (force, 0.0, 0.0) if channel == "x" else (0.0, force, 0.0) if channel == "y" else (0.0, 0.0, force)
 
     def answer(self, question: Question) -> str:
-        """Return the answer."""
-        words = question.key.removeprefix(ONCE_MORE).split()
+        words = words_of(question)
         if question.asks is Asks.KEY:
-            return GO
-        if words[0] == "jog":
-            return self._jogged(question, words[1])
+            return super().answer(question)
         if words[0] == "hang":
             return repr(abs(sum(self.hung(question))))
-        if words[0] == "retype":
-            return words[2]
         if words[0] == "angle":
             return f"{self.hands.ruler(words[1]):.1f}"
         if words[0] == "watchdog":
@@ -98,19 +43,7 @@ class TwinPerson(Person):
             return f"{self.hands.ruler('diameter'):.2f}"
         if words[0] == "spring":
             return f"{self.hands.ruler('spring'):.1f}"
-        if question.asks is Asks.CHOICE:
-            return question.choices[0]
-        if question.asks is Asks.TEXT:
-            return "weights of class M1, certificate 4711" if "certificate" in question.key else "2027-11-23"
-        raise LookupError(f"this person has no answer to: {question.key}")
+        return super().answer(question)
 
-    def _jogged(self, question: Question, axis: str) -> str:
-        moved = self.hands.ruler(axis) - self._from.get(axis, 0.0)
-        if question.asks is Asks.QUANTITY:
-            return f"{moved:.2f}"
-        if "direction" in question.key:
-            if abs(moved) < 1e-6:
-                return "other" if any(abs(self.hands.ruler(axis.name)) > 1e-6 for axis in JOGGED) else "nothing"
-            return "yes" if moved > 0.0 else "reversed"
-        self._from[axis] = self.hands.ruler(axis)  # the instrument is set to zero
-        return question.choices[0]
+    def others_move(self) -> bool:
+        return any(abs(self.hands.ruler(axis.name)) > 1e-6 for axis in JOGGED)

@@ -8,20 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from functools import partial
-from math import inf, isfinite
 from typing import Any, Final
 
 from drivers.canopen import objects as o
 from drivers.servo import ServoDrive
 from drivers.temperature_controller import TemperatureController
 from tester.inputs.rig import Rig
-from tester.kinds.wheel_on_belt.commission.quiet import Moving, QuietSeat, has_power
 from tester.kinds.wheel_on_belt.image.devices import Devices
-from tester.kinds.wheel_on_belt.procedures.arming import Proof
+from tester.kinds.wheel_on_belt.procedures.arming import Proof, WheelArming
 from tester.kinds.wheel_on_belt.procedures.lift_check import Unloaded
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.sections import VELOCITY_AXES
-from tester.machine.commission.commission_step import Dialogue, Measured, Notes, StepRefused, Waits, choose, press, wait
+from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, choose, press
+from tester.machine.commission.jogging import Moving, has_power
+from tester.machine.commission.lease import left_alone
+from tester.machine.commission.quiet_seat import QuietSeat
 from tester.machine.commission.stages import Stage, in_stages
 from tester.machine.proof import WatchdogProof
 from tester.machine.rig_ports import Ports
@@ -33,11 +34,6 @@ MORE_S: Final = 0.15
 ends."""
 COOLER_K: Final = 20.0
 """The jacket's setpoint is this much below the hub's temperature, so that it runs without heating."""
-RUNS_S: Final = 1.5
-"""Time for which it runs with its setpoint, s: three writes of the setpoint, and a reading."""
-LEASE_MORE_S: Final = 3.0
-"""Time for the jacket to report the end of its lease, s [A]: a period of its own and of its readings."""
-NO_OUTPUT_PERCENT: Final = 0.5
 
 
 class SetpointProof(Proof):
@@ -124,7 +120,9 @@ class TrialSeat(QuietSeat):
         believed = RigConfig.of(rig)
         devices = Devices(believed, ports)
         self.trials = Trials(devices, believed)
-        super().__init__(believed, believed, devices, self.trials)
+        super().__init__(
+            believed, devices.cell, WheelArming(devices, believed), self.trials, believed.arming.listen_s
+        )
 
     @property
     def ready(self) -> bool:
@@ -202,51 +200,8 @@ def _lease(seat: TrialSeat, notes: Notes) -> Generator[Waits, str, str]:
         how = seat.rig.devices["jacket"].heat_off or "nothing that the rig file names"
         notes.tell(f"  the jacket has no watchdog of its own: {how} ends its heat; try that out by hand")
         return f"ended by {how}, not tried out here"
-    asked_c = jacket.measured_c - COOLER_K
-    if not isfinite(asked_c):
-        raise StepRefused("the jacket reports no temperature: sensor, or its wires")
-    yield from press("watchdog heat", f"the jacket runs for {ends_s:g} s without heat and new setpoints")
-    seat.arming.renews = False
-    after_s = yield from _left_alone(jacket, asked_c, ends_s)
-    failed = jacket.lease_expired
-    yield from wait(1.0)  # until there is a new reading of its output
-    output = jacket.output_percent
-    seat.arming.renews = True
-    jacket.enable(False)
-    yield from wait(1.0)
-    kind = "lease" if jacket.has_lease else "setpoint that it falls back to"
-    if not failed:
-        raise StepRefused(
-            f"watchdogs: the jacket's {kind} did not end its heat {after_s:.1f} s after our last setpoint"
-            f" (expected {ends_s:g} s): it would heat on without the PC"
-        )
-    if not output <= NO_OUTPUT_PERCENT:
-        raise StepRefused(f"watchdogs: the jacket gives {output:g} % of its heat after its {kind} has ended that")
-    report = {"kind": kind, "read_back_s": ends_s, "after_s": round(after_s, 1), "output_percent": output}
-    notes.read("heat: ended without our setpoint", report)
-    return f"{kind} over after {after_s:.1f} s (set and read back: {ends_s:g} s)"
 
+    def renew(renews: bool) -> None:
+        seat.arming.renews = renews
 
-def _left_alone(jacket: TemperatureController, asked_c: float, ends_s: float) -> Measured:
-    """Run the jacket at a setpoint, degC, then send nothing; return how long it ran on, s."""
-    begun_s, sent_s, ended_s = inf, -inf, -inf
-
-    def running(now_s: float) -> bool:
-        nonlocal begun_s, sent_s
-        begun_s = min(begun_s, now_s)
-        jacket.set_setpoint(asked_c)
-        jacket.enable(True)
-        sent_s = now_s
-        return now_s - begun_s >= RUNS_S
-
-    yield running
-    if jacket.lease_expired:
-        raise StepRefused("watchdogs: the jacket reports that our setpoint does not arrive, though it is sent")
-
-    def over(now_s: float) -> bool:
-        nonlocal ended_s
-        ended_s = now_s
-        return jacket.lease_expired or now_s - sent_s > ends_s + LEASE_MORE_S
-
-    yield over
-    return ended_s - sent_s
+    return (yield from left_alone("jacket", jacket, ends_s, jacket.measured_c - COOLER_K, renew, notes))

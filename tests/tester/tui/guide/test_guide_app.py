@@ -11,9 +11,9 @@ from textual.driver import Driver
 from textual.events import Key
 
 from tester.base.source import InvalidSource, Problem
-from tester.kinds.wheel_on_belt.commission.quiet import JogSeat
 from tester.machine.commission.commission_step import CommissionStep
 from tester.machine.commission.person import Walk
+from tester.machine.commission.quiet_seat import JogSeat
 from tester.machine.commission.record import DONE, CommissionRecord
 from tester.machine.commission.step_engine import Ended
 from tester.tui.guide.guide_person import ScreenPerson

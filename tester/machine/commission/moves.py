@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from tester.kinds.wheel_on_belt.context import Context
-from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
-from tester.machine.activity import Activity, MoveFailedError
+from tester.inputs.recipe.plan import Plan
+from tester.machine.activity import MoveFailedError
 from tester.machine.executor import Executor, Procedures
 
 COMMISSIONING: Final = "commissioning"
@@ -16,12 +15,11 @@ COMMISSIONING: Final = "commissioning"
 class MovesExecutor(Executor[Any]):
     """Runs the activities that a procedure sets, one after the other; between activities the demand stays."""
 
-    def __init__(self) -> None:
-        """Begin without a demand."""
-        super().__init__(WheelPlan(COMMISSIONING, (), (), 1), Procedures())
-        self.watch: Activity[Context] | None = None
+    def __init__(self, plan: Plan) -> None:
+        """Begin without a demand; ``plan``: without steps."""
+        super().__init__(plan, Procedures())
 
-    def step(self, ctx: Context) -> None:
+    def step(self, ctx: Any) -> None:
         """Advance the activity in progress."""
         if self.activity is None:
             return

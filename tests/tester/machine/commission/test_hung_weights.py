@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from sim.noise import NormalStream
-from tester.kinds.wheel_on_belt.commission.weights import settled_cell
 from tester.machine.commission.commission_step import StepRefused
+from tester.machine.commission.hung_weights import settled_cell
 
 WEIGHT_N, SWING_N, NOISE_N = 100.0, 5.0, 0.25
 
@@ -18,7 +18,7 @@ def read(decay_s: float, seed: int = 0) -> tuple[list[float], float]:
     """Read a weight that swings at 1.3 Hz and comes to rest within ``decay_s``; return the means, and when."""
     noise = NormalStream(seed, "swinging")
     cell = SimpleNamespace(valid=True, stamp_s=0.0, raw=[0.0, 0.0, 0.0])
-    seat = SimpleNamespace(devices=SimpleNamespace(cell=cell))
+    seat = SimpleNamespace(cell=cell)
     settled = settled_cell(seat)  # type: ignore[arg-type]
     until = next(settled)
     for number in range(4000):
