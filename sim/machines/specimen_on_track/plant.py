@@ -36,8 +36,8 @@ class TrackPlant:
 
     __slots__ = (
         "_air", "_drift_n_k", "_dry", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m",
-        "_specimen", "_stick_slip", "_zero_n", "air_c", "compound", "force_n", "grip", "interface", "load_n", "mu",
-        "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "weights_n",
+        "_specimen", "_stick_slip", "_zero_n", "air_c", "arm_n", "compound", "force_n", "grip", "hung_n", "interface",
+        "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "weights_n",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
@@ -70,6 +70,10 @@ class TrackPlant:
         """Of the specimen on the arm; "" before the first."""
         self.interface: Interface = "dry"
         self.weights_n = 0.0
+        self.arm_n = 0.0
+        """Load of an arm that is not balanced, N, besides the weights."""
+        self.hung_n = 0.0
+        """Force of a weight that pulls the arm over a pulley, N, above 0 in the direction of the track."""
         self.slid_m = 0.0
         self.force_n = self.load_n = self.slip_m_s = self.power_w = self.mu = 0.0
         self._since_rest_m = 0.0
@@ -147,7 +151,7 @@ class TrackPlant:
         """
         contact = self.parameters.contact
         pressed = (contact.touch - lift_mm) / contact.touch
-        self.load_n = self.weights_n * (1.0 if pressed > 1.0 else pressed)
+        self.load_n = (self.weights_n + self.arm_n) * (1.0 if pressed > 1.0 else pressed)
         if pressed > 0.0 and self.weights_n > 0.0 and self._law is not None:
             self._rub(dt, track_m_s, self._law)
         elif self.force_n != 0.0 or self.load_n != 0.0 or self._since_rest_m != 0.0:
@@ -217,7 +221,7 @@ class TrackPlant:
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return the cell's present readings: the tangential force in N as the first of four channels."""
         s = self.parameters.sensors
-        seen_n = self.force_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
+        seen_n = self.force_n + self.hung_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
         rms_n = self.parameters.noise * s.force_rms
         if rms_n > 0.0:
             seen_n += rms_n * self._noise.next()

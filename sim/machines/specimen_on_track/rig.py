@@ -6,6 +6,7 @@ with the inputs; an attendant moves the track back by hand.
 
 from __future__ import annotations
 
+from math import degrees
 from typing import Final
 
 from drivers.axis import AxisConfig
@@ -22,6 +23,8 @@ from sim.wires.can_wire import CanWire
 
 TRACK_LAG_S: Final = 0.004
 """Lag of the track behind its velocity command, s [A]."""
+DISC_RADIUS_MM: Final = 60.0
+"""Radius of the track on a disc, mm [A]."""
 TRACK_LEVER_M: Final = 0.05
 """Torque at the track's drive per force at the specimen, m [A]."""
 _METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
@@ -72,6 +75,16 @@ class TrackRig(SimRig):
         self._linear = parameters.motion == "linear"
         self.mounted = 0, ""
         """Specimen and rubber on the arm."""
+        self.turned: set[str] = set()
+        """Axes that move the wrong way round: the motor's direction was never set."""
+        self.swapped = False
+        """Whether the drives of track and lift are swapped: each moves the other's part."""
+        self.radius_mm = DISC_RADIUS_MM
+        """Radius of the track on a disc, mm."""
+        self._travelled_m = 0.0
+        """Way of a disc's track, m."""
+        self.held_switch = False
+        """Whether a finger holds an end switch."""
         self.switches_work = True
         """Whether the end switches work."""
         self.beyond_switch = False
@@ -114,7 +127,13 @@ class TrackRig(SimRig):
     @property
     def track_m_s(self) -> float:
         """Speed of the track under the specimen, m/s."""
-        return self.metres * self._track.axis.value
+        return self.metres * self._track.axis.value * (-1.0 if "track" in self.turned else 1.0)
+
+    @property
+    def track_mm(self) -> float:
+        """Place of a linear track in its travel, mm."""
+        place_mm = self._track.axis.position * self.metres * 1e3
+        return self.plant.parameters.travel - place_mm if "track" in self.turned else place_mm
 
     @property
     def lift_mm(self) -> float:
@@ -125,6 +144,8 @@ class TrackRig(SimRig):
         """Advance the plant with its drives to ``t1`` s, and load the track's drive."""
         elapsed, self.plant_s = t1 - self.plant_s, t1
         chamber = self.chamber
+        if not self._linear:
+            self._travelled_m += self.track_m_s * elapsed
         self.plant.advance(elapsed, self.track_m_s, self.lift_mm, chamber.output if chamber is not None else 0.0)
         torque_nm = -self.plant.force_n * TRACK_LEVER_M if self._track.energised else 0.0
         if torque_nm != self._track.torque_nm:
@@ -135,16 +156,15 @@ class TrackRig(SimRig):
     def _look_at_the_ends(self) -> None:
         """Open or close the end switches, and note a hit on a stop."""
         p = self.plant.parameters
-        at_mm = self._track.axis.position * self.metres * 1e3
+        at_mm = self.track_mm
         if at_mm <= 0.0 or at_mm >= p.travel:
             self.hit_stop = True
-        beyond = self.switches_work and not p.switches <= at_mm <= p.travel - p.switches
+        beyond = self.switches_work and (self.held_switch or not p.switches <= at_mm <= p.travel - p.switches)
         if beyond != self.beyond_switch:
             self.beyond_switch = beyond
             for drive in self.axes.values():
                 drive.set_safety_chain(not beyond)
-                if beyond:
-                    drive.set_torque_off(True)
+                drive.set_torque_off(beyond)
 
     @property
     def of_materials(self) -> bool:
@@ -186,6 +206,42 @@ class TrackRig(SimRig):
     def lower_arm(self) -> None:
         """Lower an arm that has no drive."""
         self.hand_mm = 0.0
+
+    # -- actions of the person who commissions ----------------------------------------------------------------------
+
+    def ruler(self, what: str) -> float:
+        """Return what an instrument shows: a linear "track" in mm, a disc in deg, the "lift" in mm downwards;
+        "radius" of a disc's track, mm; "left" to the nearer end switch, mm; the arm's "load", N; "air" at the specimen,
+        degC.
+        """
+        if what == "track":
+            moved_mm = self.track_mm if self._linear else 1e3 * self._travelled_m
+            other = self._lift.axis.position if self.swapped and self._lift is not None else 0.0
+            moved_mm = other if self.swapped else moved_mm
+            return moved_mm if self._linear else degrees(moved_mm / self.radius_mm)
+        if what == "lift":
+            down_mm = self.track_mm if self.swapped else -self.lift_mm
+            return -down_mm if "lift" in self.turned else down_mm
+        if what == "radius":
+            return self.radius_mm
+        if what == "left":
+            p = self.plant.parameters
+            return min(self.track_mm - p.switches, p.travel - p.switches - self.track_mm)
+        if what == "load":
+            return self.plant.weights_n + self.plant.arm_n
+        if what == "air":
+            return self.plant.air_c
+        raise LookupError(f"no instrument shows {what}")
+
+    def hang(self, force_n: float) -> None:
+        """Let a weight pull the arm over a pulley, N, above 0 in the direction of the track; 0 takes it off."""
+        self.plant.hung_n = force_n
+
+    def hold_switch(self, held: bool) -> None:
+        """Hold an end switch by a finger, or let it go."""
+        self.held_switch = held
+        if self._linear:
+            self._look_at_the_ends()
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int) -> None:
         """Restart the random streams and the sensors' dither for a repeat."""

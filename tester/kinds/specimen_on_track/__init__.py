@@ -23,5 +23,6 @@ KIND: Final = Kind(
     papers=found_at("tester.kinds.specimen_on_track.papers:PAPERS"),
     masters=found_at("tester.kinds.specimen_on_track.fit.master_conditions:MASTERS"),
     served=found_at("tester.kinds.specimen_on_track.served:SERVED"),
+    commissions=found_at("tester.kinds.specimen_on_track.commission.commission_steps:COMMISSIONS"),
     fits=found_at("tester.kinds.specimen_on_track.fit.fits:FITS"),
 )
