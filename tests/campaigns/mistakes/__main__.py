@@ -1,6 +1,6 @@
 """Mistakes of wiring, scaling and typing on the twin: each has to be named, and nothing on a clean rig.
 
-    python -m tests.campaigns.mistakes [--sample] [--seeds N] [--list FILE.yaml] [NAME...]
+    python -m tests.campaigns.mistakes [--sample] [--track] [--seeds N] [--list FILE.yaml] [NAME...]
 
 In virtual time. A mistake is named where what the doctor, or the commissioning, says of the rig matches what has to be
 said of it. The doctor's exit code has to be 0 exactly where a run on the same machine arms. ``--sample``: one seed of
@@ -31,7 +31,7 @@ LEAST = 20
 """So many kinds of mistakes are to be named."""
 LISTED_SHARE = 0.9
 """Least share of another hand's list that is to be named."""
-SOURCES = ("by_doctor", "by_answers", "by_commissioning")
+SOURCES = ("by_doctor", "by_answers", "by_track", "by_commissioning")
 """Modules of this package that bring ``MISTAKES`` and ``clean``, quick ones first."""
 SECOND_HAND = Path(__file__).with_name("second_hand.yaml")
 """Mistakes by another author than the probes'."""
@@ -107,15 +107,16 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=3, help="seeds of each mistake (default 3)")
     parser.add_argument("--list", type=Path, help="another list of mistakes for the doctor")
     parser.add_argument("names", nargs="*", help="only mistakes whose names hold one of these words")
+    parser.add_argument("--track", action="store_true", help="only the commissioning of a specimen on a track")
     given = parser.parse_args()
-    modules = sources(SOURCES[:2]) if given.sample else sources()
-    seeds, clean_seeds = (1, 5) if given.sample else (given.seeds, CLEAN_SEEDS)
+    modules = sources(("by_track",)) if given.track else sources(SOURCES[:2]) if given.sample else sources()
+    seeds, clean_seeds = (1, 1 if given.track else 5) if given.sample else (given.seeds, CLEAN_SEEDS)
     missed, total = 0, 0
     if given.list:
         measured = listed(given.list, seeds)
     else:
         measured = figures(modules, seeds, clean_seeds, given.names)
-        if not given.sample and not given.names:
+        if not (given.sample or given.names or given.track):
             measured = chain(measured, listed(SECOND_HAND, seeds))
     for figure in measured:
         print(figure, flush=True)
