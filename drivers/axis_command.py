@@ -194,7 +194,7 @@ class AxisCommand(CanNode):
         if state is not previous or (statusword ^ self.statusword) & cia402.REMOTE:
             self.state = state
             self.news = True
-            if (self._goal is Goal.ENABLED and previous in _STOPPED_BY_ITSELF
+            if (state is not previous and self._goal is Goal.ENABLED and previous in _STOPPED_BY_ITSELF
                     and state is not State.OPERATION_ENABLED):
                 self.inhibited = True
         self.statusword = statusword

@@ -63,6 +63,8 @@ def new(
     ask("2. Compounds, separated by commas", "--compound", ", ".join(compounds), "", draft.with_compounds)
     click.echo("3. Values of each axis, separated by commas", err=True)
     for axis in draft.axes:
+        if axis.default == "" and axis.name not in values:
+            continue  # a name that recipes may leave out, as of a surface
         _ask_axis(ask, draft, axis, values.get(axis.name, ""))
     ask("4. Repeats of each condition", "--repeats", repeats, "3", draft.with_repeats)
     ask("5. Name of the recipe", "--name", name, draft.suggested_name(), draft.with_name)

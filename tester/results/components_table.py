@@ -33,7 +33,6 @@ class FilmPair(NamedTuple):
         """Return the substance of the film."""
         return str(self.film.info.setpoint.value(AXIS))
 
-
     @property
     def surface(self) -> str:
         """Return the surface that the recipe's grid names; "" for the recipe's abrasive."""

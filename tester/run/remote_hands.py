@@ -99,7 +99,8 @@ class RemoteHands:
             if verb is None:
                 self._fail(f"this kind of machine has no verb for {name}")
             else:
-                self._send(verb.line(*values, *named.values()))
+                rest = (named.get(argument.name) for argument in verb.arguments[len(values) :])
+                self._send(verb.line(*values, *rest))
 
         return ask
 

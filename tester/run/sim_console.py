@@ -13,6 +13,7 @@ from sim.hands import DONE, REFUSED, Verb, by_word
 from sim.machines import SimulatedMachine
 from sim.rig import SimRig
 from tester.base import clock
+from tester.base.source import InvalidSource
 
 SLOWEST, FASTEST = 0.01, 100.0
 """Limits of the speed [A]: a slower rig takes too long to watch; no computer keeps up with a faster one."""
@@ -188,7 +189,7 @@ class SimConsole:
     def _hand(self, verb: Verb, line: str) -> str:
         try:
             verb.act(self._rig, shlex.split(line)[1:])
-        except ValueError as error:
+        except (ValueError, InvalidSource) as error:
             return f"{REFUSED}{' '.join(str(error).split())}"
         return DONE + line.strip()
 

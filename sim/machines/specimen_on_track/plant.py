@@ -87,8 +87,7 @@ class TrackPlant:
 
         Raises ValueError for a rubber that is missing in the parameters, or in the setting's materials.
         """
-        self.compound = compound
-        self._look_up_law()
+        self._take(compound, self.setting, self.interface)
         self._specimen = 1.0 + self.parameters.scatter * SPECIMEN_SIGMA * normal(self._seed, "specimen", specimen)
         self._repeat = 1.0
         self.specimen_c = self.parameters.ambient
@@ -108,17 +107,18 @@ class TrackPlant:
 
         Raises ValueError for a surface that is missing in the setting's materials.
         """
-        self.setting = replace(self.setting, surface=surface)
-        self.interface = "dry"
-        if self.compound:
-            self._look_up_law()
+        self._take(self.compound, replace(self.setting, surface=surface), "dry")
 
-    def _look_up_law(self) -> None:
-        """Take the law of rubber and surface; none before the track is covered, where the law needs a surface."""
-        p, setting = self.parameters, self.setting
+    def _take(self, compound: str, setting: LawSetting, interface: Interface) -> None:
+        """Take the law of a rubber on a surface, or change nothing and raise.
+
+        There is none without a rubber, or before the track is covered where the law needs a surface.
+        """
+        p = self.parameters
         bare = p.of_materials and setting.materials is not None and not (p.surface or setting.surface)
-        self._dry = None if bare else p.friction_of(self.compound, setting)
-        self._law = None if self._dry is None else p.contact.through(self._dry, self.interface)
+        dry = p.friction_of(compound, setting) if compound and not bare else None
+        self._law = p.contact.through(dry, interface) if dry is not None else None
+        self._dry, self.compound, self.setting, self.interface = dry, compound, setting, interface
 
     def prepare(self, interface: Interface) -> None:
         """Dry, wet or powder the track."""

@@ -14,13 +14,14 @@ from tester.inputs.materials.radial import RadialSpectrum
 def compound_text(name: str, table: ModuliTable, data: DataFile, findings: Findings) -> str:
     """Return a compound's file with a table of moduli. ``findings``: conversions and doubts."""
     strains = table.strains_percent
-    each = strains is not None and strains[0] < strains[1] and all(r.strain_percent is not None for r in table.rows)
+    whole = all(row.strain_percent is not None for row in table.rows)
+    each = whole and strains is not None and strains[0] < strains[1]
     rows = "".join(
         f"      - [{r.temperature_c!r}, {r.frequency_hz!r}, {r.storage_pa / 1e6!r}, {r.loss_pa / 1e6!r}"
         f"{f', {r.strain_percent!r}' if each else ''}]\n"
         for r in table.rows
     )
-    strain = f"  strain: {strains[0]!r} %\n" if strains is not None and strains[0] == strains[1] else ""
+    strain = f"  strain: {strains[0]!r} %\n" if whole and strains is not None and strains[0] == strains[1] else ""
     closing = "What else is known belongs here: formulation (phr), batch, cure, density, hardness, Tg, decade_k, shear."
     return _head("Moduli imported from", "imported from", name, data, findings, closing) + (
         f"moduli:\n{strain}"

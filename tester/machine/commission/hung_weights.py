@@ -102,7 +102,11 @@ def calibrate(plan: CellPlan, seat: QuietSeat, notes: Notes) -> Dialogue:
         first = partial(hung.ask_zero, way)
         stages.append(first)
         channel = hung.channels[way.name]
-        abouts = [about for about in way.plan if about <= plan.most_n(seat.rig)]
+        most_n = plan.most_n(seat.rig)
+        abouts = [about for about in way.plan if about <= most_n]
+        if not abouts:
+            least_n = min(way.plan)
+            raise StepRefused(f"{way.label}: the least weight, {least_n:g} N, is more than the rig's {most_n:g} N")
         stages += [partial(hung.ask_point, channel, place, about) for place, about in enumerate(abouts)]
         stages += [partial(hung.ask_mistyped, channel), judged(first, partial(hung.judge, channel))]
     yield from in_stages(notes, *stages, hung.ask_off, hung.ask_due, hung.finish)
@@ -196,7 +200,7 @@ class HungCell:
 
     def ask_off(self) -> Dialogue:
         """Let the person take everything off."""
-        last = self.plan.ways[-1]
+        last = [way for way in self.plan.ways if way.name not in self.skipped][-1]
         text = f"{last.label}: take the weights off. Take off hook and wire as well; type 0"
         yield from measured_twice(f"hang {last.name} 0.0", text, "N", _not_zero)
 

@@ -126,7 +126,7 @@ class Jogging(Moving):
 
     @property
     def chain_may_open(self) -> bool:
-        return self.jog is not None and self.jog.opens
+        return self.jog is not None and self.jog.opens and not self.jog.over
 
     def begin(
         self, axis: str, way: float, speed: float, *, holds: bool = False, most_s: float = PRESS_S, opens: bool = False

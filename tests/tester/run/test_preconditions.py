@@ -12,6 +12,7 @@ from drivers.canopen.dictionary import VENDOR_ID
 from tester import kinds
 from tester.base import clock
 from tester.inputs.rig import Rig
+from tester.inputs.rig.rig_keys import value_at
 from tester.kinds import load_rig, load_rig_text, packaged_text
 from tester.machine.commission.commission_step import sections_sha256
 from tester.machine.commission.record import DONE, CommissionRecord, record_path
@@ -76,3 +77,21 @@ def test_an_override_that_tightens_a_limit_leaves_the_record_as_it_is(machine: P
     overrides = ("limits.load=300 N",)
     options = SessionOptions("quickstart", rig=str(machine), out=tmp_path, overrides=overrides)
     assert not_measured(options, load_rig(machine, overrides)) == ""
+
+
+@pytest.mark.parametrize(
+    ("kind", "rigs"), [("wheel_on_belt", ["sim"]), ("specimen_on_track", ["grosch", "pin-on-disc"])]
+)
+def test_every_section_that_a_step_depends_on_is_in_a_packaged_rig(kind: str, rigs: list[str]) -> None:
+    found: Any = kinds.find(kind).commissions
+    loaded = [load_rig(rig) for rig in rigs]
+    sections = {section for step in found().steps for section in step.sections}
+    unknown = [one for one in sections if all(value_at(rig, tuple(one.split("."))) is None for rig in loaded)]
+    assert unknown == []
+
+
+def test_a_real_track_needs_its_travel() -> None:
+    found: Any = kinds.find("specimen_on_track").commissions
+    (travel,) = [step for step in found().steps if step.name == "travel"]
+    section = tuple(travel.sections[0].split("."))
+    assert travel.required and value_at(load_rig("grosch"), section) and not value_at(load_rig("pin-on-disc"), section)

@@ -13,11 +13,10 @@ from statistics import fmean
 from typing import Final
 
 from tester.kinds.specimen_on_track.commission.seats import TrackSeat
-from tester.kinds.specimen_on_track.context import TrackContext
-from tester.kinds.specimen_on_track.procedures.motions import ComeToStand, GoTo
+from tester.kinds.specimen_on_track.procedures.motions import ComeToStand, GoTo, TurnFor
 from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, choose, press
 from tester.machine.commission.stages import in_stages
-from tester.machine.motions import Move, Power, Sequence
+from tester.machine.motions import Power, Sequence
 
 ZERO_SHARE: Final = 0.01
 """Greatest variation and drag, as a share of the least weight [A]: as much as the coefficient is off."""
@@ -29,26 +28,6 @@ REST_S: Final = 2.0
 """Averaging time at rest, s [A]: 0.02 N of noise leave 0.002 N."""
 INSIDE_MM: Final = 5.0
 """The track turns round this far inside its soft ends, mm [A]."""
-
-
-class TurnFor(Move):
-    """Turn a disc for a way."""
-
-    name = "turning the disc"
-
-    def __init__(self, way_m: float, speed_m_s: float) -> None:
-        """``way_m``: above 0."""
-        self.way_m, self.speed_m_s = way_m, speed_m_s
-        self.limit_s = 10.0 + 2.0 * way_m / speed_m_s
-        self.until_m = inf
-
-    def step(self, ctx: TrackContext) -> bool:
-        """Done when the way is over; ``ComeToStand`` follows."""
-        way_m = ctx.readings.way_m
-        self.until_m = min(self.until_m, way_m + self.way_m)
-        ctx.moving = True
-        ctx.demand.track_m_s = self.speed_m_s if way_m < self.until_m else 0.0
-        return way_m >= self.until_m
 
 
 @dataclass(slots=True)

@@ -5,6 +5,7 @@ The moves common to all machines are in ``tester.machine.motions``.
 
 from __future__ import annotations
 
+from math import inf
 from typing import Final
 
 from tester.kinds.specimen_on_track.context import TrackContext
@@ -55,6 +56,26 @@ class GoTo(Move):
         ctx.demand.track_m_s = speed if far_mm > 0.0 else -speed
         ctx.moving = True
         return False
+
+
+class TurnFor(Move):
+    """Turn a disc for a way."""
+
+    name = "turning the disc"
+
+    def __init__(self, way_m: float, speed_m_s: float) -> None:
+        """``way_m``: above 0."""
+        self.way_m, self.speed_m_s = way_m, speed_m_s
+        self.limit_s = 10.0 + 2.0 * way_m / speed_m_s
+        self.until_m = inf
+
+    def step(self, ctx: TrackContext) -> bool:
+        """Done when the way is over; ``ComeToStand`` follows."""
+        way_m = ctx.readings.way_m
+        self.until_m = min(self.until_m, way_m + self.way_m)
+        ctx.moving = True
+        ctx.demand.track_m_s = self.speed_m_s if way_m < self.until_m else 0.0
+        return way_m >= self.until_m
 
 
 class MoveArm(Move):

@@ -28,6 +28,7 @@ from tester.kinds.specimen_on_track.recipe.plan_steps import (
     INSERTED,
     Cover,
     MountSpecimen,
+    Open,
     Prepare,
     Temper,
     TrackCondition,
@@ -148,7 +149,7 @@ class TrackPart(SpecimenPart):
             return ()
         own, soak = TrackConfig.of(rig), settings.soak
         cover = Cover(index + 1 if own.chamber else index, surface)
-        return (Temper(index, own.ambient_c, OPENED_K, 0.0, soak.at_most_s), cover) if own.chamber else (cover,)
+        return (Open(index, own.ambient_c, OPENED_K, 0.0, soak.at_most_s), cover) if own.chamber else (cover,)
 
     def before_block(self, index: int, value: float, settings: Settings) -> tuple[Temper]:
         """Return the step that brings the air to the temperature of a block."""
@@ -180,6 +181,13 @@ class TrackPart(SpecimenPart):
                     step = replace(step, index=INSERTED, again=True, sliding_m=mounted.sliding_m)
             elif isinstance(step, Prepare):
                 step = replace(step, text=_prepare(INSERTED, None, (step.load_n, step.interface)).text)
+            elif isinstance(step, Cover):
+                # What was tempered and prepared for the surface before does not hold for this one: it is dry.
+                due.pop(Temper.kind, None)
+                before = due.pop(Prepare.kind, None)
+                due.pop(Cover.kind, None)
+                due[Cover.kind] = step
+                step = _prepare(INSERTED, None, (before.load_n, "dry")) if isinstance(before, Prepare) else step
             due.pop(step.kind, None)
             due[step.kind] = step
         return replace(plan, steps=tuple(steps))
@@ -193,6 +201,8 @@ class TrackPart(SpecimenPart):
                 return f"ask: {step.text}"
             case Cover():
                 return f"ask: {step.title}"
+            case Open():
+                return f"temper to {step.temperature_c:g} degC, to open the chamber"
             case Temper():
                 return f"temper to {step.temperature_c:g} degC, {rough_duration(step.for_s)} within {step.within_k:g} K"
             case TrackCondition():

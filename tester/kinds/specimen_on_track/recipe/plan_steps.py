@@ -74,6 +74,13 @@ class Temper(Step):
         return f"temper to {self.temperature_c:g} degC"
 
 
+@dataclass(frozen=True, slots=True)
+class Open(Temper):
+    """Bring the chamber's air near the room's, so that a person can open it."""
+
+    kind: ClassVar[str] = "open"
+
+
 @dataclass(frozen=True)
 class TrackSettings(Settings):
     """Settings of a condition: its way, or the longer way that ``at_least_s`` takes at its speed."""

@@ -56,7 +56,7 @@ STEPS: Final = (
     CommissionStep("cell", "load cell with hung weights", (*_CELL, "limits"), ("identify",), _QUIET,
          partial(calibrate, weights.PLAN),
          readings=of_cell),
-    CommissionStep("spring", "lifting spring of the press", ("axes.press", "geometry", "press"), ("jog press",), _QUIET,
+    CommissionStep("spring", "lifting spring of the press", ("axes.press", "geometry"), ("jog press",), _QUIET,
          spring.measure_spring, readings=of_axis(jog.AXES[2])),
     CommissionStep("home", "homing, and whether zero is straight", (*_HOMED, "can", "arming"),
          _JOGGED, WheelSeat, touch.home, readings=readings.of_positions),

@@ -9,7 +9,7 @@ from tester.inputs.recipe.plan import Mounted, Plan, Stand
 from tester.inputs.recipe.plan_text import lines
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
-from tester.kinds.specimen_on_track.recipe.plan_steps import Cover, MountSpecimen, Prepare, Temper, TrackCondition
+from tester.kinds.specimen_on_track.recipe.plan_steps import Cover, MountSpecimen, Open, Prepare, Temper, TrackCondition
 from tests.tester.inputs.recipe.texts import load_recipe
 from tests.tester.kinds.specimen_on_track.bench import DISC, GROSCH
 
@@ -131,6 +131,21 @@ def test_what_is_left_begins_on_its_surface() -> None:
     left = PART.remaining(plan(text), Stand(ended, ended, (Mounted(1, 1, 1, float("nan"), 0.2, False),)))
     assert [step.kind for step in left.steps] == ["install", "cover", "temper", "prepare", "condition"]
     assert isinstance(left.steps[1], Cover) and left.steps[1].surface == "silicon carbide"
+
+
+def test_what_is_left_opens_the_chamber_first_and_prepares_what_was_covered() -> None:
+    text = GROSCH.replace("grids:\n  - {name: one, ", SURFACES).replace("23 degC", "[0 degC, 20 degC]")
+    text = text.replace("load: 20 N", "interface: [dry, wet], load: 20 N")
+    whole = plan(text, "grosch")
+    first = {step.condition for step in whole.conditions() if step.setpoint.value("surface") == "glass"}
+    for ended in ({1}, first):
+        left = PART.remaining(whole, Stand(frozenset(ended), frozenset(ended), ())).steps
+        places = [number for number, step in enumerate(left) if isinstance(step, Cover)]
+        assert all(isinstance(left[place - 1], Open) for place in places)
+        assert [left[place].title for place in places][-1] == "cover the track with silicon carbide"
+        assert len(places) == (2 if ended == {1} else 1)
+    assert [step.kind for step in left[:6]] == ["install", "open", "cover", "prepare", "temper", "condition"]
+    assert isinstance(left[3], Prepare) and left[3].text.endswith("make the track clean and dry")
 
 
 def test_conditions_on_a_surface_name_it() -> None:
