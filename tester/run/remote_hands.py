@@ -29,7 +29,7 @@ PATIENCE_S: Final = 5.0
 _CHUNK: Final = 4096
 
 
-class Channel(Protocol):
+class ConsoleStream(Protocol):
     """A stream of bytes to a console, which never blocks. Both methods raise OSError if it has ended."""
 
     def send(self, data: bytes) -> None:
@@ -45,7 +45,7 @@ class Channel(Protocol):
         ...
 
 
-class SocketChannel:
+class SocketStream:
     """A connection to a console over TCP."""
 
     def __init__(self, place: str) -> None:
@@ -77,7 +77,7 @@ class SocketChannel:
 class RemoteHands:
     """An attendant whose every method becomes a line at the console; ``failed``: why one was not done, or ""."""
 
-    def __init__(self, channel: Channel, verbs: Sequence[Verb], place: str, recorder: Recorder) -> None:
+    def __init__(self, channel: ConsoleStream, verbs: Sequence[Verb], place: str, recorder: Recorder) -> None:
         """``verbs``: of the simulated machine; ``place``: the console's address, for people; ``recorder``: gets what
         was done.
         """
@@ -157,7 +157,7 @@ def remote_hands(place: str, rig: Rig, recorder: Recorder) -> RemoteHands:
     from sim import machines
 
     try:
-        channel = SocketChannel(place)
+        channel = SocketStream(place)
     except OSError as error:
         raise BusLost(f"no console at {place} (tester sim --control): {in_words(error)}") from error
     return RemoteHands(channel, machines.find(run_parts(rig).plant).verbs, place, recorder)

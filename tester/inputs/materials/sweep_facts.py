@@ -29,7 +29,7 @@ LEAST_SPAN = 0.5
 """Frequencies within fewer decades give no kelvins a decade [A]."""
 
 
-class Measured(NamedTuple):
+class SweepValue(NamedTuple):
     """A value and half the length of its interval (95 %)."""
 
     value: float
@@ -41,15 +41,15 @@ class TanPeak:
     """The peak of tan delta over the temperature at one frequency; a DMA's glass transition."""
 
     frequency_hz: float
-    place_c: Measured
-    height: Measured
+    place_c: SweepValue
+    height: SweepValue
 
 
 @dataclass(frozen=True, slots=True)
 class Plateau:
     """A modulus of tension at one end of a sweep, from lowest to highest temperature."""
 
-    modulus_pa: Measured
+    modulus_pa: SweepValue
     low_c: float
     high_c: float
     frequency_hz: float
@@ -64,18 +64,18 @@ class SweepFacts:
     """E0, on the warm side."""
     glass: Plateau | None
     """Einf, on the cold side."""
-    decade_k: Measured | None
+    decade_k: SweepValue | None
     """Kelvins that the peak moves by for a decade of frequency."""
     silent: tuple[str, ...]
 
     @property
-    def ratio(self) -> Measured | None:
+    def ratio(self) -> SweepValue | None:
         """Return Einf / E0, None without both."""
         if self.glass is None or self.rubber is None:
             return None
         glass, rubber = self.glass.modulus_pa, self.rubber.modulus_pa
         value = glass.value / rubber.value
-        return Measured(value, value * hypot(glass.u / glass.value, rubber.u / rubber.value))
+        return SweepValue(value, value * hypot(glass.u / glass.value, rubber.u / rubber.value))
 
 
 class SilentError(ValueError):
@@ -150,8 +150,8 @@ def tan_peak(rows: Sequence[ModuliRow]) -> TanPeak:
     height = exp(top)
     return TanPeak(
         float(np.exp(np.mean([log(row.frequency_hz) for row in rows]))),
-        Measured(float(middle + half_k * place), float(place_u)),
-        Measured(height, height * hypot(u_top, other_top - top)),
+        SweepValue(float(middle + half_k * place), float(place_u)),
+        SweepValue(height, height * hypot(u_top, other_top - top)),
     )
 
 
@@ -200,10 +200,10 @@ def plateau(rows: Sequence[ModuliRow], end: Literal["rubber", "glass"]) -> Plate
         raise SilentError(f"E' of {value / 1e6:.3g} MPa over {span} is not that of {what}")
     scatter = float(np.std(y - slope * about, ddof=2)) / len(kept) ** 0.5
     u = hypot(t_quantile(0.975, len(kept) - 2) * scatter, 0.5 * change)
-    return Plateau(Measured(value, value * u), kept[0].temperature_c, kept[-1].temperature_c, rows[0].frequency_hz)
+    return Plateau(SweepValue(value, value * u), kept[0].temperature_c, kept[-1].temperature_c, rows[0].frequency_hz)
 
 
-def kelvins_a_decade(peaks: Sequence[TanPeak]) -> Measured:
+def kelvins_a_decade(peaks: Sequence[TanPeak]) -> SweepValue:
     """Return by how many kelvins the peak moves for a decade of frequency: the slope of a straight line.
 
     Every frequency has the same weight, because the shift itself bends. Raises SilentError.
@@ -218,7 +218,7 @@ def kelvins_a_decade(peaks: Sequence[TanPeak]) -> Measured:
     u = float(np.linalg.norm(share * [peak.place_c.u for peak in peaks]))
     if not u < slope:
         raise SilentError(f"{slope:.1f} ± {u:.1f} K: the peaks do not move in order of their frequencies")
-    return Measured(slope, u)
+    return SweepValue(slope, u)
 
 
 def fact_words(facts: SweepFacts) -> Iterator[tuple[str, str]]:
@@ -231,7 +231,7 @@ def fact_words(facts: SweepFacts) -> Iterator[tuple[str, str]]:
         )
     for label, end in (("E0", facts.rubber), ("Einf", facts.glass)):
         if end is not None:
-            modulus = Measured(end.modulus_pa.value / 1e6, end.modulus_pa.u / 1e6)
+            modulus = SweepValue(end.modulus_pa.value / 1e6, end.modulus_pa.u / 1e6)
             span = f"{end.low_c:g} to {end.high_c:g} degC, {end.frequency_hz:.3g} Hz"
             yield label, f"{_shown(modulus)} MPa, mean of {span}"
     if facts.ratio is not None:
@@ -243,7 +243,7 @@ def fact_words(facts: SweepFacts) -> Iterator[tuple[str, str]]:
         yield "unknown", reason
 
 
-def _shown(measured: Measured) -> str:
+def _shown(measured: SweepValue) -> str:
     """Return a value to the first two digits of its interval."""
     u = max(measured.u, 1e-4 * abs(measured.value), 1e-12)
     digits = max(0, 1 - int(np.floor(log10(u))))

@@ -248,7 +248,7 @@ def _wrong_scale(axis: JoggedAxis, seat: JogSeat, read: float, shown: float, why
         ratio = gear_ratio(share, max(WITHIN, 2.0 * axis.reading / abs(shown)))
         if ratio is None:
             return (
-                f"{moved} No gear explains that: look at the instrument, at a coupling or belt that slips, at the"
+                f"{moved} No gear explains that: look at the instrument, at a coupling that gives way, at the"
                 " drive's own gear factors; the rig file stays as it is"
             )
         share = float(ratio)

@@ -99,7 +99,6 @@ def test_the_parts_of_a_law_are_drawn_without_a_run(home: Path, capsys: pytest.C
         ([], "no run is named"),
         (["one", "--components"], "takes no run"),
         (["--components", "--compound", "treat"], "did you mean"),
-        (["--components", "--surface", "S0"], "has no waves, whose roughness"),
         (["--components", "--law", "power"], "not made of materials"),
         (["--components", "--speed", "0 m/s"], "above 0"),
     ],

@@ -23,7 +23,7 @@ from tester.machine.run import Outcome
 from tester.run.remote_hands import (
     PATIENCE_S,
     RemoteHands,
-    SocketChannel,
+    SocketStream,
     refused_hands,
     remote_hands,
     split_place,
@@ -201,7 +201,7 @@ def listener() -> Iterator[socket.socket]:
 
 
 def test_a_socket_carries_lines_and_reports_its_end(listener: socket.socket) -> None:
-    with closing(SocketChannel(f"127.0.0.1:{listener.getsockname()[1]}")) as channel:
+    with closing(SocketStream(f"127.0.0.1:{listener.getsockname()[1]}")) as channel:
         far, _ = listener.accept()
         assert channel.receive() == b""
         channel.send(b"raise\n")

@@ -176,23 +176,11 @@ def test_the_guard_may_be_open_at_rest_and_nothing_moves_until_it_is_closed(tmp_
 
 
 def test_a_guard_opened_while_an_axis_moves_stops_it(tmp_path: Path) -> None:
-    bench = Bench(tmp_path / "r.jsonl", steps=named("jog belt"))
+    def opened(world: WheelRig) -> None:
+        if world.ruler("belt") > 5.0:
+            world.axes["press"].set_guard(False)
 
-    def connect() -> tuple[object, object, object]:
-        found = Bench.connect(bench)
-        world = bench.world
-        assert world is not None
-        follow = world.follow
-
-        def opened(t1: float, still: bool) -> None:
-            if world.ruler("belt") > 5.0:
-                world.axes["press"].set_guard(False)
-            follow(t1, still)
-
-        world.follow = opened  # type: ignore[method-assign]
-        return found
-
-    bench.connect = connect  # type: ignore[method-assign, assignment]
+    bench = Bench(tmp_path / "r.jsonl", steps=named("jog belt"), look=opened)
     outcome = bench.run()
     assert outcome.ended is Ended.FAILED
     assert "guard open" in outcome.text
