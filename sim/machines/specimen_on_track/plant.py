@@ -121,7 +121,9 @@ class TrackPlant:
         self._dry, self.compound, self.setting, self.interface = dry, compound, setting, interface
 
     def prepare(self, interface: Interface) -> None:
-        """Dry, wet or powder the track."""
+        """Dry, wet or powder the track. Raises ValueError for a bare track whose law needs a surface."""
+        if self.compound and self._dry is None:
+            raise ValueError(f"law {self.parameters.law!r} needs a surface: cover the track first")
         self.interface = interface
         if self._dry is not None:
             self._law = self.parameters.contact.through(self._dry, interface)

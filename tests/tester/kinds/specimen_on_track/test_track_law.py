@@ -78,6 +78,18 @@ def test_a_run_measures_every_surface_by_its_own_law(monkeypatch: pytest.MonkeyP
                         (("S0", 0.9), ("S0", 0.9), ("glass", 0.6), ("glass", 0.6))]  # fmt: skip
 
 
+def test_a_bare_track_is_not_prepared(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = laws._LAWS  # pyright: ignore[reportPrivateUsage]
+    monkeypatch.setitem(known, "by_surface", laws.OfMaterials(lambda rubber, on, area, figures: BySurface(on)))
+    world = TrackBench("grosch", GROSCH, ("sim.law=by_surface",)).world
+    world.install(1, "SBR")
+    with pytest.raises(ValueError, match="needs a surface: cover the track first"):
+        world.prepare("dry")
+    world.cover("glass")
+    world.prepare("wet")
+    assert world.plant.interface == "wet"
+
+
 def test_a_rig_that_states_its_surface_is_not_covered_with_another(tmp_path: Path) -> None:
     text = GROSCH.replace("{name: one,", "{name: one, surface: [S0, glass],")
     (said,) = problems(tmp_path, text, "sim.law=persson", "sim.surface=S0")
