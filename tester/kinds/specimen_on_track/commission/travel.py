@@ -95,8 +95,8 @@ class _TravelTrial:
             inside = at_mm - self.needed_mm if to_mm > self._middle_mm else at_mm + self.needed_mm
             raise StepRefused(
                 f"end of the travel: the safety chain opened at {at_mm:.1f} mm, before limits.travel_{where} of"
-                f" {to_mm:g} mm. If nobody pressed the emergency stop and the end switch has acted, the travel is"
-                f" shorter, or the zero of the drive's position is not where the file has it. In the rig file:"
+                f" {to_mm:g} mm. Unless the emergency stop was pressed: the travel is"
+                f" shorter, or the zero of the drive's position differs from the file. In the rig file:"
                 f" limits.travel_{where}: {inside:.0f} mm"
             )
         if not abs(at_mm - to_mm) <= self.rig.interlocks.beyond_mm:
