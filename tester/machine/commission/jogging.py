@@ -126,7 +126,8 @@ class Jogging(Moving):
 
     @property
     def chain_may_open(self) -> bool:
-        return self.jog is not None and self.jog.opens and not self.jog.over
+        # A switch that ended the move stays open: the step that asked for it then refuses.
+        return self.jog is not None and self.jog.opens and (self.jog.opened or not self.jog.over)
 
     def begin(
         self, axis: str, way: float, speed: float, *, holds: bool = False, most_s: float = PRESS_S, opens: bool = False
