@@ -125,11 +125,14 @@ class WearEstimate:
         """
         return hypot(sqrt(max(self._p[0], 0.0)), self.reference_mm)
 
+    def since(self, exposure_n_m: float) -> float:
+        """Return load times distance since the last touch, N m, from that since the wheel was mounted."""
+        return max(exposure_n_m - self._exposure_n_m, 0.0)
+
     def slid(self, exposure_n_m: float, per_n_m: float) -> None:
         """Add the wear since the last touch; ``per_n_m``: loss of diameter per rate and load times distance."""
-        done = max(exposure_n_m - self._exposure_n_m, 0.0)
+        slope = per_n_m * self.since(exposure_n_m)
         self._exposure_n_m = exposure_n_m
-        slope = per_n_m * done
         worn_mm = slope * self.rate_mm3_per_n_m
         self.loss_mm += worn_mm
         ll, lr, ls, rr, rs, ss = self._p

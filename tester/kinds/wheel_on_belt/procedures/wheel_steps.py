@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, 
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U, wheel_of
-from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, is_due
+from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, informs, is_due
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
@@ -191,7 +191,7 @@ class PreGrindStep:
     def step(self, ctx: Context) -> bool:
         """Done when ground and lifted."""
         ctx.demand.surface_c = float("nan")
-        if self.grind.counting and is_due(ctx):
+        if self.grind.counting and (is_due(ctx) or informs(ctx)):
             self.grind.counting = False
             self.moves = Sequence(ZeroCheck(self.pre_grind.wheel_speed_m_s, self.reference_tare), self._moves())
         if not self.moves.step(ctx):

@@ -11,7 +11,7 @@ from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import PreGrindStep
-from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, contact_s, is_due
+from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, contact_s, informs, is_due
 from tester.kinds.wheel_on_belt.recipe.plan_steps import PreGrind
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
@@ -52,6 +52,54 @@ def test_it_is_due_where_the_press_is_deeper_than_the_load_needs_by_half_of_what
     assert is_due(ctx)
     ctx.gates.touched_s = ctx.now - 10.0  # touched just now: soft rubber
     assert not is_due(ctx)
+
+
+def press_deeper(bench: Bench, share: float) -> None:
+    """Let the press be deeper than the load needs, by a share of what is allowed."""
+    ctx = bench.ctx
+    p, needed_mm = ctx.rig.interlocks, depth_mm(200.0, ctx.rig.loops.load.stiffness_n_per_mm)
+    allowed_mm = (p.depth_factor - 1.0) * needed_mm + p.depth_margin_mm
+    ctx.view.contact_mm = ctx.readings.press_mm - needed_mm - share * allowed_mm
+
+
+def slide_on(bench: Bench, exposure_n_m: float, u_rate: float, rate: float = 0.3) -> None:
+    """Let the wheel slide since its last touch, with a rate that is known so well, in mm3/(N m)."""
+    wheel = bench.ctx.wheel
+    wheel.estimate.begin(rate, u_rate, 0.0, wheel.exposure_n_m)
+    wheel.exposure_n_m += exposure_n_m
+    bench.ctx.gates.touched_s = bench.ctx.now - 20.0
+
+
+def test_a_touch_informs_once_a_wheel_wears_unlike_the_belief_by_more_than_a_touch_is_unsure(bench: Bench) -> None:
+    bench.ctx.wheel.followed = True
+    slide_on(bench, 8000.0, u_rate=0.1)  # 0.19 mm
+    assert not informs(bench.ctx)
+    slide_on(bench, 9000.0, u_rate=0.1)  # 0.21 mm
+    assert informs(bench.ctx)
+
+
+def test_a_touch_informs_no_more_once_the_rate_is_known_to_a_tenth(bench: Bench) -> None:
+    bench.ctx.wheel.followed = True
+    slide_on(bench, 50_000.0, u_rate=0.031)
+    assert informs(bench.ctx)
+    slide_on(bench, 50_000.0, u_rate=0.029)
+    assert not informs(bench.ctx)
+
+
+def test_a_wheel_that_wears_as_believed_is_not_touched_for_its_rate(bench: Bench) -> None:
+    slide_on(bench, 50_000.0, u_rate=0.2, rate=0.08)
+    press_deeper(bench, 0.24)
+    assert not informs(bench.ctx)
+    press_deeper(bench, 0.26)
+    assert informs(bench.ctx)
+
+
+def test_a_grind_whose_touches_do_not_know_the_rate_is_broken_off_early(bench: Bench) -> None:
+    bench.ctx.wheel.followed = True
+    slide_on(bench, 50_000.0, u_rate=0.2)
+    step = PreGrindStep(PreGrind(1, 0.8, 0.6, 200.0, 60.0), list(REFERENCE))
+    bench.run(step, at_most_s=200.0, dt=0.1)
+    assert bench.notes.texts("tare") and step.grind.done_s == pytest.approx(60.0, abs=0.2)
 
 
 def test_what_is_lifted_has_no_age_of_contact(bench: Bench) -> None:
