@@ -28,6 +28,16 @@ class Section(BaseModel, frozen=True):
     model_config = ConfigDict(extra="forbid", strict=True, use_attribute_docstrings=True)
 
 
+class WithSection:
+    """What marks a field whose value may also be a section, which its annotation does not show."""
+
+    __slots__ = ()
+
+    def section(self) -> type[BaseModel] | None:
+        """Return the model of that section; None where there is none."""
+        raise NotImplementedError
+
+
 def editor_schema(model: type[BaseModel]) -> dict[str, object]:
     """Return the JSON Schema (2020-12) of a file, for editors."""
     schema: dict[str, object] = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
@@ -156,10 +166,17 @@ def _fields(model: type[BaseModel] | None, at: Location) -> dict[str, FieldInfo]
             for each in models
             for name, info in each.model_fields.items()
             if (info.alias or name) == piece
-            for inner in _models_in(info.annotation)
+            for inner in (*_models_in(info.annotation), *_sections_of(info))
         ]
         models = below or models
     return {info.alias or name: info for each in models for name, info in each.model_fields.items()}
+
+
+def _sections_of(info: FieldInfo) -> Iterator[type[BaseModel]]:
+    for item in _annotations(info):
+        section = item.section() if isinstance(item, WithSection) else None
+        if section is not None:
+            yield section
 
 
 def _models_in(annotation: object) -> Iterator[type[BaseModel]]:
@@ -247,13 +264,16 @@ def _missing(key: str, info: FieldInfo | None) -> str:
 
 def _quantity_in(info: FieldInfo) -> str:
     """Return the expected form of a field's quantity, anywhere in its annotation, or an empty text."""
+    return next((expected(item.unit) for item in _annotations(info) if isinstance(item, Quantity)), "")
+
+
+def _annotations(info: FieldInfo) -> Iterator[object]:
+    """Yield everything in a field's annotation, at any depth."""
     waiting: list[object] = [*info.metadata, info.annotation]
     while waiting:
         item = waiting.pop()
-        if isinstance(item, Quantity):
-            return expected(item.unit)
+        yield item
         waiting.extend(get_args(item))
-    return ""
 
 
 def _message(detail: ErrorDetails, value: Value) -> str:

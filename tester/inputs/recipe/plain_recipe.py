@@ -14,7 +14,8 @@ from typing import ClassVar
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import AxisValue, Setpoint
 from tester.base.source import Problem, Tree
-from tester.base.units import Quantity, UnitError, show
+from tester.base.units import show
+from tester.inputs.recipe.axis_lists import readable
 from tester.inputs.recipe.conditions import Condition, conditions_of, metadata_of, ordered
 from tester.inputs.recipe.plan import ConditionStep, Plan, Settings, Specimen, Stand, Step
 from tester.inputs.recipe.recipe_part import RecipePart
@@ -154,16 +155,11 @@ class PlainPart(SpecimenPart):
             for axis in (axis for axis in self.axes if axis.limit):
                 listed = grid.get(axis.name) if isinstance(grid, dict) else None
                 most = value_at(rig, tuple(axis.limit.split("."))) if listed is not None else None
-                for place, value in enumerate(listed if isinstance(listed, list) else [listed]):
-                    try:
-                        asked = Quantity(axis.recipe_unit).read(value)
-                    except UnitError:
-                        continue  # validation reports it
+                for asked, place in readable(listed, ("grids", index, axis.name), axis.recipe_unit):
                     if isinstance(most, int | float) and abs(asked) > most:
-                        at = ("grids", index, axis.name, *([place] if isinstance(listed, list) else []))
                         source = f'(limit {show(most, axis.recipe_unit)}: {axis.limit} of rig "{rig.name}")'
                         problem = f"{axis.name}: {show(asked, axis.recipe_unit)} is more than the rig allows {source}"
-                        yield tree.problem(at, problem)
+                        yield tree.problem(place, problem)
 
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
         steps: list[Step] = []

@@ -1,8 +1,8 @@
 """Schema of a recipe: the validated model of the YAML file.
 
-Every quantity is a text with a unit in the file and a float here; the unit is in the annotation. Lists are axes, a
-scalar is an axis of one value. The JSON Schema for editors is generated from these classes. A kind adds sections of its
-own (``tester.inputs.recipe.recipe_part``).
+Every quantity is a text with a unit in the file and a float here; the unit is in the annotation. Lists and ranges are
+axes, a scalar is an axis of one value. The JSON Schema for editors is generated from these classes. A kind adds
+sections of its own (``tester.inputs.recipe.recipe_part``).
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_m
 from tester.base.axes import Axes, Axis
 from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
 from tester.base.validation import Section
+from tester.inputs.recipe.axis_lists import MAX_NAME, Listed
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -25,44 +26,7 @@ if TYPE_CHECKING:
 
 MAX_REPEATS = 1000
 MAX_FREE_FIELD = 500
-MAX_NAME = 200
 MAX_GRIDS = 1000
-MAX_CONDITIONS = 250_000
-"""Conditions of one plan, over all specimens and replicates: some five years of rig time."""
-
-
-@dataclass(frozen=True, slots=True)
-class Listed(Quantity):
-    """Mark a field as an axis: a list of quantities or of texts, or a single one for a list of one."""
-
-    choices: tuple[str, ...] | None = None
-    """The texts; (): any name. None: quantities."""
-
-    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Return a schema of a list of at least one value; errors carry the index of the element."""
-        from pydantic_core import core_schema
-
-        items: CoreSchema
-        if self.choices is None:
-            items = Quantity.__get_pydantic_core_schema__(self, float, handler)
-        elif self.choices:
-            items = core_schema.literal_schema(list(self.choices))
-        else:
-            items = core_schema.str_schema(min_length=1, max_length=MAX_NAME)
-        return core_schema.no_info_before_validator_function(_as_list, core_schema.list_schema(items, min_length=1))
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """Describe both forms to editors."""
-        one: JsonSchemaValue
-        if self.choices is None:
-            one = Quantity.__get_pydantic_json_schema__(self, schema, handler)
-        else:
-            one = {"enum": list(self.choices)} if self.choices else {"type": "string", "maxLength": MAX_NAME}
-        return {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
-
-
-def _as_list(value: object) -> list[object]:
-    return cast("list[object]", value) if isinstance(value, list) else [value]
 
 
 @dataclass(frozen=True, slots=True)

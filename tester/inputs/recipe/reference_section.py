@@ -12,7 +12,8 @@ from typing import Annotated, Final
 from pydantic import Field
 
 from tester.analysis.reference import EVERY, NAME
-from tester.inputs.recipe.recipe_schema import MAX_CONDITIONS, Repeats, Section, Text
+from tester.inputs.recipe.axis_lists import MAX_CONDITIONS
+from tester.inputs.recipe.recipe_schema import Repeats, Section, Text
 
 REFERENCE: Final = NAME
 """The grid of reference conditions."""

@@ -13,6 +13,7 @@ from tester.analysis import left_out, terms
 from tester.base.axes import Axis, AxisValue, plain
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import show, shown
+from tester.inputs.recipe.axis_lists import MAX_CONDITIONS
 from tester.inputs.recipe.grid_settings import (
     DEFAULT_MIN_VALID,
     LEAST_REPEATS,
@@ -21,7 +22,7 @@ from tester.inputs.recipe.grid_settings import (
     values_of,
 )
 from tester.inputs.recipe.recipe_part import RecipePart
-from tester.inputs.recipe.recipe_schema import MAX_CONDITIONS, GridModel, MeasureModel, Recipe, grid_model
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe, grid_model
 
 Part = TypeVar("Part", bound=BaseModel)
 

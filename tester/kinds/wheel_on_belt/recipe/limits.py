@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from difflib import get_close_matches
 from itertools import product
+from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 from sim.physics import laws
@@ -16,9 +17,10 @@ from sim.physics.friction import KNOWN
 from sim.physics.slip import cornering_factor, slip_velocity
 from tester.base.axes import Axis
 from tester.base.source import Location, Problem, Tree, Value
-from tester.base.units import Quantity, UnitError, show, shown
+from tester.base.units import show, shown
+from tester.inputs.recipe.axis_lists import MAX_CONDITIONS, readable
 from tester.kinds.wheel_on_belt.control.loops import hub_needed_c
-from tester.kinds.wheel_on_belt.image.axes import POSITIONED
+from tester.kinds.wheel_on_belt.image.axes import AXES, POSITIONED
 from tester.kinds.wheel_on_belt.recipe.references import AT
 from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD
 from tester.kinds.wheel_on_belt.rig.wheel_rig import RIPPLE_N
@@ -129,15 +131,7 @@ class _Limits:
         if node is None:
             # The defaults of a reference condition may also be beyond a rig's limits.
             return [PlacedValue(REFERENCE_HELD[at[1]], at)] if at[:1] == AT and at[1] in REFERENCE_HELD else []
-        quantity = Quantity(unit)
-        places = [((*at, index), item) for index, item in enumerate(node)] if isinstance(node, list) else [(at, node)]
-        quantities: list[PlacedValue] = []
-        for place, value in places:
-            try:
-                quantities.append(PlacedValue(quantity.read(value), place))
-            except UnitError:
-                continue
-        return quantities
+        return [PlacedValue(value, place) for value, place in readable(node, at, unit)]
 
     def _beyond(self, entry: PlacedValue, text: str, key: str, limit: float, unit: str) -> Problem:
         """Return the problem of a value beyond the rig's limit ``key``."""
@@ -215,6 +209,8 @@ class _Limits:
                 yield self.tree.problem(entry.at, f"{message} ({show(self.ambient_c, 'degC')}: {self.ambient_from})")
 
     def _grid(self, at: Location) -> Iterator[Problem]:
+        if prod(max(1, len(self._entries((*at, axis.name), axis.recipe_unit))) for axis in AXES) > MAX_CONDITIONS:
+            return  # reported as too many; every combination would be looked at here
         limits = self.rig.limits
         loads = self._entries((*at, "load"), "N")
         for load in loads:
