@@ -10,7 +10,8 @@ from tester.kinds.wheel_on_belt.image.process_image import NAN
 from tester.kinds.wheel_on_belt.procedures.lift_check import loaded
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown
-from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
+from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, TOUCH
 from tester.machine.motions import Ask, Move, Power, Sequence
 
 STILL_WARM_K: Final = 5.0
@@ -91,15 +92,18 @@ class HeaterProof:
 
 
 class AskAtRest:
-    """Ask a question about the wheel once it is cool enough to touch, lifted and standing, with heat and drives off.
+    """Ask a question about the wheel once it is cool enough, lifted and standing, with heat and drives off.
 
-    A hot wheel keeps turning slowly, unloaded, until its hub may be touched: a standing wheel would bake in one spot.
+    A hot wheel keeps turning slowly, unloaded, until its hub may be touched, or reached with a tool: a standing wheel
+    would bake in one spot.
     After heat the heater's relay and contactor are proved before the wheel stands.
     """
 
-    def __init__(self, text: str) -> None:
-        """Store the question's text for the person."""
+    def __init__(self, text: str, hub_below_c: float = TOUCH.hub_below_c) -> None:
+        """``text``: the question; ``hub_below_c``: hub temperature from which it is put, degC, above that of a touch
+        only for a tool that keeps hands off the wheel."""
         self.text = text
+        self.cool = Cool(INSERTED, hub_below_c)
         self.moves: list[CoolDown | HeaterProof | Sequence] = []
         self.ask: Ask | None = None
         self.answered = False
@@ -124,8 +128,8 @@ class AskAtRest:
     def _at_rest(self, ctx: Context) -> bool:
         if not self.moves:
             creep_m_s = ctx.rig.interlocks.cooldown_speed_m_s
-            if not ctx.readings.hub_c < TOUCH.hub_below_c:
-                self.moves.append(CoolDown(TOUCH, creep_m_s))
+            if not ctx.readings.hub_c < self.cool.hub_below_c:
+                self.moves.append(CoolDown(self.cool, creep_m_s))
             if ctx.heat.put_j > 0.0:
                 self.moves.append(HeaterProof(creep_m_s))
             self.moves.append(_stand())
@@ -134,9 +138,12 @@ class AskAtRest:
         return not self.moves
 
     def _question(self, ctx: Context) -> str:
-        hub_c = ctx.readings.hub_c
-        if hub_c < TOUCH.hub_below_c + STILL_WARM_K:
+        hub_c, most_c = ctx.readings.hub_c, self.cool.hub_below_c
+        by_tool = most_c > TOUCH.hub_below_c
+        if hub_c < (TOUCH.hub_below_c if by_tool else most_c + STILL_WARM_K):
             return self.text
+        if hub_c < most_c + STILL_WARM_K:
+            return f"{self.text} (HOT: the hub is at {hub_c:.0f} degC; with the tool only, keep your hands off)"
         return f"{self.text} (do not touch: the hub is still at {hub_c:.0f} degC)"
 
 

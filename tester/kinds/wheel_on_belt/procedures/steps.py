@@ -17,7 +17,16 @@ from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, Chec
 from tester.kinds.wheel_on_belt.procedures.wear_estimate import DISAGREEMENTS
 from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U
 from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, ShowContact
-from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, Install, PreGrind, Rest, WheelCondition, WheelPlan
+from tester.kinds.wheel_on_belt.recipe.plan_steps import (
+    Cool,
+    Heat,
+    Install,
+    PreGrind,
+    Rest,
+    ToolPrompt,
+    WheelCondition,
+    WheelPlan,
+)
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, wheel_change
 from tester.machine.activity import Activity
 from tester.machine.executor import Procedures, Unforeseen
@@ -77,6 +86,8 @@ class WheelProcedures(Procedures[Context]):
             case PromptStep() if step.text == WEAR_CHECK:
                 follower = to_come[0] if to_come else None
                 return CheckByPerson(follower.condition if isinstance(follower, WheelCondition) else NO_CONDITION)
+            case ToolPrompt():
+                return AskAtRest(step.text, ctx.rig.limits.tool_hub_c)
             case PromptStep():
                 return AskAtRest(step.text)
             case _:

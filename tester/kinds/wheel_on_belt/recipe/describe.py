@@ -19,6 +19,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Install,
     PreGrind,
     Rest,
+    ToolPrompt,
     WheelCondition,
     WheelPlan,
 )
@@ -49,6 +50,8 @@ class WheelDescription(RecipePart):
                 return f"{step.condition:>4}  {held}  {scheme}"
             case Cool():
                 return f"cool the hub below {step.hub_below_c:g} degC"
+            case ToolPrompt():
+                return f"ask, with a tool: {step.text}"
             case PromptStep():
                 return f"ask: {step.text}"
             case _:

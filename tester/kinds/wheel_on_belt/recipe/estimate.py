@@ -27,6 +27,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Install,
     PreGrind,
     Rest,
+    ToolPrompt,
     WheelCondition,
     WheelPlan,
     starts_of,
@@ -71,6 +72,7 @@ class WheelEstimator(Estimator):
         self.check_u_mm = math.sqrt(2.0) * roll_check_u_mm(rig)
         """Standard uncertainty of a loss between two roll checks."""
         self.cool_c, self.cool_at_most_s = rig.interlocks.cooldown_hub_c, rig.interlocks.cooldown_at_most_s
+        self.tool_hub_c = rig.limits.tool_hub_c
         self.parts = rig.simulated
         """Whether each replicate of each specimen is a part of the run, on its own simulated rig."""
         self.person_s = 0.0 if rig.simulated else constants.person_s
@@ -256,15 +258,15 @@ class WheelEstimator(Estimator):
         """
         seconds = estimate.seconds
         if asked:
-            person, body_c = self._asking(body_c)
+            person, body_c = self._asking(body_c, TOUCH)
             seconds += person.seconds
         warmed, _ = self._preparation(Heat(step.index, step.setpoint.number("temperature")), "", body_c)
         return estimate._replace(seconds=seconds + warmed.seconds)
 
-    def _asking(self, body_c: float) -> tuple[StepEstimate, float]:
+    def _asking(self, body_c: float, cool: Cool) -> tuple[StepEstimate, float]:
         """Return the estimate of a question at the wheel: cooling while it turns, and its first contact again."""
-        cool, body_c = self._preparation(TOUCH, "", body_c)
-        return StepEstimate(cool.seconds + self.person_s + self.constants.install_s), body_c
+        cooled, body_c = self._preparation(cool, "", body_c)
+        return StepEstimate(cooled.seconds + self.person_s + self.constants.install_s), body_c
 
     def pre_grind(self, step: PreGrind, compound: str) -> StepEstimate:
         """Return the estimate of grinding a new wheel."""
@@ -300,8 +302,10 @@ class WheelEstimator(Estimator):
             case Cool():
                 seconds = self.body.cooling_s(body_c, step.hub_below_c, turning=True)
                 return StepEstimate(seconds), min(body_c, step.hub_below_c)
+            case ToolPrompt():
+                return self._asking(body_c, Cool(step.index, self.tool_hub_c))
             case PromptStep():
-                return self._asking(body_c)
+                return self._asking(body_c, TOUCH)
             case WheelCondition():
                 return self.condition(step), body_c
             case _:

@@ -21,6 +21,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     PreGrind,
     PreparePolicy,
     Rest,
+    ToolPrompt,
     WheelCondition,
     WheelPlan,
     WheelStep,
@@ -237,7 +238,8 @@ class _Expansion:
 
 
 def _prompts(recipe: WheelRecipe, every: str) -> list[PromptStep]:
-    return [PromptStep(INSERTED, step.prompt) for step in recipe.steps if step.every == every]
+    asked = [step for step in recipe.steps if step.every == every]
+    return [(ToolPrompt if step.by_tool else PromptStep)(INSERTED, step.prompt) for step in asked]
 
 
 def _prepare(recipe: WheelRecipe, rig: RigConfig) -> PreparePolicy:
@@ -248,6 +250,6 @@ def _prepare(recipe: WheelRecipe, rig: RigConfig) -> PreparePolicy:
         if grind is None
         else PreGrind(INSERTED, grind.wheel_speed, grind.belt_speed, grind.load, grind.duration),
         rest=None if rest is None else Rest(INSERTED, rest.at_least, rest.until, rest.within, rest.at_most),
-        person_steps=tuple(step.prompt for step in recipe.steps if step.every == "wheel"),
+        person_steps=tuple(_prompts(recipe, "wheel")),
         ready_c=rig.ambient_c,
     )

@@ -116,6 +116,11 @@ class Cool(Step):
         return f"cool the hub to {self.hub_below_c:g} degC"
 
 
+@dataclass(frozen=True, slots=True)
+class ToolPrompt(PromptStep):
+    """A task at the wheel with a tool that keeps hands off it, at a hub of ``limits.tool_hub`` or less."""
+
+
 WheelStep: TypeAlias = Install | PreGrind | Rest | Heat | WheelCondition | Cool | PromptStep
 
 
@@ -141,7 +146,7 @@ class PreparePolicy:
 
     pre_grind: PreGrind | None = None
     rest: Rest | None = None
-    person_steps: tuple[str, ...] = ()
+    person_steps: tuple[PromptStep, ...] = ()
     ready_c: float = 25.0
     ready_within_k: float = 5.0
 

@@ -59,7 +59,7 @@ def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> lis
     assert isinstance(condition, WheelCondition)
     steps = [_mounted(plan, wheel), *_prepare(plan, wheel)]
     if numbers[begin] not in stand.begun:
-        asked = plan.prepare.person_steps
+        asked = {one.text for one in plan.prepare.person_steps}
         steps += [s for s in segment[over + 1 : begin] if isinstance(s, PromptStep) and s.text not in asked]
     steps.append(Heat(INSERTED, condition.setpoint.number("temperature")))
     return [*steps, *segment[begin:]]

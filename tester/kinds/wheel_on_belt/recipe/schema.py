@@ -69,6 +69,8 @@ class PersonStepModel(Section, frozen=True):
     """what to do; it is shown and waits to be acknowledged"""
     every: Literal["condition", "temperature", "wheel"]
     """before every condition, before every temperature, or after every installed wheel"""
+    by_tool: bool = False
+    """done with a tool that keeps hands off the wheel: the hub may then be as warm as limits.tool_hub of the rig"""
 
 
 class WheelMeasure(MeasureModel, frozen=True):

@@ -5,7 +5,7 @@ They serve the expansion of a recipe, and the executor when a wheel wears faster
 
 from __future__ import annotations
 
-from tester.inputs.recipe.plan import PromptStep, Specimen
+from tester.inputs.recipe.plan import Specimen
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     Cool,
     Heat,
@@ -48,7 +48,7 @@ def prepare_wheel(
     grind, rest = prepare.pre_grind, prepare.rest
     steps: list[WheelStep] = [Cool(INSERTED)] if cool else []
     steps.append(Install(INSERTED, specimen.index, wheel, specimen.compound, specimen.note, replicate))
-    steps += [PromptStep(INSERTED, text) for text in prepare.person_steps]
+    steps += prepare.person_steps
     if grind is not None:
         if cool:
             steps.append(Rest(INSERTED, 0.0, prepare.ready_c, prepare.ready_within_k, READY_AT_MOST_S))

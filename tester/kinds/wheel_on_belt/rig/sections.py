@@ -88,6 +88,15 @@ class _LimitsConfig:
     ]  # fmt: skip
     """At most 130 degC: above it is harm (docs/kinds/wheel-on-belt.md)."""
 
+    tool_hub_c: Annotated[
+        float, "degC", Range(gt=0.0, le=80.0),
+        Bounded(LOWER, "45 degC", "a hand may slip off the tool: a hub of 45 degC does not burn it [A]"),
+    ]  # fmt: skip
+    """Hub temperature below which a person may reach a wheel with a tool (a recipe's step with ``by_tool``).
+
+    At most 80 degC: a wheel at rest is baked on one side, as for ``interlocks.cooldown_hub``.
+    """
+
     def positions(self) -> dict[str, float]:
         """Return the limits of the positioned axes to either side, by name."""
         return {axis.name: getattr(self, axis.field) for axis in POSITIONED}

@@ -181,6 +181,9 @@ def _temperatures(rig: RigConfig) -> _Found:
         yield ("loops", "heat", "hub_max"), f"{heat.hub_max_c:g} degC is above limits.jacket"
     if heat.hub_min_c >= heat.hub_max_c:
         yield ("loops", "heat", "hub_min"), "is not below hub_max"
+    if rig.limits.tool_hub_c > rig.interlocks.cooldown_hub_c:
+        message = f"{rig.limits.tool_hub_c:g} degC is above interlocks.cooldown_hub: the wheel would stand, and bake"
+        yield ("limits", "tool_hub"), message
 
 
 RIPPLE_N: Final = 10.0
@@ -241,6 +244,7 @@ class RigConfig(Rig):
         "interlocks",
         "arming",
         "wear",
+        "limits.tool_hub",
         "observer.friction_heat_fraction",
         "observer.belt_conductance",
         "observer.thermal",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isnan
+from math import isnan, nan
 
 import pytest
 
@@ -102,6 +102,76 @@ def test_a_hub_that_does_not_cool_is_told_with_the_question(bench: Bench) -> Non
     ask = AskAtRest("check wear")
     bench.until(ask, lambda: bench.ctx.prompts.waiting is not None, at_most_s=4 * 3600.0, dt=1.0)
     assert "do not touch: the hub is still at 80 degC" in asked(bench, ask).text
+
+
+@pytest.mark.parametrize(
+    ("hub_c", "said"),
+    [
+        (44.9, "brush"),
+        (45.0, "brush (HOT: the hub is at 45 degC; with the tool only, keep your hands off)"),
+        (57.9, "brush (HOT: the hub is at 58 degC; with the tool only, keep your hands off)"),
+    ],
+)
+def test_with_a_tool_a_warm_wheel_is_asked_about_and_called_hot(bench: Bench, hub_c: float, said: str) -> None:
+    bench.surface_c = hub_c
+    assert asked(bench, AskAtRest("brush", 58.0)).text == said
+    r, demand = bench.ctx.readings, bench.ctx.demand
+    assert r.drives_disabled and r.wheel_speed_m_s == r.belt_speed_m_s == 0.0 and not r.contactor_closed
+    assert demand.press is Press.LIFT and not demand.enabled and isnan(demand.surface_c)
+
+
+@pytest.mark.parametrize("hub_c", [58.0, 60.0, 120.0, nan])
+def test_a_wheel_too_hot_for_the_tool_turns_unloaded_and_nothing_is_asked(bench: Bench, hub_c: float) -> None:
+    bench.surface_c = hub_c
+    ask = AskAtRest("brush", 58.0)
+    bench.hold(ask, 600.0)
+    demand = bench.ctx.demand
+    assert bench.ctx.prompts.waiting is None
+    assert demand.press is Press.LIFT and demand.wheel_speed_m_s == bench.ctx.rig.interlocks.cooldown_speed_m_s
+
+
+@pytest.mark.parametrize("hub_c", [80.0, nan])
+def test_a_wheel_that_stays_too_hot_for_the_tool_may_not_be_touched(bench: Bench, hub_c: float) -> None:
+    bench.surface_c = hub_c
+    ask = AskAtRest("brush", 58.0)
+    bench.until(ask, lambda: bench.ctx.prompts.waiting is not None, at_most_s=4 * 3600.0, dt=1.0)
+    assert "do not touch" in asked(bench, ask).text
+
+
+BRUSHED = SHORT.replace("25 degC", "48 degC").replace(
+    "grids:", "steps: [{prompt: brush the wheel, every: condition, by_tool: true}]\ngrids:"
+).replace("load: 200 N", "load: [200 N, 210 N]")  # fmt: skip
+
+
+def test_before_a_hot_wheel_is_brushed_the_contactor_is_proved_and_nothing_can_move() -> None:
+    simulation = Simulation(BRUSHED, ["limits.tool_hub=58 degC"], accept_risk="a brush on a stick")
+    simulation.ctx.prompts.automatic = False
+    brushed: list[float] = []
+    while len(brushed) < 2:
+        simulation.until(lambda s: s.ctx.prompts.waiting is not None, at_most_s=4 * 3600.0)
+        waiting = simulation.ctx.prompts.waiting
+        assert waiting is not None
+        if "brush" in waiting.text:
+            r = simulation.ctx.readings
+            assert 45.0 <= r.hub_c < 58.0 and f"HOT: the hub is at {r.hub_c:.0f} degC" in waiting.text
+            still_m_s = simulation.ctx.rig.interlocks.standing_m_s
+            assert r.drives_disabled and max(abs(r.wheel_speed_m_s), abs(r.belt_speed_m_s)) <= still_m_s
+            assert not r.contactor_closed and simulation.world.plant.force_z_n == 0.0
+            phases = {scan.title for scan in simulation.scans if scan.at_s > simulation.now - PROOF_S}
+            assert phases == {waiting.text.partition(" (")[0]}
+            brushed.append(simulation.now)
+        waiting.reply("yes")
+        simulation.tick()
+
+
+def test_a_relay_that_welds_trips_before_a_hot_wheel_is_brushed() -> None:
+    simulation = Simulation(BRUSHED, ["limits.tool_hub=58 degC"], accept_risk="a brush on a stick")
+    simulation.until(lambda s: s.ctx.progress.title == "brush the wheel" and s.ctx.heat.put_j > 0.0, 4 * 3600.0)
+    asked_before = len(simulation.ctx.prompts.asked)
+    simulation.world.jacket.stuck_element = 100.0
+    simulation.until(lambda s: s.run.engine.control.state.trip is not None, 4 * 3600.0)
+    trip = simulation.run.engine.control.state.trip
+    assert trip is not None and trip.name == "heater stuck" and len(simulation.ctx.prompts.asked) == asked_before
 
 
 def test_nothing_is_asked_while_the_contactor_is_closed(bench: Bench) -> None:
