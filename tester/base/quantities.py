@@ -132,7 +132,8 @@ class Roles:
     ``friction``: the horizontal force along the sliding, and the one across it where it is measured (N). ``normal``:
     the pressing force (N). ``turn``: the position that counts blocks, a whole turn, a length of travel or a time, and
     ``block`` the size of a block, in its unit. ``temperature``: of the rubber's surface (degC), on which friction
-    depends, and ``sliding`` the sliding speed (m/s); "" where it is not measured.
+    depends, and ``sliding`` the sliding speed (m/s); ``depth``: how far the rubber is pressed in, from any zero
+    (mm), and ``core`` the temperature behind the rubber (degC); "" where it is not measured.
     """
 
     friction: tuple[str, ...]
@@ -141,6 +142,8 @@ class Roles:
     block: float = 1.0
     temperature: str = ""
     sliding: str = ""
+    depth: str = ""
+    core: str = ""
 
 
 class Quantities:
@@ -180,6 +183,8 @@ class Quantities:
             raise ValueError(f"a sample begins with {TIME} and ends with {', '.join(LAST)}: {self.names}")
         if self.recorded[-len(LAST) - len(self.further) : -len(LAST)] != self.further:
             raise ValueError(f"further channels stand before {', '.join(LAST)}: {self.names}")
+        if lacking := {roles.depth, roles.core} - {"", *self.names}:
+            raise ValueError(f"depth and core are recorded channels: {sorted(lacking)}")
         if roles.turn not in self._index:
             raise ValueError(f"blocks are counted by {roles.turn}, which is not recorded")
         if missing := wanted - means:

@@ -62,8 +62,8 @@ def figure(
     speed: float,
 ) -> None:
     """Draw the results of each RUN: coefficient over every axis that was varied, as a surface, the run in order of
-    time, and the repeats; of speeds and temperatures where friction heats nothing the master curve (tester master
-    prints its details); several runs also together, in a folder of its own.
+    time, and the repeats; the deformation over temperature; of speeds and temperatures where friction heats nothing
+    the master curve (tester master prints its details); several runs also together, in a folder of its own.
 
     Bars are the expanded uncertainty U (95 %). The names of the files are printed, a line each.
 
@@ -133,8 +133,22 @@ def figures_of(folder: Path, results: RunResults, law: str, published: bool) -> 
     measured = [one for one in results.conditions() if any(r.result.mu_resultant > 0.0 for r in one.repeats)]
     overview = overview_chart([("", results)]) if measured else None
     found += [*([overview] if overview is not None else []), *map(repeats_chart, measured)]
+    stiffness = deformation_chart(folder, results)
+    found += [stiffness] if stiffness is not None else []
     kind = kind_of(results.run.info)
     return [*found, *(master_charts(kind, folder) if kind is not None else [])]
+
+
+def deformation_chart(folder: Path, results: RunResults) -> Chart | None:
+    """Return the deformation over temperature; None where the depth is not on record. Raises StoreError."""
+    from tester.report.stiffness_chart import stiffness_chart
+    from tester.results.stiffness_table import shows_stiffness, stiffness_rows
+    from tester.store.run_reader import RunReader
+
+    if not shows_stiffness(results):
+        return None
+    with RunReader(folder) as reader:
+        return stiffness_chart(stiffness_rows(results, reader))
 
 
 def master_charts(kind: Kind, folder: Path) -> list[Chart]:

@@ -19,6 +19,7 @@ from tester.results.measured_tables import checks_table, pieces_table, repeats_t
 from tester.results.parquet import write_parquet
 from tester.results.repeated_tables import references_table, settings_table
 from tester.results.run_results import RunResults, results_of
+from tester.results.stiffness_table import shows_stiffness, stiffness_table
 from tester.results.table_cells import Cell, encode
 from tester.results.tables import appendix_rows, condition_rows, marked, sample_rows
 from tester.store.run_reader import RunReader
@@ -114,6 +115,8 @@ FORMATS: dict[str, Format] = {
                _csv(lambda record: references_table(record.results).csv()), lambda results: results.watch is not None),
         Format("settings", "settings.csv", "settings that were measured several times, and whether they agree",
                _csv(lambda record: settings_table(record.results).csv()), lambda results: bool(results.settings)),
+        Format("stiffness", "stiffness.csv", "deformation and stiffness, softening, relaxation",
+               _csv(lambda record: stiffness_table(record.results, record.reader).csv()), shows_stiffness),
         Format("samples", "samples.csv", "every sample", _csv(lambda record: sample_rows(record.reader))),
         Format("parquet", "samples.parquet", "every sample, for programs",
                lambda record, file: write_parquet(record.reader, file), is_text=False),

@@ -27,8 +27,8 @@ COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "w
 """
 
 _FIGURES = ("low", "high", "limit")
-_ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING = _ROLES = (
-    "along", "across", "normal", "turn", "temperature", "sliding",
+_ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING, _DEPTH, _CORE = _ROLES = (
+    "along", "across", "normal", "turn", "temperature", "sliding", "depth", "core",
 )  # fmt: skip
 
 
@@ -42,6 +42,8 @@ def channel_rows(quantities: Quantities) -> list[dict[str, Cell]]:
         _TURN: roles.turn,
         _TEMPERATURE: roles.temperature,
         _SLIDING: roles.sliding,
+        _DEPTH: roles.depth,
+        _CORE: roles.core,
     }
     rows: list[dict[str, Cell]] = []
     for position, quantity in enumerate(quantities):
@@ -62,9 +64,8 @@ def quantities_of(rows: Iterable[Mapping[str, object]]) -> Quantities:
     holder = {role: str(row["name"]) for row in listed for role in str(row["role"]).split()}
     blocks = [float(str(row["block"])) for row in listed if row["block"] is not None]
     along = [holder[role] for role in (_ALONG, _ACROSS) if role in holder]
-    roles = Roles(
-        tuple(along), holder[_NORMAL], holder[_TURN], blocks[0], holder.get(_TEMPERATURE, ""), holder.get(_SLIDING, "")
-    )
+    further = {role: holder.get(role, "") for role in (_TEMPERATURE, _SLIDING, _DEPTH, _CORE)}
+    roles = Roles(tuple(along), holder[_NORMAL], holder[_TURN], blocks[0], **further)
     return Quantities(tuple(map(_channel, listed)), roles)
 
 

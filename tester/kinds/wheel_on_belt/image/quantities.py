@@ -99,6 +99,6 @@ QUANTITIES: Final = Quantities(
                 screen=Screen("friction", 1, "load_cell", _ZERO, _FRICTION_TOP, trend="friction")),
     ),
     Roles(friction=("force_x_n", "force_y_n"), normal="force_z_n", turn="wheel_angle_rev", temperature="surface_c",
-          sliding="slip_m_s"),
+          sliding="slip_m_s", depth="press_mm", core="hub_c"),
 )  # fmt: skip
 """In the order of a sample's columns, followed by channels that are shown but not recorded."""

@@ -1,0 +1,207 @@
+"""The contacts of a run, from its samples: where the rubber was touched, and how far it was pressed in from then on.
+
+A contact begins with a touch, the first sample with ``TOUCH_N`` after the contact was open, and ends when it opens. Its
+samples are averaged over half seconds. Beside force, depth and temperature each average has the loads that the rubber
+remembers, and the load times distance since the touch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from tester.base.quantities import KEY, TIME, Roles
+
+if TYPE_CHECKING:
+    from tester.base.arrays import Array, Places
+
+OPEN_N: Final = 5.0
+"""A contact below this force is open, N [A]: above the noise and the drift of a cell's zero between two repeats."""
+TOUCH_N: Final = 10.0
+"""Force of a touch, N [A]: the press moves at 2 mm/s then, and the depth is some tenths of a millimetre."""
+LOADED_N: Final = 30.0
+"""Least force of an average that counts, N [A]."""
+SETTLED_S: Final = 2.0
+"""Time after a touch in which the load is being applied, s [A]."""
+FOLD_S: Final = 0.5
+"""Length of an average, s."""
+SAME_TOUCH_S: Final = 0.1
+"""Greatest time between a touch and the sample before it, s [A]: at 2 mm/s they are 0.2 mm apart."""
+GAP_S: Final = 5.0
+"""Without samples for longer than this a contact is over, s: an interruption."""
+PER_CONTACT: Final = 60
+"""Most averages of a contact that are used; they are spread evenly over the logarithm of time."""
+DECADES: Final = 5
+
+
+class Remembered(NamedTuple):
+    """The loads of the last hours, N: the sum of their averages over 1 s to 10,000 s, and of the averages of that sum.
+
+    Rubber that relaxes by a share p in a decade carries F and lacks p (once + p twice): what it remembers is the load
+    that it would carry if it did not relax.
+    """
+
+    once_n: float = 0.0
+    twice_n: float = 0.0
+
+
+class Loaded(NamedTuple):
+    """An average of a contact. Times in s since the touch, depth in mm beyond the touch, loads in N."""
+
+    since_s: float
+    force_n: float
+    deeper_mm: float
+    body_c: float
+    """Mean temperature of the rubber."""
+    remembered: Remembered
+    slid_n_m: float
+    """Load times distance since the touch."""
+    repeat_key: int
+
+
+@dataclass(slots=True)
+class Contact:
+    """One contact: its touch, and its averages."""
+
+    at_s: float
+    touch_mm: float
+    touch_n: float
+    body_c: float
+    remembered: Remembered
+    loaded: list[Loaded] = field(default_factory=list[Loaded])
+
+    @property
+    def repeat_key(self) -> int:
+        """Return the first repeat in it, 0 for none."""
+        return next((one.repeat_key for one in self.loaded if one.repeat_key), 0)
+
+    def thinned(self) -> list[Loaded]:
+        """Return at most ``PER_CONTACT`` averages, evenly spread over the logarithm of time."""
+        count = len(self.loaded)
+        if count <= PER_CONTACT:
+            return self.loaded
+        places = {round(count ** (step / (PER_CONTACT - 1.0))) - 1 for step in range(PER_CONTACT)}
+        return [self.loaded[place] for place in sorted(places)]
+
+
+class ContactFinder:
+    """Finds the contacts in the blocks of a record, one after the other, in bounded memory."""
+
+    def __init__(self, roles: Roles, mounted_s: Iterable[float]) -> None:
+        """``roles``: with ``depth`` and ``core``; ``mounted_s``: times at which new rubber was mounted, s."""
+        self.roles = roles
+        self.contacts: list[Contact] = []
+        self._mounted_s = sorted(mounted_s)
+        self._averages_n = [0.0] * DECADES
+        self._further_n = [0.0] * DECADES
+        self._last_s = nan
+        self._closed = True
+        """Whether the contact was closed, or never known to be open."""
+        self._contact: Contact | None = None
+        self._slid_n_m = 0.0
+
+    def add(self, columns: Mapping[str, Sequence[float]]) -> None:
+        """Add a block of samples by channel."""
+        import numpy as np
+
+        roles = self.roles
+        names = (TIME, roles.normal, roles.depth, roles.temperature, roles.core, roles.sliding, KEY)
+        table = np.stack([np.asarray(columns[name]) for name in names])
+        for part in np.split(table, np.flatnonzero(np.diff(table[0]) > GAP_S) + 1, axis=1):
+            if part.size:
+                self._add(*part)
+
+    def _add(
+        self, at_s: Array, force: Array, depth: Array, surface: Array, core: Array, sliding: Array, keys: Array
+    ) -> None:
+        """Add samples without a gap between them."""
+        import numpy as np
+
+        steps = np.diff(at_s, prepend=self._last_s if isfinite(self._last_s) else at_s[0])
+        if not 0.0 <= steps[0] <= GAP_S:
+            self._interrupted(float(steps[0]))
+            steps[0] = 0.0
+        self._last_s = float(at_s[-1])
+        touches = self._touches(force, steps)
+        edges = np.unique(np.concatenate(([0], np.flatnonzero(np.diff(at_s // FOLD_S)) + 1, touches)))
+        known = np.where(np.isfinite(force), np.maximum(force, 0.0), 0.0)
+        sums = [np.add.reduceat(one, edges) for one in (steps, known * steps, known * np.nan_to_num(sliding) * steps)]
+        counts = np.diff(edges, append=len(at_s))
+        means = [np.add.reduceat(one, edges) / counts for one in (force, depth, 0.5 * (surface + core))]
+        least = np.minimum.reduceat(np.where(np.isfinite(force), force, -1.0), edges)
+        begun = set(touches.tolist())
+        for place, (edge, key) in enumerate(zip(edges.tolist(), keys[edges].tolist(), strict=True)):
+            now_s = float(at_s[edge])
+            self._mount(now_s)
+            if edge in begun:
+                body_c = float(0.5 * (surface[edge] + core[edge]))
+                self._touch(now_s, float(depth[edge]), float(force[edge]), body_c)
+            self._fold(float(sums[0][place]), float(sums[1][place]))
+            self._slid_n_m += float(sums[2][place])
+            if not least[place] >= OPEN_N:
+                self._contact = None
+            force_n, depth_mm, body_c = (float(mean[place]) for mean in means)
+            self._take(now_s, force_n, depth_mm, body_c, int(key))
+
+    def _touches(self, force: Array, steps: Array) -> Places:
+        """Return the places of the touches in a block."""
+        import numpy as np
+
+        events = np.flatnonzero((force < OPEN_N) | (force >= TOUCH_N))
+        closed = force[events] >= TOUCH_N
+        before = np.concatenate(([self._closed], closed[:-1]))
+        if len(events):
+            self._closed = bool(closed[-1])
+        touches = events[closed & ~before[: len(events)]]
+        return touches[steps[touches] < SAME_TOUCH_S]
+
+    def _interrupted(self, for_s: float) -> None:
+        """End the contact; the rubber forgets for the time without samples."""
+        self._contact, self._closed = None, True
+        if for_s > 0.0:
+            self._fold(for_s, 0.0)
+
+    def _mount(self, now_s: float) -> None:
+        """Begin with new rubber, which remembers no load."""
+        while self._mounted_s and now_s >= self._mounted_s[0]:
+            self._mounted_s.pop(0)
+            self._averages_n, self._further_n = [0.0] * DECADES, [0.0] * DECADES
+            self._contact = None
+
+    def _touch(self, now_s: float, depth_mm: float, force_n: float, body_c: float) -> None:
+        self._slid_n_m = 0.0
+        self._contact = Contact(now_s, depth_mm, force_n, body_c, self._remembered())
+        if not (isfinite(depth_mm) and isfinite(body_c)):
+            self._contact = None
+
+    def _fold(self, for_s: float, sum_n_s: float) -> None:
+        """Bring the averages of the load up to date."""
+        if not for_s > 0.0:
+            return
+        mean_n, over_s = sum_n_s / for_s, 1.0
+        for decade in range(DECADES):
+            self._averages_n[decade] += (mean_n - self._averages_n[decade]) * for_s / (over_s + for_s)
+            over_s *= 10.0
+        remembered_n, over_s = sum(self._averages_n), 1.0
+        for decade in range(DECADES):
+            self._further_n[decade] += (remembered_n - self._further_n[decade]) * for_s / (over_s + for_s)
+            over_s *= 10.0
+
+    def _remembered(self) -> Remembered:
+        return Remembered(sum(self._averages_n), sum(self._further_n))
+
+    def _take(self, now_s: float, force_n: float, depth_mm: float, body_c: float, key: int) -> None:
+        """Add an average to the contact."""
+        contact = self._contact
+        if contact is None or not now_s - contact.at_s > SETTLED_S:
+            return
+        if not (force_n >= LOADED_N and isfinite(depth_mm) and isfinite(body_c)):
+            return
+        if not contact.loaded:
+            self.contacts.append(contact)
+        contact.loaded.append(
+            Loaded(now_s - contact.at_s, force_n, depth_mm - contact.touch_mm, body_c, self._remembered(),
+                   self._slid_n_m, key)
+        )  # fmt: skip

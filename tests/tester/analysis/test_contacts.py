@@ -1,0 +1,91 @@
+"""Contacts in a run's samples: touches, what is averaged after them, what rubber remembers."""
+
+from __future__ import annotations
+
+from math import nan
+
+import pytest
+
+from tester.analysis.contacts import PER_CONTACT, Contact, ContactFinder, Loaded, Remembered
+from tester.base.quantities import TIME
+from tests.tester.analysis.pressed_rubber import ROLES, Pressed
+
+
+def found(columns: dict[str, list[float]], block: int = 10**9, mounted_s: tuple[float, ...] = ()) -> list[Contact]:
+    """Return the contacts in samples that come in blocks."""
+    finder = ContactFinder(ROLES, mounted_s)
+    for begin in range(0, len(columns[TIME]), block):
+        finder.add({name: values[begin : begin + block] for name, values in columns.items()})
+    return finder.contacts
+
+
+def delayed(rig: Pressed, from_s: float, by_s: float) -> dict[str, list[float]]:
+    """Return the samples with a pause of ``by_s`` before the first at or after ``from_s``."""
+    return dict(rig.columns, **{TIME: [at_s + (by_s if at_s >= from_s else 0.0) for at_s in rig.columns[TIME]]})
+
+
+@pytest.fixture(scope="module")
+def twice() -> Pressed:
+    """Return rubber that was pressed with 100 N and then with 200 N, without noise."""
+    rig = Pressed(noise=0.0)
+    rig.press(100.0, 10.0)
+    rig.press(200.0, 10.0)
+    return rig
+
+
+def test_each_touch_begins_a_contact_where_the_force_passes_ten_newtons(twice: Pressed) -> None:
+    contacts = found(twice.columns)
+    assert [contact.repeat_key for contact in contacts] == [1, 2]
+    for contact in contacts:
+        assert 10.0 <= contact.touch_n < 20.0
+        assert contact.touch_mm == pytest.approx(10.0 + twice.true_depth_mm(contact.touch_n, 25.0), abs=0.1)
+        assert all(one.since_s > 2.0 and one.force_n > 30.0 and one.deeper_mm > 0.5 for one in contact.loaded)
+
+
+@pytest.mark.parametrize("block", [7, 50, 333])
+def test_blocks_of_any_length_give_the_same_touches(twice: Pressed, block: int) -> None:
+    whole, parts = found(twice.columns), found(twice.columns, block)
+    assert [(one.at_s, one.touch_mm, one.repeat_key) for one in parts] == [
+        (one.at_s, one.touch_mm, one.repeat_key) for one in whole
+    ]
+    last, same = whole[-1].loaded[-1], parts[-1].loaded[-1]
+    assert same.remembered.once_n == pytest.approx(last.remembered.once_n, rel=0.02)
+    assert same.slid_n_m == pytest.approx(last.slid_n_m, rel=0.05)
+
+
+def test_rubber_remembers_a_load_and_forgets_it(twice: Pressed) -> None:
+    first, second = found(twice.columns)
+    assert first.remembered.once_n == pytest.approx(0.0, abs=0.5)
+    assert first.loaded[-1].remembered.once_n == pytest.approx(100.0 * (1.0 + 0.57 + 0.1), rel=0.15)
+    assert 5.0 < second.remembered.once_n < first.loaded[-1].remembered.once_n
+    assert first.loaded[-1].remembered.twice_n > 0.0
+
+
+def test_new_rubber_remembers_nothing(twice: Pressed) -> None:
+    between_s = found(twice.columns)[1].at_s - 1.0
+    assert found(twice.columns, mounted_s=(0.0, between_s))[1].remembered.once_n == pytest.approx(0.0, abs=0.5)
+
+
+def test_an_interruption_ends_a_contact(twice: Pressed) -> None:
+    cut_s = found(twice.columns)[0].at_s + 5.0
+    contacts = found(delayed(twice, cut_s, 3600.0))
+    assert max(one.since_s for one in contacts[0].loaded) < 5.1
+    assert contacts[1].remembered.once_n < 40.0
+
+
+@pytest.mark.parametrize("channel", ["load", "depth", "surface"])
+def test_unknown_values_are_in_no_average(twice: Pressed, channel: str) -> None:
+    unknown = dict(twice.columns, **{channel: [nan] * len(twice.columns[channel])})
+    assert found(unknown) == []
+
+
+def test_a_touch_after_a_pause_of_the_samples_does_not_count(twice: Pressed) -> None:
+    touch_s = found(twice.columns)[0].at_s
+    assert [contact.repeat_key for contact in found(delayed(twice, touch_s, 0.5))] == [2]
+
+
+def test_a_long_contact_is_thinned_evenly_over_the_logarithm_of_time() -> None:
+    averages = [Loaded(2.0 + 0.5 * n, 100.0, 1.0, 25.0, Remembered(), 0.0, 1) for n in range(5000)]
+    thinned = Contact(0.0, 10.0, 10.0, 25.0, Remembered(), averages).thinned()
+    assert len(thinned) <= PER_CONTACT and (thinned[0], thinned[-1]) == (averages[0], averages[-1])
+    assert sum(one.since_s < 52.0 for one in thinned) > len(thinned) / 3
