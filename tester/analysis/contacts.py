@@ -62,7 +62,7 @@ class Loaded(NamedTuple):
 
 
 @dataclass(slots=True)
-class Contact:
+class PressedContact:
     """One contact: its touch, and its averages."""
 
     at_s: float
@@ -92,14 +92,14 @@ class ContactFinder:
     def __init__(self, roles: Roles, mounted_s: Iterable[float]) -> None:
         """``roles``: with ``depth`` and ``core``; ``mounted_s``: times at which new rubber was mounted, s."""
         self.roles = roles
-        self.contacts: list[Contact] = []
+        self.contacts: list[PressedContact] = []
         self._mounted_s = sorted(mounted_s)
         self._averages_n = [0.0] * DECADES
         self._further_n = [0.0] * DECADES
         self._last_s = nan
         self._closed = True
         """Whether the contact was closed, or never known to be open."""
-        self._contact: Contact | None = None
+        self._contact: PressedContact | None = None
         self._slid_n_m = 0.0
 
     def add(self, columns: Mapping[str, Sequence[float]]) -> None:
@@ -172,7 +172,7 @@ class ContactFinder:
 
     def _touch(self, now_s: float, depth_mm: float, force_n: float, body_c: float) -> None:
         self._slid_n_m = 0.0
-        self._contact = Contact(now_s, depth_mm, force_n, body_c, self._remembered())
+        self._contact = PressedContact(now_s, depth_mm, force_n, body_c, self._remembered())
         if not (isfinite(depth_mm) and isfinite(body_c)):
             self._contact = None
 

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from math import hypot, isfinite, log, log10, sqrt
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from tester.analysis.contacts import Contact, Loaded
+from tester.analysis.contacts import Loaded, PressedContact
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN
 
@@ -104,7 +104,7 @@ class RubberStiffness:
     """Standard deviation of the contacts about the fit."""
     coverage: float
 
-    def at(self, contacts: Sequence[Sequence[tuple[Contact, Loaded]]]) -> Deformation:
+    def at(self, contacts: Sequence[Sequence[tuple[PressedContact, Loaded]]]) -> Deformation:
         """Return the deformation at the averages of a condition, contact by contact."""
         import numpy as np
 
@@ -149,7 +149,7 @@ class _Rows:
     touch_twice_n: Array
 
     @classmethod
-    def of(cls, loaded: Sequence[Sequence[Loaded]], contacts: Sequence[Contact]) -> _Rows:
+    def of(cls, loaded: Sequence[Sequence[Loaded]], contacts: Sequence[PressedContact]) -> _Rows:
         import numpy as np
 
         rows = [
@@ -191,10 +191,10 @@ def _slopes(of: Callable[[Array], Array], x: Array) -> Array:
     return np.stack(columns, axis=1)
 
 
-class _Fit:
+class _CompoundFit:
     """The parameters of one compound, found by least squares with priors (Gauss-Newton)."""
 
-    def __init__(self, contacts: Sequence[Contact]) -> None:
+    def __init__(self, contacts: Sequence[PressedContact]) -> None:
         import numpy as np
 
         self.loaded = [contact.thinned() for contact in contacts]
@@ -238,13 +238,13 @@ class _Fit:
         return slopes, off, slopes.T @ slopes + self.known
 
 
-def stiffness_of(contacts: Sequence[Contact]) -> RubberStiffness | None:
+def stiffness_of(contacts: Sequence[PressedContact]) -> RubberStiffness | None:
     """Return what the contacts with one compound show; None where they are fewer than ``LEAST_CONTACTS``."""
     import numpy as np
 
     if len(contacts) < LEAST_CONTACTS:
         return None
-    fit = _Fit(contacts)
+    fit = _CompoundFit(contacts)
     covariance = fit.solve()
     coverage = t_quantile(0.975, fit.free)
     spread = coverage * np.sqrt(np.diag(covariance))
@@ -266,12 +266,12 @@ def stiffness_of(contacts: Sequence[Contact]) -> RubberStiffness | None:
 
 
 def by_condition(
-    contacts: Sequence[Contact], condition_of: Mapping[int, int]
-) -> dict[int, list[list[tuple[Contact, Loaded]]]]:
+    contacts: Sequence[PressedContact], condition_of: Mapping[int, int]
+) -> dict[int, list[list[tuple[PressedContact, Loaded]]]]:
     """Return the averages inside repeats, contact by contact, by condition; ``condition_of``: by the repeat's key."""
-    found: dict[int, list[list[tuple[Contact, Loaded]]]] = {}
+    found: dict[int, list[list[tuple[PressedContact, Loaded]]]] = {}
     for contact in contacts:
-        inside: dict[int, list[tuple[Contact, Loaded]]] = {}
+        inside: dict[int, list[tuple[PressedContact, Loaded]]] = {}
         for one in contact.loaded:
             if one.repeat_key in condition_of:
                 inside.setdefault(condition_of[one.repeat_key], []).append((contact, one))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from tester.analysis.contacts import Contact, ContactFinder
+from tester.analysis.contacts import ContactFinder, PressedContact
 from tester.analysis.deformation import LEAST_CONTACTS, Deformation, RubberStiffness, by_condition, stiffness_of
 from tester.results.columns import Column, Table, axis_column
 from tester.results.run_results import RunResults
@@ -50,7 +50,7 @@ def stiffness_rows(results: RunResults, reader: RunReader) -> list[StiffnessRow]
     condition_of = {repeat.key: repeat.condition for repeat in attempts}
     piece_of = {repeat.key: repeat.piece for repeat in attempts}
     compound_of = {piece.piece: piece.compound for piece in results.pieces}
-    contacts: dict[str, list[Contact]] = {}
+    contacts: dict[str, list[PressedContact]] = {}
     for contact in finder.contacts:
         compound = compound_of.get(piece_of.get(contact.repeat_key, 0), "")
         if compound:

@@ -6,12 +6,12 @@ from math import nan
 
 import pytest
 
-from tester.analysis.contacts import PER_CONTACT, Contact, ContactFinder, Loaded, Remembered
+from tester.analysis.contacts import PER_CONTACT, ContactFinder, Loaded, PressedContact, Remembered
 from tester.base.quantities import TIME
 from tests.tester.analysis.pressed_rubber import ROLES, Pressed
 
 
-def found(columns: dict[str, list[float]], block: int = 10**9, mounted_s: tuple[float, ...] = ()) -> list[Contact]:
+def found(columns: dict[str, list[float]], block: int = 10**9, mounted_s: tuple[float, ...] = ()) -> list[PressedContact]:
     """Return the contacts in samples that come in blocks."""
     finder = ContactFinder(ROLES, mounted_s)
     for begin in range(0, len(columns[TIME]), block):
@@ -86,6 +86,6 @@ def test_a_touch_after_a_pause_of_the_samples_does_not_count(twice: Pressed) -> 
 
 def test_a_long_contact_is_thinned_evenly_over_the_logarithm_of_time() -> None:
     averages = [Loaded(2.0 + 0.5 * n, 100.0, 1.0, 25.0, Remembered(), 0.0, 1) for n in range(5000)]
-    thinned = Contact(0.0, 10.0, 10.0, 25.0, Remembered(), averages).thinned()
+    thinned = PressedContact(0.0, 10.0, 10.0, 25.0, Remembered(), averages).thinned()
     assert len(thinned) <= PER_CONTACT and (thinned[0], thinned[-1]) == (averages[0], averages[-1])
     assert sum(one.since_s < 52.0 for one in thinned) > len(thinned) / 3

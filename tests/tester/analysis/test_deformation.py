@@ -7,20 +7,20 @@ from statistics import fmean
 
 import pytest
 
-from tester.analysis.contacts import Contact, ContactFinder
+from tester.analysis.contacts import ContactFinder, PressedContact
 from tester.analysis.deformation import LEAST_CONTACTS, RubberStiffness, WithU, by_condition, stiffness_of
 from tests.tester.analysis.pressed_rubber import ROLES, Pressed, pressed
 
 SEEDS = range(12)
 
 
-def contacts_of(rig: Pressed) -> list[Contact]:
+def contacts_of(rig: Pressed) -> list[PressedContact]:
     finder = ContactFinder(ROLES, ())
     finder.add(rig.columns)
     return finder.contacts
 
 
-def stiffness(contacts: list[Contact]) -> RubberStiffness:
+def stiffness(contacts: list[PressedContact]) -> RubberStiffness:
     found = stiffness_of(contacts)
     assert found is not None
     return found
@@ -31,21 +31,21 @@ def holds(found: WithU, truth: float) -> bool:
 
 
 @pytest.fixture(scope="module")
-def judged() -> list[tuple[Pressed, list[Contact], RubberStiffness]]:
+def judged() -> list[tuple[Pressed, list[PressedContact], RubberStiffness]]:
     """Return the rubber of every seed with what was found."""
     rigs = [pressed(seed) for seed in SEEDS]
     listed = [contacts_of(rig) for rig in rigs]
     return [(rig, contacts, stiffness(contacts)) for rig, contacts in zip(rigs, listed, strict=True)]
 
 
-def test_the_softening_put_in_is_found(judged: list[tuple[Pressed, list[Contact], RubberStiffness]]) -> None:
+def test_the_softening_put_in_is_found(judged: list[tuple[Pressed, list[PressedContact], RubberStiffness]]) -> None:
     found = [rubber.softening_per_k for _, _, rubber in judged]
     assert sum(holds(one, 0.004) for one in found) >= len(SEEDS) - 1
     assert fmean(one.value for one in found) == pytest.approx(0.004, rel=0.05)
     assert max(one.expanded for one in found) < 0.001
 
 
-def test_the_relaxation_put_in_is_found(judged: list[tuple[Pressed, list[Contact], RubberStiffness]]) -> None:
+def test_the_relaxation_put_in_is_found(judged: list[tuple[Pressed, list[PressedContact], RubberStiffness]]) -> None:
     found = [rubber.relaxation for _, _, rubber in judged]
     assert sum(holds(one, 0.03) for one in found) >= len(SEEDS) - 1
     assert fmean(one.value for one in found) == pytest.approx(0.03, rel=0.2)
@@ -53,7 +53,7 @@ def test_the_relaxation_put_in_is_found(judged: list[tuple[Pressed, list[Contact
 
 
 def test_the_deformation_at_each_load_and_temperature_is_found(
-    judged: list[tuple[Pressed, list[Contact], RubberStiffness]],
+    judged: list[tuple[Pressed, list[PressedContact], RubberStiffness]],
 ) -> None:
     held: list[bool] = []
     for rig, contacts, rubber in judged:
