@@ -11,7 +11,9 @@ from tester.base.quantities import TIME
 from tests.tester.analysis.pressed_rubber import ROLES, Pressed
 
 
-def found(columns: dict[str, list[float]], block: int = 10**9, mounted_s: tuple[float, ...] = ()) -> list[PressedContact]:
+def found(
+    columns: dict[str, list[float]], block: int = 10**9, mounted_s: tuple[float, ...] = ()
+) -> list[PressedContact]:
     """Return the contacts in samples that come in blocks."""
     finder = ContactFinder(ROLES, mounted_s)
     for begin in range(0, len(columns[TIME]), block):
