@@ -70,6 +70,7 @@ def checked_recipe(source: Path | str, rig: Rig, name: str | None = None) -> Loa
 def _kind_written_for(source: Path | str, rig: Rig, problems: int) -> str:
     """Return the packaged kind whose schema finds less than half as many problems in a recipe; "" if there is none."""
     from tester.inputs.recipe.loader import validated
+    from tester.inputs.recipe.pressures import with_loads
 
     try:
         tree, _ = read_tree(source)
@@ -79,7 +80,7 @@ def _kind_written_for(source: Path | str, rig: Rig, problems: int) -> str:
         return ""
     for kind in PACKAGED:
         part = find(kind).recipe if kind != rig.kind else None
-        if part is not None and 2 * len(validated(tree, part())[1]) < problems:
+        if part is not None and 2 * len(validated(with_loads(tree)[0], part())[1]) < problems:
             return kind
     return ""
 

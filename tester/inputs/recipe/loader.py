@@ -9,10 +9,12 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from tester.analysis.pressure import LOAD
 from tester.analysis.terms import PREFIX, Term
 from tester.base.source import InvalidSource, Problem, Tree, read_tree
 from tester.base.units import shown
 from tester.base.validation import problems_of
+from tester.inputs.recipe.pressures import with_loads
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.semantics import semantic_problems
@@ -61,8 +63,11 @@ def load_checked(source: Path | str, rig: Rig, part: RecipePart, name: str | Non
     other = _other_kind(tree, rig)
     if other:
         raise InvalidSource(other)
+    tree, of_pressures = with_loads(tree)
     recipe, more = validated(tree, part)
-    problems += [*more, *sorted(set(part.limits(tree, rig)))]
+    if of_pressures:  # then the load that is missing is the pressure's
+        more = [one for one in more if not one.message.startswith(f"{LOAD} is missing")]
+    problems += [*of_pressures, *more, *sorted(set(part.limits(tree, rig)))]
     if recipe is not None:
         problems += _settings(recipe, tree, part.terms(rig))
     if recipe is not None and not problems:

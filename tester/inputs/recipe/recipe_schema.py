@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Type
 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
+from tester.analysis.pressure import LOAD
 from tester.base.axes import Axes, Axis
 from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
 from tester.base.validation import Section
 from tester.inputs.recipe.axis_lists import MAX_NAME, Listed
+from tester.inputs.recipe.pressures import PRESSURE, ContactSection
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -211,6 +213,18 @@ class GridModel(GridName, Made, frozen=True):
     measure_again: bool = False
     """conditions that another grid has too are measured in this one again (default: once, in the first of them)"""
 
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """Let editors accept a pressure in place of a load, which it becomes before validation."""
+        written = handler(schema)
+        properties, required = written.get("properties", {}), written.get("required", [])
+        if LOAD in properties and LOAD in required:
+            pressures = Listed("Pa").__get_pydantic_json_schema__(schema, handler)
+            properties[PRESSURE] = pressures | {"description": "in place of load, over the area of `contact`"}
+            written["required"] = [name for name in required if name != LOAD]
+            written["oneOf"] = [{"required": [LOAD]}, {"required": [PRESSURE]}]
+        return written
+
 
 @lru_cache
 def grid_model(axes: Axes, base: type[GridModel] = GridModel) -> type[GridModel]:
@@ -279,6 +293,8 @@ class Recipe(Made, frozen=True):
     replicates: Annotated[int, Field(ge=1, le=100)] = 1
     """how often every specimen is tested as a whole, each time on new rubber"""
     abrasive: AbrasiveModel | None = None
+    contact: ContactSection | None = None
+    """area under the rubber, which makes pressures of loads"""
     humidity: Annotated[float, Quantity("%", ge=0, le=100)] | None = None
     ambient: Temperature | None = None
     experiment: dict[Annotated[str, Field(min_length=1, max_length=60)], FreeField] = Field(

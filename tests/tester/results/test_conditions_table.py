@@ -124,3 +124,20 @@ def test_a_number_that_is_not_trusted_has_its_mark_everywhere(tmp_path: Path) ->
     (row,) = table.rows
     assert table["mu"].text(row) == "0.700!" and table["mark"].text(row) == "!"
     assert table["remarks"].text(row).startswith("not measured")
+
+
+def with_area(results: RunResults, area_mm2: str) -> RunResults:
+    """Return the results of a run whose recipe states an area."""
+    info = results.run.info
+    stated = replace(info, metadata={**info.metadata, "contact_area_mm2": area_mm2})
+    return replace(results, run=replace(results.run, info=stated))
+
+
+def test_a_pressure_is_beside_the_load_only_where_an_area_is_known(tmp_path: Path) -> None:
+    with RunReader(small_run(tmp_path)) as reader:
+        results = results_of(reader)
+        assert "pressure_kpa" not in [column.key for column in conditions_table(results).columns]
+        table = conditions_table(with_area(results, "250"))
+        assert [table["pressure_kpa"].cell(row) for row in table.rows] == [400.0, 800.0]
+        shown = [column.key for column in table.view(Output.SHOW, ("load_n",)).columns]
+        assert shown[:2] == ["load_n", "pressure_kpa"]

@@ -94,3 +94,14 @@ def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
         else:
             continue
         yield tree.problem(("specimens", number, "compound"), f"compound: sim.law {sim.law}: {fault}")
+
+
+def area_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
+    """Yield a problem for an area that is not the simulated one, where the simulated law depends on the pressure."""
+    own_mm2, contact = rig.sim.contact.area, recipe.contact
+    if contact is not None and rig.sim.of_materials and contact.area != own_mm2:
+        yield tree.problem(
+            ("contact", "area"),
+            f"area: {contact.area:g} mm2, and sim.law {rig.sim.law} rubs on {own_mm2:g} mm2 (expected the area of"
+            f" sim.contact.area, or --set 'sim.contact.area={contact.area:g} mm2')",
+        )

@@ -23,7 +23,7 @@ from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
-from tester.kinds.specimen_on_track.recipe.feasible import law_problems, low_friction, out_of_reach
+from tester.kinds.specimen_on_track.recipe.feasible import area_problems, law_problems, low_friction, out_of_reach
 from tester.kinds.specimen_on_track.recipe.plan_steps import (
     INSERTED,
     Cover,
@@ -92,6 +92,7 @@ class TrackPart(SpecimenPart):
         measure = recipe.measure
         if own.simulated:
             yield from law_problems(own, recipe, tree)
+            yield from area_problems(own, recipe, tree)
         if measure is None:
             return
         for number, grid in enumerate(recipe.grids):
