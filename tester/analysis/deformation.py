@@ -217,7 +217,7 @@ class _CompoundFit:
         for _ in range(STEPS):
             slopes, off, hessian = self._system()
             pull = slopes.T @ off + self.known @ (self.values - self.x)
-            step: Array = np.linalg.solve(hessian, pull)
+            step = np.linalg.solve(hessian, pull).astype(np.float64)
             self.x = self.x + step
             means = self.scatter_mm * np.bincount(self.number, off * self.weights)
             spread = float(np.sqrt(np.sum(means**2) / self.free))
