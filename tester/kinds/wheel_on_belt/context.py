@@ -118,6 +118,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self._open_since_s = -inf
         self._place_mm = nan
         self._wear_mm3_per_n_m = rig.wear.rate_mm3_per_n_m
+        self._layer_mm = rig.observer.wheel.rubber_layer
 
     def put_on(self, wheel: WheelLife) -> None:
         """Use another wheel from now on: its place of contact is unknown, and its turns count from zero."""
@@ -185,6 +186,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         if not isfinite(place_mm):
             return
         estimate.slid(wheel.exposure_n_m, loss_per_n_m(wheel.cold_mm, wheel.width_mm))
+        estimate.warmed(wheel.rubber_c, wheel.growth_u_mm_per_k(self.rig.wear, self._layer_mm))
         remembered_n, open_s = wheel.loads.remembered_n(), self.now - self._open_since_s
         if not estimate.touch(place_mm, touch_n, remembered_n, open_s, stiffness):
             text = f"a touch and the learnt wear disagree by {estimate.off_mm:+.2f} mm of diameter: it is not used"

@@ -6,8 +6,8 @@ of diameter, the wear rate, and that share (Kalman filter; each touch is one obs
 distance and the dent follows the loads of the last hours, so their parts separate; a touch without sliding before it
 shows the dent alone. The rate that the rig file believes is the prior.
 
-Places are compared at equal load, corrected for heat growth. Stiffness hardly matters: at the 10 N of a touch, 20 % of
-it are 0.03 mm of depth.
+Places are compared at equal load, corrected for heat growth; after a change of temperature the loss is as uncertain as
+the growth. Stiffness hardly matters: at the 10 N of a touch, 20 % of it are 0.03 mm of depth.
 """
 
 from __future__ import annotations
@@ -100,6 +100,8 @@ class WearEstimate:
     """How much larger the loss is by the last touch than by the estimate before it."""
     reference_mm: float = PLACE_MM
     """Standard uncertainty of the place that the loss is measured from; 0 once a check has measured the loss."""
+    rubber_c: float = nan
+    """Mean temperature of the rubber at the last touch, degC; NaN before it."""
     _exposure_n_m: float = 0.0
     _p: list[float] = field(default_factory=lambda: [PLACE_MM**2, 0.0, 0.0, PRIOR_RATE**2, 0.0, PRIOR_SHARE**2])
     """Covariance: loss, loss and rate, loss and share; rate, rate and share; share."""
@@ -113,7 +115,7 @@ class WearEstimate:
         """
         self.rate_mm3_per_n_m, self.u_rate = rate_mm3_per_n_m, u_rate
         self.loss_mm, self._exposure_n_m = loss_mm, exposure_n_m
-        self.place_mm, self.touches, self.disagreed = nan, 0, 0
+        self.place_mm, self.touches, self.disagreed, self.rubber_c = nan, 0, 0, nan
         self.reference_mm = hypot(PLACE_MM, u_mm)
         self._p = [PLACE_MM**2, 0.0, 0.0, u_rate**2, 0.0, PRIOR_SHARE**2]
 
@@ -141,6 +143,13 @@ class WearEstimate:
             ll + 2.0 * slope * lr + slope * slope * rr + (LOSS_CHANGES * worn_mm) ** 2, lr + slope * rr,
             ls + slope * rs, rr + changed * changed, rs, ss + SHARE_CHANGES**2,
         ]  # fmt: skip
+
+    def warmed(self, rubber_c: float, u_mm_per_k: float) -> None:
+        """Add the growth's uncertainty since the last touch: ``u_mm_per_k`` times the change of temperature, degC."""
+        changed_k = rubber_c - self.rubber_c
+        if changed_k == changed_k:
+            self._p[0] += (u_mm_per_k * changed_k) ** 2
+        self.rubber_c = rubber_c
 
     def touch(self, place_mm: float, touch_n: float, remembered_n: float, open_s: float, stiffness: float) -> bool:
         """Take the place of a touch under ``touch_n``, of a cold wheel; return whether the estimate has used it."""

@@ -127,6 +127,13 @@ class WheelLife:
         estimate = self.estimate
         return hypot(estimate.u_mm, 0.0 if self.followed else estimate.loss_mm - self.loss_mm)
 
+    def growth_u_mm_per_k(self, wear: WearConfig, layer_mm: float) -> float:
+        """Return the growth's uncertainty, mm/K of diameter: the stated one, and more where rubber is worn off.
+
+        ``layer_mm``: thickness of the rubber when new; less rubber grows less, and no key states the rubber's part.
+        """
+        return wear.growth_uncertainty_mm_per_k + wear.growth_mm_per_k * max(self.loss_mm, 0.0) / (2.0 * layer_mm)
+
     def show(self, r: Readings, wear: WearConfig) -> None:
         """Write both diameters, from the newest temperatures, to the process image.
 

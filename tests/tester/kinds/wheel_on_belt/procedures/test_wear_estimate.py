@@ -104,6 +104,19 @@ def test_honest_touches_of_many_wheels_never_disagree() -> None:
         assert rubber.estimate.disagreed == 0 and rubber.estimate.touches == 32
 
 
+def test_a_growth_unlike_the_believed_one_is_followed_and_not_taken_for_wear() -> None:
+    for seed in range(20):
+        rubber = Rubber(0.3, seed=seed)
+        rubber.estimate.warmed(25.0, 0.004)
+        rubber.live(20)
+        before_mm, rate = rubber.estimate.loss_mm, rubber.estimate.rate_mm3_per_n_m
+        rubber.estimate.warmed(75.0, 0.004)
+        for _ in range(3):
+            assert rubber.touch(0.0, 500.0, off_mm=0.37)
+        assert rubber.estimate.loss_mm - before_mm == pytest.approx(0.37, abs=0.12)
+        assert rubber.estimate.rate_mm3_per_n_m == pytest.approx(rate, rel=0.1)
+
+
 def test_a_check_replaces_the_loss_and_leaves_its_own_uncertainty() -> None:
     rubber = Rubber(0.3)
     rubber.live(4)

@@ -32,6 +32,14 @@ def test_a_warm_wheel_is_larger_by_its_growth_and_keeps_its_cold_diameter() -> N
     assert r.cold_mm == wheel.cold_mm == 89.5
 
 
+def test_growth_is_unsure_by_its_stated_uncertainty_and_by_the_rubber_that_is_gone() -> None:
+    new, worn = WheelLife(installed_mm=90.0), WheelLife(installed_mm=90.0, loss_mm=8.0)
+    assert new.growth_u_mm_per_k(WEAR, 8.0) == WEAR.growth_uncertainty_mm_per_k
+    assert worn.growth_u_mm_per_k(WEAR, 8.0) == pytest.approx(
+        WEAR.growth_uncertainty_mm_per_k + 0.5 * WEAR.growth_mm_per_k
+    )
+
+
 def test_a_wheel_whose_surface_is_not_known_keeps_what_it_had_gained() -> None:
     wheel = WheelLife(installed_mm=90.0)
     warm_mm = shown(wheel, 63.0, 43.0).diameter_mm
