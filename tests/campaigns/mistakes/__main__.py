@@ -110,7 +110,7 @@ def main() -> int:
     parser.add_argument("--track", action="store_true", help="only the commissioning of a specimen on a track")
     given = parser.parse_args()
     modules = sources(("by_track",)) if given.track else sources(SOURCES[:2]) if given.sample else sources()
-    seeds, clean_seeds = (1, 1 if given.track else 5) if given.sample else (given.seeds, CLEAN_SEEDS)
+    seeds, clean_seeds = (1, 1 if given.track else 8) if given.sample else (given.seeds, CLEAN_SEEDS)
     missed, total = 0, 0
     if given.list:
         measured = listed(given.list, seeds)

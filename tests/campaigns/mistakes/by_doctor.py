@@ -23,15 +23,24 @@ def _drives_of(profile: str, vendor: str) -> list[str]:
     return [f"axes.{axis}.{key}" for axis in DRIVES for key in (f"profile={profile}", f"vendor_id={vendor}")]
 
 
-CLEAN: Final[tuple[Written, ...]] = tuple(
-    Written(name, "", kind, keys, keys)
-    for name, kind, keys in (
-        ("sim", "sim", ()),
-        ("grosch", "grosch", ()),
-        ("pin-on-disc", "pin-on-disc", ()),
-        ("drives of another make", "sim", _drives_of("nanotec", "0x26C")),
-        ("drives of a third make", "sim", _drives_of("elmo_gold", "0x9A")),
-    )
+def _lines_of(setting: str) -> list[str]:
+    return [f"lines.{line}.{setting}" for line in ("load_cell", "heat")]
+
+
+CLEAN: Final[tuple[Written, ...]] = (
+    *(
+        Written(name, "", kind, keys, keys)
+        for name, kind, keys in (
+            ("sim", "sim", ()),
+            ("grosch", "grosch", ()),
+            ("pin-on-disc", "pin-on-disc", ()),
+            ("drives of another make", "sim", _drives_of("nanotec", "0x26C")),
+            ("drives of a third make", "sim", _drives_of("elmo_gold", "0x9A")),
+            ("adapters at 8N2", "sim", _lines_of("stop_bits=2")),
+            ("adapters that RTS switches", "sim", _lines_of("rts=high")),
+        )
+    ),
+    Written("adapters that hear themselves", "", echo=True),
 )
 """Rigs that are as their files say."""
 

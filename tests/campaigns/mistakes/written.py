@@ -11,6 +11,7 @@ and ``named`` must be there::
       faults: ["load cell offset 150 N"]       # of sim.faults, begun before the doctor looks
       objects: {belt: {"6080:00": 300}}        # what a drive's object holds, in hexadecimal index and sub-index
       registers: {jacket: {26: 1200}}          # what a register of a Modbus device holds
+      echo: true                               # its serial adapters hear what they send themselves
       computer: {latency_ms: 16}               # latency_ms, missing, forbidden, free_bytes, can_bitrate, can_state
       named: "load cell: .*150"                # a regular expression that a printed warning or fault has to match
       run: refuses                             # where it cannot be measured: a run in memory has no adapters
@@ -29,7 +30,7 @@ import yaml
 
 from drivers.canopen.dictionary import Entry
 from drivers.canopen.objects import DataType
-from drivers.ports import BusLost, LinePort
+from drivers.ports import BusLost, LinePort, WatchedLine, byte_bits
 from sim import machines
 from sim.faults import FaultScript, Scene
 from sim.faults.can import FaultyCanWire
@@ -39,6 +40,7 @@ from tester.doctor.finding import Finding, Severity
 from tester.doctor.open_wires import SimulatedWires
 from tester.doctor.probe_table import examined
 from tester.inputs.rig import Rig
+from tester.inputs.rig.config import LineConfig
 from tester.kinds import load_rig
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
@@ -75,6 +77,7 @@ class Written:
     faults: Sequence[str] = ()
     objects: Mapping[str, Mapping[str, int]] = field(default_factory=dict[str, Mapping[str, int]])
     registers: Mapping[str, Mapping[int, int]] = field(default_factory=dict[str, Mapping[int, int]])
+    echo: bool = False
     computer: Mapping[str, Any] = field(default_factory=dict[str, Any])
     run: Runs | None = None
 
@@ -93,18 +96,51 @@ class NoComputer:
     def operate(self, action: str) -> None: ...
 
 
+class EchoingLine(WatchedLine):
+    """The port of an adapter that hears what it sends, once its last bit has left."""
+
+    def __init__(self, inner: LinePort, byte_s: float) -> None:
+        """``byte_s``: time of one byte on the line, s."""
+        super().__init__()
+        self._inner, self._byte_s = inner, byte_s
+        self._heard: list[tuple[float, bytes]] = []
+        self._free_s = 0.0
+
+    def write(self, data: bytes, now: float) -> None:
+        """Send; the echo is complete when the line is free again."""
+        self._free_s = max(self._free_s, now) + len(data) * self._byte_s
+        self._heard.append((self._free_s, data))
+        self._inner.write(data, now)
+        self.tell(now, data, sent=True)
+
+    def read(self, now: float) -> list[tuple[float, bytes]]:
+        """Return echoes and replies up to ``now``, in the order of their arrival."""
+        heard = [one for one in self._heard if one[0] <= now]
+        self._heard = self._heard[len(heard) :]
+        read = sorted([*heard, *self._inner.read(now)], key=lambda chunk: chunk[0])
+        for at_s, data in read:
+            self.tell(at_s, data, sent=False)
+        return read
+
+
 class MistakenWires(SimulatedWires):
     """The wires of a machine with mistakes, whose faults go on while time passes."""
 
-    def __init__(self, built: Rig, seed: int, faults: Sequence[str] = ()) -> None:
-        """Switch the machine on, with its faults from the beginning."""
-        self._built = built
+    def __init__(self, built: Rig, seed: int, faults: Sequence[str] = (), *, echo: bool = False) -> None:
+        """Switch the machine on, with its faults from the beginning; ``echo``: its adapters hear themselves."""
+        self._built, self._echo = built, echo
         self._ports, self.world, _ = simulated_ports(built, seed, None, FaultyCanWire)
         self._now_s = 0.0
         language = machines.find(run_parts(built).plant).language(spec_of(built))
         self._scene = Scene(self.world, NoComputer())
         self._script = FaultScript().add(language.parse(f"t=0 s: {text}") for text in faults)
         self._script.act(self._scene, 0.0)
+
+    def line(self, name: str, config: LineConfig) -> LinePort:
+        """Return the line, as its adapter is."""
+        line = super().line(name, config)
+        byte_s = byte_bits(config.framing, config.parity, config.stop_bits) / config.baud
+        return EchoingLine(line, byte_s) if self._echo else line
 
     def wait_until(self, due_s: float) -> None:
         """Advance the machine to ``due_s`` (s), its faults renewed on the way."""
@@ -125,7 +161,7 @@ class Case:
         for key, value in written.beyond.items():
             built = _replaced(built, key.split("."), value)
         built = rebuilt(built) if rebuilt is not None else built
-        self.wires = MistakenWires(built, seed, written.faults)
+        self.wires = MistakenWires(built, seed, written.faults, echo=written.echo)
         world = self.wires.world
         for axis, objects in written.objects.items():
             for place, value in objects.items():
