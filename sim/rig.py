@@ -143,8 +143,8 @@ class SimRig:
         raise NotImplementedError
 
     @property
-    def of_materials(self) -> bool:
-        """Whether friction is made of a rubber and a surface (``sim.physics.materials``); ``take`` sets the source."""
+    def by_surface(self) -> bool:
+        """Whether friction asks for the surface or for files of materials; ``take`` gives both."""
         return False
 
     def take(self, setting: LawSetting) -> None:

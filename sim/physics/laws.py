@@ -1,10 +1,10 @@
 """Laws of friction, found by name.
 
 A law returns the coefficient at a temperature (degC), a load (N) and a sliding speed (m/s). ``paper`` and ``v2``
-are those of ``sim.physics.friction``, which contain their compounds. ``wlf_bell`` (``sim.physics.wlf``), ``power`` and
-``arrhenius`` (``sim.physics.simple``) need figures. ``persson`` and ``greta`` (modules of these names) are
-made of a rubber and a surface; a ``LawSetting`` gives the source of both. A law from elsewhere is registered, or a
-look-up finds it for a name that this module does not know.
+are those of ``sim.physics.friction``, which contain their compounds. ``wlf_bell`` (``sim.physics.wlf``), ``two_bells``
+(module of this name), ``power`` and ``arrhenius`` (``sim.physics.simple``) need figures. ``persson`` and ``greta``
+(modules of these names) are made of a rubber and a surface; a ``LawSetting`` gives the source of both. A law from
+elsewhere is registered, or a look-up finds it for a name that this module does not know.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from typing import Final, Protocol, runtime_checkable
 from sim.physics.friction import MODEL_NAMES, FrictionModel
 from sim.physics.materials import Components, Materials, Rubber, Surface
 from sim.physics.simple import arrhenius, power
+from sim.physics.two_bells import two_bells
 from sim.physics.wlf import wlf_bell
 
 
@@ -114,6 +115,7 @@ def _greta(rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[s
 _LAWS: dict[str, LawMaker] = {
     **{name: partial(_of_the_paper, name) for name in MODEL_NAMES},
     "wlf_bell": wlf_bell,
+    "two_bells": two_bells,
     "power": power,
     "arrhenius": arrhenius,
     "persson": OfMaterials(_persson, slow=True),

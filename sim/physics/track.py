@@ -5,32 +5,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from collections.abc import Set as AbstractSet
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from itertools import product
-from types import MappingProxyType
 from typing import Annotated, Final, Literal
 
 from sim.physics import laws
 from sim.physics.lookup import TableSpan
 from sim.physics.materials import Components, ReadOnce
-from sim.physics.wlf import WlfBellParameters
+from sim.physics.track_bells import RUBBERS, SURFACES, TrackRubber, TrackSurface, bells, refuse
+from sim.physics.two_bells import TwoBells
+from sim.physics.wlf import GLASS_TO_REFERENCE_K, WlfBell
 
 Motion = Literal["linear", "disc"]
 Interface = Literal["dry", "wet", "talc"]
 
-RUBBERS: Final[Mapping[str, WlfBellParameters]] = MappingProxyType({
-    "SBR": WlfBellParameters(),  # Tg = -53 degC [A]
-    "NR": WlfBellParameters(t_ref=-20.0),  # Tg = -70 degC [A]
-    "NBR": WlfBellParameters(t_ref=25.0),  # Tg = -25 degC [A]
-    "ABR": WlfBellParameters(t_ref=16.0),  # Tg = -34 degC, as in the compound's file, like those below
-    "INR": WlfBellParameters(t_ref=-20.0),  # Tg = -70 degC
-    "butyl": WlfBellParameters(t_ref=-23.0),  # Tg = -73 degC
-})
-"""Rubbers by their names in recipes; they differ only in their glass transition [A]."""
-
+TWO_BELLS: Final = "two_bells"
 
 TABLE_M_S: Final = (1e-6, 10.0)
 TABLE_C: Final = (-50.0, 100.0)
@@ -51,24 +41,28 @@ class TrackContact:
     area: Annotated[float, "mm2"] = 100.0  # [A] nominal, of the specimen on the track: makes a pressure of the load
     wet: Annotated[float, "1"] = 0.6  # [A] share of the dry friction, by a law that does not know adhesion
     talc: Annotated[float, "1"] = 0.5  # [A] the same
-    wet_adhesion: Annotated[float, "1"] = 0.0  # [A] share of the adhesion, by a law that knows it; talc leaves none
+    wet_adhesion: Annotated[float, "1"] = 0.0  # [A] share of the adhesion, by a law that knows it
+    talc_adhesion: Annotated[float, "1"] = 0.1  # [A] the same: talc lowers the adhesion much more ...
+    talc_hysteresis: Annotated[float, "1"] = 0.9  # [A] ... than the hysteresis (paper S, section 4)
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, {"static_excess", "wet", "talc", "wet_adhesion"})
+        refuse(self, {"static_excess", "wet", "talc", "wet_adhesion", "talc_adhesion", "talc_hysteresis"})
         if self.touch >= self.lift_travel:
             raise ValueError("TrackContact.touch must be below lift_travel: raised, nothing touches")
 
     def through(self, law: laws.FrictionLaw, interface: Interface) -> laws.FrictionLaw:
         """Return the law with the interface between specimen and track.
 
-        If the law knows its parts, water and talc take adhesion and leave hysteresis; otherwise they take a share of
-        all.
+        If the law knows its parts, water takes adhesion and leaves hysteresis, and talc takes most of the adhesion and
+        little of the hysteresis; otherwise they take a share of all.
         """
         if interface == "dry":
             return law
         if isinstance(law, laws.LawOfParts):
-            return LessAdhesion(law, {"wet": self.wet_adhesion, "talc": 0.0}[interface])
+            if interface == "wet":
+                return LessOfParts(law, self.wet_adhesion, 1.0)
+            return LessOfParts(law, self.talc_adhesion, self.talc_hysteresis)
         return LessFriction(law, {"wet": self.wet, "talc": self.talc}[interface])
 
 
@@ -84,17 +78,17 @@ class LessFriction:
         return self._law.mu(temperature_c, load_n, slip_m_s) * self._share
 
 
-class LessAdhesion:
-    """A law's hysteresis, with a share of its adhesion."""
+class LessOfParts:
+    """A share of a law's adhesion, and one of its hysteresis."""
 
-    def __init__(self, law: laws.LawOfParts, share: float) -> None:
+    def __init__(self, law: laws.LawOfParts, of_adhesion: float, of_hysteresis: float) -> None:
         """Take the law of dry contact."""
-        self._law, self._share = law, share
+        self._law, self._of_adhesion, self._of_hysteresis = law, of_adhesion, of_hysteresis
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
         """Return the remaining parts."""
         adhesion, hysteresis = self._law.components(temperature_c, load_n, slip_m_s)
-        return Components(self._share * adhesion, hysteresis)
+        return Components(self._of_adhesion * adhesion, self._of_hysteresis * hysteresis)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient."""
@@ -114,7 +108,7 @@ class TrackHeat:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, {"specimen_rise", "friction_share", "exit_rise"})
+        refuse(self, {"specimen_rise", "friction_share", "exit_rise"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +128,7 @@ class TrackSensors:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, {item.name for item in fields(self)} - {"force_range", "air_time", "pyrometer_time"})
+        refuse(self, {item.name for item in fields(self)} - {"force_range", "air_time", "pyrometer_time"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,17 +144,18 @@ class TrackParameters:
     law: str = "wlf_bell"  # by its name in sim.physics.laws
     stick_slip: Annotated[float, "1"] = 0.0  # friction swings by this share of it to either side ...
     stick_slip_frequency: Annotated[float, "Hz"] = 4.0  # ... so often a second [A], as far as the arm's spring follows
-    surface: str = ""  # of the track, where the law is made of materials; "": the recipe's abrasive
+    surface: str = ""  # of the track, where the law asks for it; "": the recipe's abrasive
     ambient: Annotated[float, "degC"] = 23.0
     faults: tuple[str, ...] = ()  # a fault script (sim.faults.language)
     contact: TrackContact = field(default_factory=TrackContact)
     heat: TrackHeat = field(default_factory=TrackHeat)
     sensors: TrackSensors = field(default_factory=TrackSensors)
-    rubbers: Mapping[str, WlfBellParameters] = field(default_factory=lambda: dict(RUBBERS))
+    rubbers: Mapping[str, TrackRubber] = field(default_factory=lambda: dict(RUBBERS))
+    surfaces: Mapping[str, TrackSurface] = field(default_factory=lambda: dict(SURFACES))
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, {"noise", "scatter", "stick_slip"}, signed={"ambient"})
+        refuse(self, {"noise", "scatter", "stick_slip"}, signed={"ambient"})
         if self.stick_slip >= 1.0:
             raise ValueError(f"stick_slip is a share of friction, 0 to below 1, not {self.stick_slip!r}")
         if not -40.0 <= self.ambient <= 60.0:
@@ -177,16 +172,40 @@ class TrackParameters:
         """Return whether the law is made of a rubber and a surface."""
         return isinstance(laws.find(self.law), laws.OfMaterials)
 
+    @property
+    def by_surface(self) -> bool:
+        """Return whether the law asks for the surface of the track."""
+        return self.law == TWO_BELLS or self.of_materials
+
     def law_of(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> laws.FrictionLaw:
         """Return the law of a rubber itself.
 
         Raises ValueError for a rubber that ``rubbers``, or the setting's materials, lack although the law needs it.
         """
-        if self.law != "wlf_bell":
+        if self.law not in ("wlf_bell", TWO_BELLS):
             return laws.make(self.law, compound, setting=self._own(setting))
-        if compound not in self.rubbers:
-            raise ValueError(f"no rubber {compound!r} among sim.rubbers; known: {', '.join(self.rubbers)}")
-        return laws.make(self.law, compound, asdict(self.rubbers[compound]))
+        rubber = self._rubber(compound, setting)
+        if self.law == TWO_BELLS:
+            return TwoBells(bells(rubber, self.surfaces.get(self.surface or setting.surface, TrackSurface())))
+        return WlfBell(rubber)
+
+    def _rubber(self, compound: str, setting: laws.LawSetting) -> TrackRubber:
+        """Return a rubber of the rig file, else, for ``two_bells``, of its own file; raises ValueError."""
+        if compound in self.rubbers:
+            return self.rubbers[compound]
+        fault = f"no rubber {compound!r} among sim.rubbers; known: {', '.join(self.rubbers)}"
+        if self.law != TWO_BELLS or setting.materials is None:
+            raise ValueError(fault)
+        from sim.physics.loss_maxima import loss_maxima  # numpy takes a tenth of a second to import
+
+        rubber = setting.materials.rubber(compound)
+        if rubber.glass_c is None:
+            raise ValueError(f"{fault}; and its file states no Tg")
+        ts_c = rubber.glass_c + GLASS_TO_REFERENCE_K
+        of_modulus_hz, of_factor_hz = loss_maxima(rubber.modulus, ts_c)
+        if not (of_modulus_hz > 0.0 and of_factor_hz > 0.0):
+            raise ValueError(f"{fault}; and the moduli of its file have no maximum of their losses at {ts_c:g} degC")
+        return TrackRubber(t_ref=ts_c, loss_modulus=of_modulus_hz, loss_factor=of_factor_hz)
 
     def friction_of(self, compound: str, setting: laws.LawSetting = laws.NO_SETTING) -> laws.FrictionLaw:
         """Return the law of a rubber for the simulated rig: a slow law as a table.
@@ -215,7 +234,7 @@ class TrackParameters:
         """Return the setting with this rig's area, and its surface if it states one; raises ValueError without one."""
         materials = ReadOnce(setting.materials) if setting.materials is not None else None
         own = laws.LawSetting(materials, self.surface or setting.surface, self.contact.area, setting.tables)
-        if own.materials is not None and not own.surface:
+        if self.of_materials and own.materials is not None and not own.surface:
             raise ValueError(f"law {self.law!r} needs a surface (expected the recipe's abrasive, or sim.surface)")
         return own
 
@@ -229,14 +248,3 @@ def table_span(setting: laws.LawSetting, compound: str) -> TableSpan:
     glass_c = setting.materials.rubber(compound).glass_c if setting.materials is not None else None
     low_c, high_c = TABLE_C
     return TableSpan(TABLE_M_S, (min(max(low_c, glass_c if glass_c is not None else low_c), 0.0), high_c), TABLE_N)
-
-
-def _refuse(group: object, zero_allowed: AbstractSet[str], signed: AbstractSet[str] = frozenset()) -> None:
-    """Raise ValueError unless every number of a group is finite and above zero, or zero where allowed."""
-    for item in fields(group):  # type: ignore[arg-type]
-        value: object = getattr(group, item.name)
-        if isinstance(value, bool) or not isinstance(value, int | float) or item.name in signed:
-            continue
-        if not math.isfinite(value) or value < 0.0 or (value == 0.0 and item.name not in zero_allowed):
-            least = "at least 0" if item.name in zero_allowed else "above 0"
-            raise ValueError(f"{type(group).__name__}.{item.name} must be finite and {least}, not {value!r}")

@@ -31,10 +31,10 @@ from tester.inputs.rig.profiles import extension_law
     metavar="LAW",
     default="paper",
     show_default=True,
-    help="Law of friction: paper (equations 4-9), v2 (a better fit to the same data), wlf_bell, power, arrhenius, "
-    "persson, greta, or one of an installed package.",
+    help="Law of friction: paper (equations 4-9), v2 (a better fit to the same data), wlf_bell, two_bells, power, "
+    "arrhenius, persson, greta, or one of an installed package.",
 )
-@click.option("--surface", default="", metavar="NAME", help="Surface, for persson and greta.")
+@click.option("--surface", default="", metavar="NAME", help="Surface, for two_bells, persson and greta.")
 @click.option(
     "--area",
     type=QuantityType("mm2"),

@@ -54,7 +54,7 @@ def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_jso
     in_range(point.temperature_c, point.load_n, point.slip_m_s)
     setting = _setting(point)
     if setting is None:
-        law = TrackParameters(law=point.law).law_of(point.compound)
+        law = TrackParameters(law=point.law).law_of(point.compound, _own(point))
     else:
         law = laws.make(point.law, point.compound, setting=setting)
     at = point.temperature_c, point.load_n, point.slip_m_s
@@ -84,13 +84,18 @@ def predict_on_track(point: TrackPoint, *, components: bool, table: bool, as_jso
     return 0 if right else 1
 
 
+def _own(point: TrackPoint) -> laws.LawSetting:
+    """Return the surface and the source of materials of a law of the simulated track, for which both are optional."""
+    return law_setting(point.surface, Path("recipe.yaml"))  # the working folder counts as a recipe's
+
+
 def _setting(point: TrackPoint) -> laws.LawSetting | None:
     """Return the materials of a law that is made of them; None for any other law."""
     if not isinstance(laws.find(point.law), laws.OfMaterials):
         return None
     if not point.surface:
         raise ValueError(f"law {point.law} is made of a compound and a surface (expected --surface NAME)")
-    materials = law_setting(point.surface, Path("recipe.yaml")).materials  # the working folder counts as a recipe's
+    materials = _own(point).materials
     assert materials is not None
     pair = OnePair(materials.rubber(point.compound), materials.surface(point.surface))
     return laws.LawSetting(pair, point.surface, point.area_mm2)

@@ -45,7 +45,7 @@ def simulated_ports(
         world = machines.find(run_parts(rig).plant).world(spec_of(rig), rig.plant, seed, can_wire)
     except UnknownQuantityError as error:
         raise InvalidSource([Problem("rig file", 1, 1, f"devices: {error}")]) from error
-    if world.of_materials:
+    if world.by_surface:
         world.take(law_setting(surface, recipe))
     if log is not None:
         log.watch(world.can, world.lines)

@@ -17,10 +17,10 @@ import recipes
 from tester.analysis.results import RepeatResult
 from tester.machine.run import Outcome
 from tests.campaigns.track import FASTER, SAMPLED
-from tests.tester.kinds.specimen_on_track.bench import TrackBench
+from tests.tester.kinds.specimen_on_track.bench import TrackBench, one_track
 
 SEEDS, SAMPLE_SEEDS = 20, 2
-RECIPES = (("grosch", "grosch"), ("grosch-talc", "grosch"), ("pin-on-disc", "pin-on-disc"))
+RECIPES = (("grosch", "grosch"), ("pin-on-disc", "pin-on-disc"))
 """Recipes and their rigs ..."""
 CHAMBERS = ("grosch",)
 """... those with a chamber, for which a run waits."""
@@ -76,7 +76,7 @@ def measure(recipe: str, rig: str, seeds: int, *, sample: bool) -> int:
     """Run a packaged recipe with some seeds; print the figures, return how many miss."""
     text = Path(recipes.find(recipe)).read_text(encoding="utf-8")
     if sample:
-        text = text.replace(SAMPLED[0], TWO).replace(FASTER, "")
+        text = one_track(text).replace(SAMPLED[0], TWO).replace(FASTER, "")
     apart, lost, unfinished, leapt_s = list[tuple[float, float]](), 0, 0, 0.0
     every_s, with_s = list[float](), list[float]()
     for seed in range(seeds):

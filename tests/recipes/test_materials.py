@@ -13,21 +13,22 @@ import yaml
 import recipes
 from sim.physics import laws
 from sim.physics.laws import LawSetting
+from sim.physics.loss_maxima import loss_maxima
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine, TabulatedSpectrum
-from sim.physics.track import RUBBERS
+from sim.physics.track_bells import RUBBERS, SURFACES
 from tester.base.validation import editor_text
 from tester.inputs.materials.library import Library
 from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 
 LIBRARY = Library([recipes.FOLDER])
 COMPOUNDS = [one.name for one in LIBRARY.entries("compound")]
-SURFACES = [one.name for one in LIBRARY.entries("surface")]
+SURFACE_FILES = [one.name for one in LIBRARY.entries("surface")]
 
 
 def test_what_ships() -> None:
     assert sorted(COMPOUNDS) == ["1#", "2#", "3#", "ABR", "INR", "NBR", "NR", "SBR", "butyl", "tread", "tread soft"]
-    assert sorted(SURFACES) == [
+    assert sorted(SURFACE_FILES) == [
         "S0", "anti-slip tape", "asphalt", "concrete", "glass", "granite", "polished steel", "road", "silicon carbide",
         "wavy glass", "zirconia corundum belt",
     ]  # fmt: skip
@@ -39,7 +40,7 @@ def test_a_compound_is_read_without_a_doubt(name: str) -> None:
     assert one.file.doubts == () and one.model.source
 
 
-@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("name", SURFACE_FILES)
 def test_a_surface_is_read_without_a_doubt(name: str) -> None:
     one = LIBRARY.surface_file(name)
     assert one.file.doubts == () and one.model.source and ("[A]" in one.model.source or "doi " in one.model.source)
@@ -116,6 +117,24 @@ def test_the_papers_compounds_are_those_of_its_table_1(
 def test_rubbers_of_the_simulated_track_have_their_glass_transition(name: str) -> None:
     rubber = LIBRARY.rubber(name)
     assert rubber.glass_c == RUBBERS[name].t_ref - 50.0
+
+
+@pytest.mark.parametrize("name", list(RUBBERS))
+def test_rubbers_of_the_simulated_track_lose_most_where_their_file_does(name: str) -> None:
+    of_modulus_hz, of_factor_hz = loss_maxima(LIBRARY.rubber(name).modulus, RUBBERS[name].t_ref)
+    assert RUBBERS[name].loss_modulus == pytest.approx(of_modulus_hz, rel=1e-3)
+    assert RUBBERS[name].loss_factor == pytest.approx(of_factor_hz, rel=1e-3)
+
+
+def test_the_grit_of_the_simulated_abrasive_is_the_longest_wave_of_its_file() -> None:
+    spectrum = LIBRARY.surface("silicon carbide").spectrum
+    assert spectrum is not None
+    assert 1e-6 * SURFACES["silicon carbide"].grit == pytest.approx(2.0 * np.pi / spectrum.band_1_m[0], rel=1e-3)
+
+
+@pytest.mark.parametrize("name", list(SURFACES))
+def test_surfaces_of_the_simulated_track_have_a_file(name: str) -> None:
+    assert LIBRARY.path("surface", name) is not None
 
 
 def test_recipes_find_what_they_name() -> None:

@@ -16,14 +16,13 @@ from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.run.kind_lookup import recipe_part
 from tests.tester.inputs.recipe.texts import load_recipe
 
-MASTERS = ["grosch", "grosch-glass", "grosch-talc"]
-RIGS = {**dict.fromkeys(MASTERS, "grosch"), "pin-on-disc": "pin-on-disc"}
+RIGS = {"grosch": "grosch", "pin-on-disc": "pin-on-disc"}
 """Rigs of the recipes that are not for the first one."""
 
 
 def test_these_recipes_are_packaged() -> None:
     table2 = ["table2", "table2-load", "table2-sideslip", "table2-slip"]
-    assert recipes.names() == [*MASTERS, "pin-on-disc", "pre-grind", "quickstart", *table2, "wear"]
+    assert recipes.names() == ["grosch", "pin-on-disc", "pre-grind", "quickstart", *table2, "wear"]
 
 
 @pytest.mark.parametrize("name", ["quickstart", "quickstart.yaml", "recipes/quickstart.yaml"])
@@ -46,7 +45,7 @@ def test_what_is_neither_file_nor_name_is_refused_naming_what_there_is(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are grosch, grosch-glass, grosch-talc, pin-on-disc, "):
+    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are grosch, pin-on-disc, "):
         recipes.find(name)
 
 
@@ -56,22 +55,20 @@ def test_every_packaged_recipe_is_valid_on_its_rig(name: str) -> None:
     assert check(recipes.find(name), rig, recipe_part(rig)) == []
 
 
-@pytest.mark.parametrize(("name", "track", "interface"), [
-    ("grosch", "silicon carbide", "dry"), ("grosch-glass", "wavy glass", "dry"),
-    ("grosch-talc", "silicon carbide", "talc"),
-])  # fmt: skip
-def test_a_master_curve_has_11_temperatures_and_9_speeds_on_each_track_and_friction_heats_none(
-    name: str, track: str, interface: str
-) -> None:
+def test_grosch_has_11_temperatures_and_9_speeds_on_each_track_and_friction_heats_none() -> None:
     rig = load_rig("grosch")
     part = recipe_part(rig)
-    plan = part.expand(load_recipe(recipes.find(name), part).recipe, rig)
+    plan = part.expand(load_recipe(recipes.find("grosch"), part).recipe, rig)
     held = [held_by(step.setpoint) for step in plan.conditions()]
-    assert {(one.temperature_c, one.track_m_s) for one in held} == {
-        (celsius, speed) for celsius in {one.temperature_c for one in held} for speed in {one.track_m_s for one in held}
-    }
-    assert (len({one.temperature_c for one in held}), len({one.track_m_s for one in held}), len(held)) == (11, 9, 99)
-    assert {one.interface for one in held} == {interface} and plan.metadata["abrasive"] == track
+    tracks = [(one.surface, one.interface) for one in held]
+    assert list(dict.fromkeys(tracks)) == [
+        ("wavy glass", "dry"), ("silicon carbide", "dry"), ("silicon carbide", "talc")
+    ]  # fmt: skip
+    places = {(one.temperature_c, one.track_m_s) for one in held}
+    assert len(places) == 99 and len({celsius for celsius, _ in places}) == 11
+    for track in set(tracks):
+        own = [(one.temperature_c, one.track_m_s) for one in held if (one.surface, one.interface) == track]
+        assert len(own) == 99 and set(own) == places
     assert part.estimate(plan, rig).not_held == ()
 
 

@@ -167,9 +167,9 @@ class TrackRig(SimRig):
                 drive.set_torque_off(beyond)
 
     @property
-    def of_materials(self) -> bool:
-        """Whether the friction law is made of a rubber and a surface; ``take`` sets their source."""
-        return self.plant.parameters.of_materials
+    def by_surface(self) -> bool:
+        """Whether the friction law asks for the surface; ``take`` sets it, and the source of materials."""
+        return self.plant.parameters.by_surface
 
     def take(self, setting: LawSetting) -> None:
         """Set the source of the materials, before a specimen is mounted."""

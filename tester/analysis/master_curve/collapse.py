@@ -27,10 +27,12 @@ BELOW_K: Final = 100.0
 POLE_K: Final = 1.0
 """Upper end: distance from the Ts that puts the lowest temperature at the pole of the shift, K."""
 GRID_K: Final = 4.0
-MOST_KNOTS: Final = 12
-"""Interior knots: two peaks over twelve decades take about ten."""
-ROWS_A_KNOT: Final = 6
+MOST_KNOTS: Final = 20
+"""Interior knots: two peaks 1.9 decades apart, over twelve decades, take 15 to 19."""
+ROWS_A_KNOT: Final = 5
 """Least number of conditions for each knot [A]."""
+LEAST_ROWS: Final = 12
+"""Least number of conditions of a curve [A]."""
 _LEAST_LN: Final = 1e-4
 """A residual of ln mu below which a further knot improves nothing."""
 PILOT: Final = 0.02
@@ -149,8 +151,8 @@ def collapse(of: MasterSet, ts_c: float | None = None, resamples: int = RESAMPLE
     Raises MasterError for too few conditions, PoleError for a Ts that puts a temperature at the pole.
     """
     n = of.log_v.size
-    if n < 2 * ROWS_A_KNOT:
-        raise MasterError(f"{n} conditions are too few for a curve (expected at least {2 * ROWS_A_KNOT})")
+    if n < LEAST_ROWS:
+        raise MasterError(f"{n} conditions are too few for a curve (expected at least {LEAST_ROWS})")
     y = padded(of, of.log_mu)
     most = min(MOST_KNOTS, n // ROWS_A_KNOT)
     coldest_c = float(np.min(of.celsius))

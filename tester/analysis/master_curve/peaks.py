@@ -10,23 +10,22 @@ temperature and rubber friction), frequencies in rad/s at the temperature of the
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan, pi
+from math import nan
 from typing import Final
 
 import numpy as np
 
-from sim.physics.materials import OutsideError, ShearModulus
-from sim.physics.wlf import PoleError
+from sim.physics.loss_maxima import loss_maxima
+from sim.physics.materials import ShearModulus
 from tester.analysis.master_curve.collapse import Collapse, Curve, curve_through, padded, shifts
 from tester.base.arrays import Array
 
 JUMP_M: Final = 6e-9
 GRIT_M: Final = 150e-6
-DECADES: Final = (-6, 14)
-"""Powers of ten of rad/s that bound the search for maxima of the moduli."""
-A_DECADE: Final = 50
 PROMINENT: Final = 0.02
-"""A maximum of the curve counts where ln mu falls by more than this on both sides [A]."""
+"""A maximum of the curve counts where ln mu falls by more than this on both sides [A] ..."""
+SCATTERS: Final = 3.0
+"""... and by more than this many times the scatter about the curve [A]: a spline rings on flat ground."""
 PLACES: Final = 1000
 DRAWN: Final = 200
 """Resampled sets in which each maximum is searched again."""
@@ -73,7 +72,8 @@ def peaks_of(collapse: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], 
     curve of ``FINER`` more knots: a spline that smooths detail away moves a maximum, and resampling does not show that.
     """
     back = _back(collapse.ts_c, reference_c)
-    maxima = [(x - back, mu) for x, mu in _maxima(collapse.curve, collapse.x)]
+    least = max(PROMINENT, SCATTERS * collapse.scatter)
+    maxima = [(x - back, mu) for x, mu in _maxima(collapse.curve, collapse.x, least)]
     if not maxima or collapse.drawn is None:
         return tuple(Peak(float(10.0**x), mu) for x, mu in maxima), 0
     places = [x for x, _ in maxima]
@@ -111,14 +111,14 @@ def _back(ts_c: float, reference_c: float) -> float:
     return float(shifts(np.array([reference_c]), ts_c)[0])
 
 
-def _maxima(curve: Curve, over: Array) -> list[tuple[float, float]]:
-    """Return x and mu of the ``PROMINENT`` maxima of a curve within a range."""
+def _maxima(curve: Curve, over: Array, least: float = PROMINENT) -> list[tuple[float, float]]:
+    """Return x and mu of the maxima of a curve within a range, where ln mu falls by more than ``least`` from them."""
     x = np.linspace(float(np.min(over)), float(np.max(over)), PLACES)
     y = curve.at(x)
     return [
         (float(x[i]), float(np.exp(y[i])))
         for i in np.flatnonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:])) + 1
-        if min(_falls(y[i::-1]), _falls(y[i:])) > PROMINENT
+        if min(_falls(y[i::-1]), _falls(y[i:])) > least
     ]
 
 
@@ -130,12 +130,12 @@ def _falls(y: Array) -> float:
 
 def rules_of(modulus: ShearModulus, reference_c: float, peaks: tuple[Peak, ...]) -> tuple[Rule, ...]:
     """Return Grosch's two rules for a compound, compared with the maxima of a curve."""
-    omega, storage, loss = _known(modulus, reference_c)
+    of_modulus_hz, of_factor_hz = loss_maxima(modulus, reference_c)
     named = (
-        ("6 nm x omega of the loss modulus' maximum / 2 pi", JUMP_M, loss),
-        ("150 um x omega of the loss factor's maximum / 2 pi", GRIT_M, loss / storage if loss.size else loss),
+        ("6 nm x omega of the loss modulus' maximum / 2 pi", JUMP_M * of_modulus_hz),
+        ("150 um x omega of the loss factor's maximum / 2 pi", GRIT_M * of_factor_hz),
     )
-    return tuple(_rule(name, length * _maximum(omega, values) / (2.0 * pi), peaks) for name, length, values in named)
+    return tuple(_rule(name, speed_m_s, peaks) for name, speed_m_s in named)
 
 
 def _rule(name: str, speed_m_s: float, peaks: tuple[Peak, ...]) -> Rule:
@@ -143,30 +143,3 @@ def _rule(name: str, speed_m_s: float, peaks: tuple[Peak, ...]) -> Rule:
         return Rule(name, speed_m_s)
     nearest = min(peaks, key=lambda peak: abs(np.log10(peak.speed_m_s / speed_m_s)))
     return Rule(name, speed_m_s, nearest.speed_m_s)
-
-
-def _known(modulus: ShearModulus, celsius: float) -> tuple[Array, Array, Array]:
-    """Return frequencies at which a modulus is known at a temperature, with G' and G''."""
-    rows: list[tuple[float, float, float]] = []
-    for omega in np.logspace(*DECADES, (DECADES[1] - DECADES[0]) * A_DECADE + 1):
-        try:
-            value = complex(modulus.complex_pa(np.array([omega]), celsius)[0])
-        except (OutsideError, PoleError):
-            continue
-        if value.real > 0.0 and value.imag > 0.0:
-            rows.append((float(omega), value.real, value.imag))
-    table = np.array(rows).reshape(-1, 3)
-    return table[:, 0], table[:, 1], table[:, 2]
-
-
-def _maximum(omega: Array, values: Array) -> float:
-    """Return the place of the maximum, by a parabola over log omega; NaN where that is an end of the known range."""
-    if values.size < 3:
-        return nan
-    i = int(np.argmax(values))
-    if i in (0, values.size - 1):
-        return nan
-    y, x = np.log(values[i - 1 : i + 2]), np.log(omega[i - 1 : i + 2])
-    bend = float(y[0] - 2.0 * y[1] + y[2])
-    share = 0.5 * float(y[0] - y[2]) / bend if bend < 0.0 else 0.0
-    return float(np.exp(x[1] + share * (x[2] - x[1])))

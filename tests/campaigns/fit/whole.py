@@ -13,6 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final, NamedTuple
 
+import recipes
 from tester.analysis.fit.fit_law import FitError, by_group
 from tester.analysis.fit.joint import fit_group
 from tester.kinds.specimen_on_track.fit.fits import FITS
@@ -20,6 +21,7 @@ from tester.run.session import Session
 from tester.run.session_options import SessionOptions
 from tester.run.sweep.case import Unseen
 from tests.campaigns.fit.silence import RESAMPLES, Figure
+from tests.tester.kinds.specimen_on_track.bench import one_track
 
 LAWS: Final[Mapping[str, str]] = {
     "the right law": "wlf_bell",
@@ -45,7 +47,9 @@ def ended(which: tuple[str, int]) -> Whole:
     with TemporaryDirectory() as folder:
         screen = Unseen()
         overrides = ("scan.enabled=10 Hz", f"sim.law={LAWS[name]}")
-        options = SessionOptions("grosch", "grosch", out=Path(folder), seed=seed, overrides=overrides, samples=False)
+        recipe = Path(folder) / "recipe.yaml"
+        recipe.write_text(one_track(recipes.find("grosch").read_text(encoding="utf-8")), encoding="utf-8")
+        options = SessionOptions(str(recipe), "grosch", out=Path(folder), seed=seed, overrides=overrides, samples=False)
         session = screen.session = Session(options, screen)
         session.run()
         if session.folder is None:

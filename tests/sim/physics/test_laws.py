@@ -64,7 +64,7 @@ def test_a_law_that_is_not_known_is_looked_up_elsewhere() -> None:
 
 
 def test_an_unknown_law_is_told_with_those_that_are_there() -> None:
-    known = "paper, v2, wlf_bell, power, arrhenius, persson, greta"
+    known = "paper, v2, wlf_bell, two_bells, power, arrhenius, persson, greta"
     with pytest.raises(laws.UnknownLawError, match=f"no friction law 'magic'; known: {known}"):
         laws.make("magic", "1#")
 

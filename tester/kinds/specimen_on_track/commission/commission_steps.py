@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
-from sim.physics.track import RUBBERS
+from sim.physics.track_bells import RUBBERS
 from tester.kinds.specimen_on_track.commission import air, first, force, load, travel, zero
 from tester.kinds.specimen_on_track.commission.axes_to_jog import LIFT, jog_track, track_axis
 from tester.kinds.specimen_on_track.commission.seats import TrackSeat, jog_seat

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from sim.physics.track import RUBBERS
+from sim.physics.track_bells import RUBBERS
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused
 from tester.machine.commission.compound import ask_compound

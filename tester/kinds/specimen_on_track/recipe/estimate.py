@@ -81,7 +81,7 @@ class TrackEstimator(Estimator):
         key = compound, interface, named
         if key not in self._laws:
             sim = self.rig.sim
-            setting = law_setting(named, self.recipe) if sim.of_materials else NO_SETTING
+            setting = law_setting(named, self.recipe) if sim.by_surface else NO_SETTING
             law = sim.law_of(compound, setting)
             self._laws[key] = sim.contact.through(law, interface)  # type: ignore[arg-type]
         return self._laws[key]

@@ -72,7 +72,7 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
 def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
     """Yield a problem for every compound that has no simulated law on a surface of the recipe."""
     sim = rig.sim
-    surfaces = (surfaces_of(recipe) or [""]) if sim.of_materials else [""]
+    surfaces = (surfaces_of(recipe) or [""]) if sim.by_surface else [""]
     if sim.surface and len(surfaces) > 1:
         fault = f'surface: the simulated track is covered with "{sim.surface}" throughout (sim.surface; expected "")'
         yield tree.problem(("grids",), fault)
@@ -81,7 +81,7 @@ def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
         if (specimen.compound, surface) in checked:
             continue
         checked.add((specimen.compound, surface))
-        setting = law_setting(surface, Path(tree.name)) if sim.of_materials else NO_SETTING
+        setting = law_setting(surface, Path(tree.name)) if sim.by_surface else NO_SETTING
         try:
             sim.known_everywhere(specimen.compound, setting)
         except OutsideError as error:

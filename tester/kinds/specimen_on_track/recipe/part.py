@@ -137,10 +137,16 @@ class TrackPart(SpecimenPart):
         return TrackEstimator(TrackConfig.of(rig), repeatability)
 
     def in_turns(self, conditions: Sequence[Condition[Settings]]) -> list[list[Condition[Settings]]]:
-        """Return the conditions of one surface after the other: a surface is changed at the temperature of the room."""
-        place, turns = AXES.places[SURFACE], dict[object, list[Condition[Settings]]]()
+        """Return the conditions of one surface after the other: a surface is changed at the temperature of the room.
+
+        A named surface with talc has a turn of its own, on a new cover: talc does not come off.
+        """
+        surface, interface = AXES.places[SURFACE], AXES.places["interface"]
+        turns = dict[object, list[Condition[Settings]]]()
         for condition in conditions:
-            turns.setdefault(condition.values[place], []).append(condition)
+            named = condition.values[surface]
+            powdered = bool(named) and condition.values[interface] == "talc"
+            turns.setdefault((named, powdered), []).append(condition)
         return list(turns.values())
 
     def before_turn(self, index: int, values: tuple[AxisValue, ...], settings: Settings, rig: Rig) -> Sequence[Step]:

@@ -119,9 +119,9 @@ def test_a_law_of_materials_rubs_with_the_pressure_on_the_nominal_area(law: str,
     assert plant.mu == pytest.approx(slow.mu(plant.specimen_c, 20.0, 1e-3), rel=0.005)
 
 
-@pytest.mark.parametrize(("interface", "kept"), [("dry", 1.0), ("wet", 0.0), ("talc", 0.0)])
-def test_of_a_law_that_knows_its_parts_water_and_talc_take_the_adhesion(
-    interface: str, kept: float, tables: Path
+@pytest.mark.parametrize(("interface", "kept"), [("dry", (1.0, 1.0)), ("wet", (0.0, 1.0)), ("talc", (0.1, 0.9))])
+def test_of_a_law_that_knows_its_parts_water_takes_the_adhesion_and_talc_most_of_it(
+    interface: str, kept: tuple[float, float], tables: Path
 ) -> None:
     plant = on_track("greta", tables)
     plant.prepare(interface)  # type: ignore[arg-type]
@@ -129,11 +129,12 @@ def test_of_a_law_that_knows_its_parts_water_and_talc_take_the_adhesion(
     slow = with_parts("greta", make("greta", "SBR", setting=LawSetting(Shelf(), "track", 50.0)))
     adhesion, hysteresis = slow.components(plant.specimen_c, 20.0, 1e-3)
     assert adhesion > 0.01 * hysteresis > 0.0
-    assert plant.mu == pytest.approx(kept * adhesion + hysteresis, rel=0.01)
+    assert plant.mu == pytest.approx(kept[0] * adhesion + kept[1] * hysteresis, rel=0.01)
 
 
-def test_water_may_leave_a_share_of_the_adhesion_and_talc_leaves_none(tables: Path) -> None:
-    dry, wet, talc = (on_track("greta", tables, wet_adhesion=0.3) for _ in range(3))
+def test_water_may_leave_a_share_of_the_adhesion_and_talc_none(tables: Path) -> None:
+    shares = {"wet_adhesion": 0.3, "talc_adhesion": 0.0, "talc_hysteresis": 1.0}
+    dry, wet, talc = (on_track("greta", tables, **shares) for _ in range(3))
     wet.prepare("wet")
     talc.prepare("talc")
     for plant in (dry, wet, talc):

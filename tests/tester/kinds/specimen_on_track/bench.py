@@ -41,6 +41,15 @@ grids:
 """
 
 
+def one_track(text: str, surface: str = "silicon carbide", interface: str = "dry") -> str:
+    """Return the text of the packaged recipe grosch with one of its tracks alone."""
+    clean, found, talc = text.partition("  - name: talc\n")
+    assert found and "[wavy glass, silicon carbide]" in clean
+    if interface == "talc":
+        return clean[: clean.index("  - name: clean")] + found + talc
+    return clean.replace("[wavy glass, silicon carbide]", surface)
+
+
 @dataclass
 class Kept(NullRecorder):
     """Keeps results, trips, warnings and events."""

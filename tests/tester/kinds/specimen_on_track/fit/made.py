@@ -67,7 +67,7 @@ def made_track_run(
         )
         for n, (c, i, t, v) in enumerate(design, start=1)
     ]  # fmt: skip
-    rig = packaged.packaged_text(KIND.rig(), "grosch").replace("law: wlf_bell", f"law: {law_name}")
+    rig = packaged.packaged_text(KIND.rig(), "grosch").replace("law: two_bells", f"law: {law_name}")
     assert f"law: {law_name}" in rig
     info = RunInfo(
         name=folder.name, recipe_name="master", recipe_text="recipe: master\n", rig_text=rig,
