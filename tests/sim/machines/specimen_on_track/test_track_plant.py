@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from math import exp
 from pathlib import Path
 
@@ -133,8 +134,8 @@ def test_of_a_law_that_knows_its_parts_water_takes_the_adhesion_and_talc_most_of
 
 
 def test_water_may_leave_a_share_of_the_adhesion_and_talc_none(tables: Path) -> None:
-    shares = {"wet_adhesion": 0.3, "talc_adhesion": 0.0, "talc_hysteresis": 1.0}
-    dry, wet, talc = (on_track("greta", tables, **shares) for _ in range(3))
+    made = partial(on_track, "greta", tables, wet_adhesion=0.3, talc_adhesion=0.0, talc_hysteresis=1.0)
+    dry, wet, talc = (made() for _ in range(3))
     wet.prepare("wet")
     talc.prepare("talc")
     for plant in (dry, wet, talc):
